@@ -1,0 +1,24 @@
+"""Orientation of reference frames, for symbols, numbers and batches.
+
+Direction cosine matrices :math:`{}^A\\mathbf{C}^N` have :math:`A`'s unit vectors as rows, angles are
+in radians, quaternions have their scalar part first, and sequences are body fixed and lower case.
+"""
+
+from ._kinds import SymbolsNotPossible
+from .axis_angle import axis_angle_from_dcm, dcm_from_axis_angle, quaternion_from_axis_angle
+from .comparison import Diagnosis, diagnose, same_orientation
+from .direction_cosines import NearestDCM, check_dcm, nearest_dcm, simple_dcm
+from .euler_angles import (
+    PROPER_EULER, SEQUENCES, TAIT_BRYAN, body_fixed_from_dcm, dcm_from_body_fixed, dcm_from_space_fixed,
+    gimbal_lock_margin, space_fixed_from_dcm)
+from .quaternions import dcm_from_quaternion, multiply_quaternions, quaternion_from_dcm
+from .scipy_border import dcm_from_scipy_rotation, scipy_rotation_from_dcm
+
+__all__ = [
+    'Diagnosis', 'NearestDCM', 'PROPER_EULER', 'SEQUENCES', 'SymbolsNotPossible', 'TAIT_BRYAN',
+    'axis_angle_from_dcm', 'body_fixed_from_dcm', 'check_dcm', 'dcm_from_axis_angle',
+    'dcm_from_body_fixed', 'dcm_from_quaternion', 'dcm_from_scipy_rotation', 'dcm_from_space_fixed',
+    'diagnose', 'gimbal_lock_margin', 'multiply_quaternions', 'nearest_dcm', 'quaternion_from_axis_angle',
+    'quaternion_from_dcm', 'same_orientation', 'scipy_rotation_from_dcm', 'simple_dcm',
+    'space_fixed_from_dcm',
+]

@@ -1,0 +1,235 @@
+"""One formula for symbols, numbers and batches.
+
+Every conversion of this package is written once, as a formula that takes scalar components and
+returns scalar components. This file finds out what it was given (SymPy expressions, plain numbers,
+or arrays that hold a batch), hands the components to the formula with the matching ``sin``, ``cos``
+and friends, and shapes the results.
+
+SymPy objects are recognised without importing SymPy, and NumPy is imported only when numbers come,
+so symbols work where there is no NumPy.
+"""
+
+import functools
+import math
+from types import SimpleNamespace
+
+#: Largest departure from orthogonality, or from unit length, that still counts as rounding.
+TOLERANCE = 1e-9
+
+#: Items of a batch that are worked on together, so that their components stay in the cache.
+BLOCK = 8192
+
+
+class SymbolsNotPossible(TypeError):
+    """A conversion that must compare sizes to choose its branch was given symbols."""
+
+
+def is_symbolic(value):
+    """Tell whether a value is a SymPy object, or a sequence or object array that holds one."""
+    if isinstance(value, (list, tuple)):
+        return any(is_symbolic(entry) for entry in value)
+    if getattr(value, 'dtype', None) == object:
+        return is_symbolic(value.tolist())
+    return hasattr(value, 'free_symbols')
+
+
+def evaluate(formula, shape, *arguments, guard=None, symbols=True):
+    """Apply a formula to its arguments, whatever kind they are of.
+
+    Parameters
+    ----------
+    formula : callable
+        ``formula(functions, *components)`` returns the components of the result.
+    shape : tuple
+        Shape of one result.
+    arguments : tuples ``(name, value, shape)``
+        What the caller was given, and the shape of one item of it.
+    guard : tuple ``(count, excess, explain)``, optional
+        ``excess`` takes the first ``count`` components and gives a number that is at most
+        :data:`TOLERANCE` for valid input; ``explain(components, where)`` says what is wrong.
+    symbols : bool
+        False for a formula that needs numbers, to choose its branch by their sizes.
+    """
+    if symbols and any(is_symbolic(value) for _, value, _ in arguments):
+        return _evaluate_symbols(formula, shape, arguments, guard)
+    arrays = [number_array(value, item, name) for name, value, item in arguments]
+    if all(array.ndim == len(item) for array, (_, _, item) in zip(arrays, arguments)):
+        return _evaluate_numbers(formula, shape, arrays, guard)
+    return _evaluate_batch(formula, shape, arrays, arguments, guard)
+
+
+def _evaluate_symbols(formula, shape, arguments, guard):
+    import sympy
+    components = [entry for name, value, item in arguments
+                  for entry in symbol_components(value, item, name)]
+    if guard:
+        _guard_exact_numbers(components, guard)
+    result = [sympy.sympify(entry) for entry in formula(_symbol_functions(), *components)]
+    if shape == ():
+        return result[0]
+    return sympy.Matrix(*(shape if len(shape) == 2 else (*shape, 1)), result)
+
+
+def _guard_exact_numbers(components, guard):
+    count, excess, explain = guard
+    try:
+        numbers = [float(entry) for entry in components[:count]]
+    except TypeError:
+        return  # symbols: whether they are valid depends on what will be put in for them
+    if not excess(NUMBERS, *numbers) <= TOLERANCE:
+        explain(numbers, '')
+
+
+def _evaluate_numbers(formula, shape, arrays, guard):
+    import numpy
+    components = [entry for array in arrays for entry in array.ravel().tolist()]
+    if guard:
+        count, excess, explain = guard
+        if not excess(NUMBERS, *components[:count]) <= TOLERANCE:
+            explain(components[:count], '')
+    result = formula(NUMBERS, *components)
+    # Adding zero turns -0 into 0, which would look like a wrong sign.
+    return numpy.array([entry + 0.0 for entry in result]).reshape(shape) if shape else result[0]
+
+
+def _evaluate_batch(formula, shape, arrays, arguments, guard):
+    import numpy
+    shapes = [array.shape[:array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)]
+    try:
+        batch = numpy.broadcast_shapes(*shapes)
+    except ValueError:
+        described = ' and '.join(f'{name} {array.shape}'
+                                 for array, (name, _, _) in zip(arrays, arguments))
+        raise ValueError(f'the batches do not fit each other: {described}') from None
+    flat = [numpy.broadcast_to(array, batch + item).reshape(math.prod(batch), math.prod(item))
+            for array, (_, _, item) in zip(arrays, arguments)]
+    result = numpy.empty((math.prod(batch), math.prod(shape)))
+    functions = _array_functions()
+    for start in range(0, len(result), BLOCK):
+        components = [column for array in flat
+                      for column in numpy.ascontiguousarray(array[start:start + BLOCK].T)]
+        if guard:
+            count, excess, explain = guard
+            size = excess(functions, *components[:count])
+            if not numpy.all(size <= TOLERANCE):
+                worst = int(numpy.argmax(size))
+                index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
+                explain([float(column[worst]) for column in components[:count]], f' (item {index})')
+        for column, values in enumerate(formula(functions, *components)):
+            result[start:start + BLOCK, column] = values
+        result[start:start + BLOCK] += 0.0
+    return result.reshape(batch + shape)
+
+
+def number_array(value, item, name):
+    """Return a float array of shape ``(..., *item)``, or raise an error that explains.
+
+    SymPy matrices of plain numbers are numbers here; a symbol among them raises
+    :class:`SymbolsNotPossible`.
+    """
+    import numpy
+    if is_symbolic(value):
+        value = _floats(value, name)
+    elif (len(item) == 1 and isinstance(value, (list, tuple)) and len(value) == item[0]
+            and all(getattr(entry, 'ndim', 0) for entry in value)):
+        raise ValueError(f'{name} is a sequence of {len(value)} arrays, which can be read in two ways: '
+                         f'join separate components with numpy.stack(..., axis=-1), '
+                         f'or a list of items with numpy.stack(...)')
+    try:
+        array = numpy.asarray(value)
+        if array.dtype.kind not in 'iuf':
+            raise ValueError
+    except ValueError:
+        raise TypeError(f'{name} must hold real numbers or SymPy expressions in a regular shape, '
+                        f'not {value!r}') from None
+    array = array.astype(float, copy=False)
+    if array.ndim < len(item) or array.shape[array.ndim - len(item):] != item:
+        raise ValueError(_shape_message(name, array.shape, item))
+    finite = numpy.isfinite(array)
+    if not finite.all():
+        index = tuple(int(k) for k in numpy.argwhere(~finite)[0])
+        where = f'[{", ".join(map(str, index))}]' if index else ''
+        raise ValueError(f'{name}{where} is {array[index]}: a number is missing or a division by '
+                         f'zero happened before')
+    return array
+
+
+def _floats(value, name):
+    """Nested lists of floats from SymPy objects without symbols."""
+    if hasattr(value, 'tolist'):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_floats(entry, name) for entry in value]
+    try:
+        return float(value)
+    except TypeError:
+        raise SymbolsNotPossible(
+            f'{name} holds {value}, and this conversion needs numbers: which branch it takes depends '
+            f'on their sizes and signs. Put numbers in first, with .subs(...)') from None
+
+
+def symbol_components(value, item, name):
+    """Return the SymPy components of one item of the given shape."""
+    import sympy
+    shape = getattr(value, 'shape', None)
+    if shape is None and isinstance(value, (list, tuple)):
+        nested = [list(row) if isinstance(row, (list, tuple)) or hasattr(row, 'shape') else row
+                  for row in value]
+        lengths = {len(row) if isinstance(row, list) else 0 for row in nested}
+        shape = (len(nested),) if lengths == {0} else (len(nested), *sorted(lengths))
+        value = [entry for row in nested for entry in (row if isinstance(row, list) else [row])]
+    elif shape is not None:
+        value = list(value.ravel() if hasattr(value, 'ravel') else value)
+        if len(item) == 1 and shape in ((item[0], 1), (1, item[0])):
+            shape = item
+    else:
+        shape, value = (), [value]
+    if tuple(shape) != item:
+        raise ValueError(_shape_message(name, tuple(shape), item)
+                         + ' (SymPy expressions come one item at a time)')
+    components = [sympy.sympify(entry) for entry in value]
+    for position, entry in enumerate(components):
+        if entry.has(sympy.nan, sympy.zoo, sympy.oo):
+            raise ValueError(f'{name} holds {entry} (entry {position}): a division by zero happened before')
+    return components
+
+
+def _shape_message(name, shape, item):
+    if item == ():
+        return f'{name} has shape {shape}, where one number was expected'
+    wanted = ', '.join(map(str, item))
+    return f'{name} has shape {shape}, where ({wanted}) or (..., {wanted}) was expected'
+
+
+# --- the functions that a formula may use, for each kind ----------------------------------------
+
+def _pick_number(scores, rows):
+    return rows[scores.index(max(scores))]
+
+
+
+NUMBERS = SimpleNamespace(
+    sin=math.sin, cos=math.cos, atan2=math.atan2, norm=math.hypot, pick=_pick_number,
+    where=lambda condition, yes, no: yes if condition else no, largest=max)
+
+
+@functools.cache
+def _array_functions():
+    import numpy
+
+    def pick(scores, rows):
+        best = numpy.argmax(scores, axis=0)
+        return [numpy.choose(best, entries) for entries in zip(*rows)]
+
+    return SimpleNamespace(
+        sin=numpy.sin, cos=numpy.cos, atan2=numpy.arctan2, pick=pick, where=numpy.where,
+        norm=lambda *components: numpy.sqrt(sum(entry * entry for entry in components)),
+        largest=lambda *sizes: functools.reduce(numpy.maximum, sizes))
+
+
+@functools.cache
+def _symbol_functions():
+    import sympy
+    return SimpleNamespace(
+        sin=sympy.sin, cos=sympy.cos,
+        norm=lambda *components: sympy.sqrt(sum(entry**2 for entry in components)))

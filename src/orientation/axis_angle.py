@@ -1,0 +1,154 @@
+"""Axis and angle: Euler's theorem, Rodrigues' formula, and back again from 0 to pi."""
+
+from ._kinds import evaluate
+from .direction_cosines import DCM_GUARD
+from .quaternions import quaternion_components_from_dcm
+
+
+def _length_missing(f, x, y, z):
+    # 1 where no direction can be computed, 0 elsewhere: compared with the tolerance like any excess.
+    length = f.norm(x, y, z)
+    return f.where((length > 0) & (length < 1e150), 0, 1)
+
+
+def _explain_zero(components, where):
+    if max(map(abs, components)) > 1:
+        raise ValueError(f'axis{where} is {tuple(components)}: too long to compute with; divide it by its '
+                         f'length')
+    raise ValueError(f'axis{where} is {tuple(components)}: a zero vector points nowhere, so there is '
+                     f'nothing to turn about. Was a difference of equal vectors taken?')
+
+
+AXIS_GUARD = (3, _length_missing, _explain_zero)
+
+
+def dcm_from_axis_angle(axis, angle):
+    r"""Direction cosine matrix of a turn about one axis.
+
+    :math:`A` is turned with respect to :math:`N` through :math:`\theta` about the unit vector
+    :math:`\hat{e}`, whose components are the same in both frames:
+
+    .. math::
+
+       {}^A\mathbf{C}^N = \cos\theta\,\mathbf{I} + (1 - \cos\theta)\,\hat{e}\hat{e}^T
+       - \sin\theta\,[\hat{e}]_\times.
+
+    Parameters
+    ----------
+    axis : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
+        Direction of the axis; its length does not matter, as long as it has one.
+    angle : SymPy expression, float or array of shape ``(...)``
+        Radians, positive by the right hand.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
+
+    Raises
+    ------
+    ValueError
+        If the axis is zero, a shape is wrong or a number is not finite.
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_axis_angle, same_orientation, simple_dcm
+    >>> same_orientation(dcm_from_axis_angle((0, -2, 0), 0.3), simple_dcm('y', -0.3))
+    True
+
+    Notes
+    -----
+    Source: Rodrigues' formula [Rodrigues1840]_, transposed to act on components.
+    """
+    def formula(f, x, y, z, angle):
+        length = f.norm(x, y, z)
+        cosine, sine = f.cos(angle), f.sin(angle) / length
+        rest = (1 - cosine) / length**2
+        sx, sy, sz, rx, ry = sine * x, sine * y, sine * z, rest * x, rest * y
+        xy, xz, yz = rx * y, rx * z, ry * z
+        return (cosine + rx * x, xy + sz, xz - sy,
+                xy - sz, cosine + ry * y, yz + sx,
+                xz + sy, yz - sx, cosine + rest * z * z)
+
+    return evaluate(formula, (3, 3), ('axis', axis, (3,)), ('angle', angle, ()), guard=AXIS_GUARD)
+
+
+def quaternion_from_axis_angle(axis, angle):
+    r"""Unit quaternion of a turn about one axis.
+
+    .. math::
+
+       q_0 = \cos\tfrac{\theta}{2}, \qquad
+       \begin{bmatrix} q_i & q_j & q_k \end{bmatrix}^T = \sin\tfrac{\theta}{2}\,\hat{e}.
+
+    Parameters and errors are those of :func:`dcm_from_axis_angle`.
+
+    Returns
+    -------
+    SymPy column of four, array of shape ``(4,)`` or ``(..., 4)``
+        Scalar first.
+
+    Examples
+    --------
+    >>> import sympy as sm
+    >>> from orientation import quaternion_from_axis_angle
+    >>> quaternion_from_axis_angle((1, 0, 0), sm.Symbol('theta')).T
+    Matrix([[cos(theta/2), sin(theta/2), 0, 0]])
+
+    Notes
+    -----
+    Source: [Moore2022]_, section "Alternatives for representing orientation"; [Shuster1993]_.
+    """
+    def formula(f, x, y, z, angle):
+        share = f.sin(angle / 2) / f.norm(x, y, z)
+        return f.cos(angle / 2), share * x, share * y, share * z
+
+    return evaluate(formula, (4,), ('axis', axis, (3,)), ('angle', angle, ()), guard=AXIS_GUARD)
+
+
+def _axis_angle_components(f, scalar, x, y, z):
+    length = f.norm(x, y, z)
+    angle = 2 * f.atan2(length, abs(scalar))
+    at_rest = length == 0
+    share = f.where(scalar < 0, -1.0, 1.0) / f.where(at_rest, 1.0, length)
+    return f.where(at_rest, 1.0, share * x), share * y, share * z, angle
+
+
+def axis_angle_from_dcm(dcm):
+    r"""Axis and angle of a direction cosine matrix.
+
+    The quaternion of the matrix is found first, and
+    :math:`\theta = 2\,\mathrm{atan2}(|\mathbf{q}_v|, |q_0|)`: exact to rounding from 0 to
+    :math:`\pi`, where the inverse cosine of the trace loses half of the digits.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`. Numbers only.
+
+    Returns
+    -------
+    axis : array of shape ``(3,)`` or ``(..., 3)``
+        Unit vector; :math:`\hat{n}_x` when the frames are aligned and any axis would do.
+    angle : float or array of shape ``(...)``
+        Radians, from 0 to :math:`\pi`.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not a direction cosine matrix.
+    SymbolsNotPossible
+        If the matrix holds symbols.
+
+    Examples
+    --------
+    >>> from orientation import axis_angle_from_dcm, simple_dcm
+    >>> axis, angle = axis_angle_from_dcm(simple_dcm('z', -0.5))
+    >>> axis.tolist(), round(angle, 12)
+    ([0.0, 0.0, -1.0], 0.5)
+    """
+    def formula(f, *entries):
+        return _axis_angle_components(f, *quaternion_components_from_dcm(f, *entries))
+
+    combined = evaluate(formula, (4,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    angle = combined[..., 3]
+    return combined[..., :3], angle if angle.ndim else float(angle)

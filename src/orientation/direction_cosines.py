@@ -1,0 +1,211 @@
+"""Direction cosine matrices: simple orientations, validity, and the nearest valid matrix."""
+
+from typing import NamedTuple
+
+from ._kinds import TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
+
+AXES = ('x', 'y', 'z')
+
+
+def simple_dcm(axis, angle):
+    r"""Direction cosine matrix of a simple orientation.
+
+    :math:`A` is turned with respect to :math:`N` through ``angle`` about a unit vector that both
+    share. About :math:`z`,
+
+    .. math::
+
+       {}^A\mathbf{C}^N = \begin{bmatrix} \cos\theta & \sin\theta & 0 \\
+       -\sin\theta & \cos\theta & 0 \\ 0 & 0 & 1 \end{bmatrix}.
+
+    Parameters
+    ----------
+    axis : {'x', 'y', 'z'}
+        The shared unit vector.
+    angle : SymPy expression, float or array of shape ``(...)``
+        Angle in radians, positive by the right hand.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`.
+
+    Raises
+    ------
+    ValueError
+        If ``axis`` is not one of the three letters, or an angle is not finite.
+
+    Examples
+    --------
+    >>> import sympy as sm
+    >>> from orientation import simple_dcm
+    >>> simple_dcm('z', sm.Symbol('theta'))
+    Matrix([
+    [ cos(theta), sin(theta), 0],
+    [-sin(theta), cos(theta), 0],
+    [          0,          0, 1]])
+    >>> simple_dcm('x', 0.0).shape
+    (3, 3)
+
+    Notes
+    -----
+    Source: [Moore2022]_, section "Simple orientations".
+    """
+    if axis not in AXES:
+        raise ValueError(f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction "
+                         f"use dcm_from_axis_angle, and for -y turn about y through the negative angle")
+    first = AXES.index(axis)
+    second, third = (first + 1) % 3, (first + 2) % 3
+
+    def formula(f, angle):
+        sine, cosine = f.sin(angle), f.cos(angle)
+        entries = [0] * 9
+        entries[4 * first] = 1
+        entries[4 * second] = entries[4 * third] = cosine
+        entries[3 * second + third], entries[3 * third + second] = sine, -sine
+        return entries
+
+    return evaluate(formula, (3, 3), ('angle', angle, ()))
+
+
+def check_dcm(dcm):
+    r"""Say what is wrong with a matrix that should be a direction cosine matrix.
+
+    A direction cosine matrix has rows of unit length that are perpendicular to each other,
+    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and :math:`\det\mathbf{C} = +1`. Nothing is returned
+    for a valid matrix and nothing is ever repaired; :func:`nearest_dcm` does that.
+
+    Parameters
+    ----------
+    dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`. A symbolic matrix is tried at random values of its symbols.
+
+    Raises
+    ------
+    ValueError
+        With the worst entry and its likely cause, if a shape is wrong, an entry is not finite, the
+        matrix is not orthogonal to ``1e-9``, or it is left-handed.
+
+    Examples
+    --------
+    >>> from orientation import check_dcm, simple_dcm
+    >>> check_dcm(simple_dcm('y', 0.3))
+    >>> check_dcm([[1, 0, 0], [0, 1, 0], [0, 0, -1]])  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+        ...
+    ValueError: dcm is orthogonal but left-handed: its determinant is -1, not +1. One row or ...
+    """
+    if is_symbolic(dcm):
+        from .comparison import values_at_random_points
+        symbol_components(dcm, (3, 3), 'dcm')
+        dcm, = values_at_random_points(dcm)
+        if abs(dcm.imag).max() > TOLERANCE:
+            raise ValueError('dcm is not real: an entry has an imaginary part of '
+                             f'{abs(dcm.imag).max():.3g} for real values of its symbols')
+        dcm = dcm.real
+    evaluate(lambda f, *entries: entries, (3, 3), ('dcm', dcm, (3, 3)), guard=DCM_GUARD)
+
+
+def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
+    """Largest departure of the rows from being orthonormal, and of the third from the cross product."""
+    return f.largest(
+        abs(xx * xx + xy * xy + xz * xz - 1),
+        abs(yx * yx + yy * yy + yz * yz - 1),
+        abs(xx * yx + xy * yy + xz * yz),
+        abs(xy * yz - xz * yy - zx),
+        abs(xz * yx - xx * yz - zy),
+        abs(xx * yy - xy * yx - zz))
+
+
+def _explain(entries, where):
+    rows = {'x': entries[0:3], 'y': entries[3:6], 'z': entries[6:9]}
+    names = list(rows)
+    products = {(p, q): sum(a * b for a, b in zip(rows[p], rows[q]))
+                for k, p in enumerate(names) for q in names[k:]}
+    faults = {pair: value - (pair[0] == pair[1]) for pair, value in products.items()}
+    (p, q), worst = max(faults.items(), key=lambda item: abs(item[1]))
+    (a, b, c), (d, e, g), (h, k, m) = rows.values()
+    determinant = a * (e * m - g * k) - b * (d * m - g * h) + c * (d * k - e * h)
+    if abs(worst) <= 2 * TOLERANCE and determinant < 0:
+        raise ValueError(f'dcm{where} is orthogonal but left-handed: its determinant is '
+                         f'{determinant:.6g}, not +1. One row or column has the wrong sign, or two '
+                         f'have changed places')
+    if p == q:
+        fault = f'row {p} has length {products[p, q] ** 0.5:.10g}, not 1'
+    else:
+        fault = f'rows {p} and {q} have dot product {products[p, q]:.6g}, not 0'
+    squares = [products[name, name] for name in names]
+    scaled = max(squares) - min(squares) <= 1e-6 * max(squares) and all(
+        abs(value) <= 1e-6 * max(squares) for (p, q), value in products.items() if p != q)
+    if max(map(abs, entries)) == 0:
+        cause = 'Every entry is zero'
+    elif scaled:
+        cause = (f'The whole matrix is {squares[0] ** 0.5:.6g} times an orthogonal one, as from a '
+                 f'quaternion that is not of unit length')
+    elif abs(worst) < 1e-2:
+        cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix'
+    else:
+        cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad'
+    raise ValueError(f'dcm{where} is not orthogonal: {fault}. {cause}')
+
+
+#: What every conversion from a direction cosine matrix asks of it first.
+DCM_GUARD = (9, _excess, _explain)
+
+
+class NearestDCM(NamedTuple):
+    """Result of :func:`nearest_dcm`: the matrix, and how far it is from the one that was given."""
+
+    dcm: object
+    distance: object
+
+
+def nearest_dcm(matrix):
+    r"""Return the direction cosine matrix nearest to nine numbers, and its distance from them.
+
+    Nearest means smallest Frobenius norm of the difference. With the singular value decomposition
+    :math:`\mathbf{M} = \mathbf{U}\boldsymbol{\Sigma}\mathbf{V}^T` it is
+    :math:`\mathbf{U}\,\mathrm{diag}(1, 1, \det(\mathbf{U}\mathbf{V}^T))\,\mathbf{V}^T`.
+
+    Parameters
+    ----------
+    matrix : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        Measured or rounded entries. Numbers only: for symbols the question has no one answer.
+
+    Returns
+    -------
+    NearestDCM
+        ``dcm`` of shape ``(..., 3, 3)`` and ``distance`` of shape ``(...)``.
+
+    Raises
+    ------
+    ValueError
+        If the nearest matrix is not unique, as for a reflection or a matrix of rank one.
+    SymbolsNotPossible
+        If the matrix holds symbols.
+
+    Examples
+    --------
+    >>> from orientation import nearest_dcm
+    >>> nearest = nearest_dcm([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1.01]])
+    >>> nearest.dcm[2, 2].item(), round(nearest.distance.item(), 6)
+    (1.0, 0.01)
+
+    Notes
+    -----
+    Source: [Kabsch1978]_, [Umeyama1991]_.
+    """
+    import numpy
+    array = number_array(matrix, (3, 3), 'matrix')
+    left, scales, right = numpy.linalg.svd(array)
+    handedness = numpy.sign(numpy.linalg.det(left @ right))
+    gap = scales[..., 1] + handedness * scales[..., 2]
+    if numpy.any(gap <= TOLERANCE * scales[..., 0]):
+        raise ValueError(
+            f'several direction cosine matrices are equally near: the singular values are '
+            f'{numpy.array2string(scales.reshape(-1, 3)[numpy.argmin(gap)], precision=6)} and the '
+            f'determinant is {numpy.linalg.det(array).reshape(-1)[numpy.argmin(gap)]:.6g}. The matrix '
+            f'is a reflection, or two of its rows are parallel or zero')
+    left[..., :, 2] *= handedness[..., None]
+    dcm = left @ right
+    return NearestDCM(dcm, numpy.linalg.norm(dcm - array, axis=(-2, -1)))

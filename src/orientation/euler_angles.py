@@ -1,0 +1,248 @@
+"""Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
+
+from ._kinds import evaluate, is_symbolic, number_array
+from .direction_cosines import AXES, DCM_GUARD
+
+#: Sequences whose first and last axes are the same.
+PROPER_EULER = ('zxz', 'xyx', 'yzy', 'zyz', 'xzx', 'yxy')
+
+#: Sequences about three different axes.
+TAIT_BRYAN = ('xyz', 'yzx', 'zxy', 'xzy', 'zyx', 'yxz')
+
+#: The twelve sequences of axes that reach every orientation.
+SEQUENCES = PROPER_EULER + TAIT_BRYAN
+
+
+def _layout(sequence):
+    """Return the first, the second and the remaining axis as indices, and the sign of their order."""
+    first, second = AXES.index(sequence[0]), AXES.index(sequence[1])
+    return first, second, 3 - first - second, 1 if (second - first) % 3 == 1 else -1
+
+
+_LAYOUTS = {sequence: _layout(sequence) for sequence in SEQUENCES}
+
+
+def _layout_of(sequence):
+    try:
+        return _LAYOUTS[sequence]
+    except (KeyError, TypeError):
+        pass
+    if isinstance(sequence, str) and sequence.lower() in _LAYOUTS:
+        cause = (f'write {sequence.lower()!r}: sequences are lower case and body fixed; for turns about '
+                 f'the axes of the frame that stays, there are functions named space_fixed')
+    elif isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set(AXES):
+        cause = ('two turns in a row about one axis are one turn, so such a sequence does not reach '
+                 'every orientation')
+    else:
+        cause = f'the twelve are {", ".join(SEQUENCES)}'
+    raise ValueError(f'{sequence!r} is not a sequence of Euler angles: {cause}')
+
+
+def dcm_from_body_fixed(angles, sequence):
+    r"""Direction cosine matrix of three successive turns, each about an axis of the turned frame.
+
+    For the sequence z-x-y, with angles :math:`\psi, \theta, \varphi`,
+
+    .. math::
+
+       {}^D\mathbf{C}^A = \mathbf{C}_y(\varphi)\,\mathbf{C}_x(\theta)\,\mathbf{C}_z(\psi).
+
+    Parameters
+    ----------
+    angles : SymPy expressions or floats ``(psi, theta, phi)``, or array of shape ``(..., 3)``
+        Angles in radians, in the order of the turns.
+    sequence : str
+        One of :data:`SEQUENCES`, such as ``'zxy'``.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
+        The matrix of the turned frame with respect to the first one.
+
+    Raises
+    ------
+    ValueError
+        If the sequence is not one of the twelve, a shape is wrong or an angle is not finite.
+
+    Examples
+    --------
+    >>> import sympy as sm
+    >>> from orientation import dcm_from_body_fixed
+    >>> psi, theta, phi = sm.symbols('psi, theta, varphi')
+    >>> dcm_from_body_fixed((psi, theta, phi), 'zxy')[1, 2]
+    sin(theta)
+    >>> dcm_from_body_fixed([[0.1, 0.2, 0.3], [0.0, 0.5, 1.0]], 'zxy').shape
+    (2, 3, 3)
+
+    Notes
+    -----
+    The three turns are multiplied out once, for axes in cyclic order; the other order only changes
+    the sign of the angles. Source: [Shuster1993]_, [Diebel2006]_.
+    """
+    i, j, k, sign = _layout_of(sequence)
+    proper = sequence[0] == sequence[2]
+
+    def formula(f, psi, theta, phi):
+        s1, s2, s3 = sign * f.sin(psi), sign * f.sin(theta), sign * f.sin(phi)
+        c1, c2, c3 = f.cos(psi), f.cos(theta), f.cos(phi)
+        entries = [None] * 9
+        if proper:
+            entries[3 * i + i], entries[3 * i + j], entries[3 * i + k] = c2, s1 * s2, -c1 * s2
+            entries[3 * j + i] = s2 * s3
+            entries[3 * j + j] = c1 * c3 - s1 * c2 * s3
+            entries[3 * j + k] = s1 * c3 + c1 * c2 * s3
+            entries[3 * k + i] = s2 * c3
+            entries[3 * k + j] = -c1 * s3 - s1 * c2 * c3
+            entries[3 * k + k] = c1 * c2 * c3 - s1 * s3
+        else:
+            entries[3 * i + i] = c2 * c3
+            entries[3 * i + j] = c1 * s3 + s1 * s2 * c3
+            entries[3 * i + k] = s1 * s3 - c1 * s2 * c3
+            entries[3 * j + i] = -c2 * s3
+            entries[3 * j + j] = c1 * c3 - s1 * s2 * s3
+            entries[3 * j + k] = s1 * c3 + c1 * s2 * s3
+            entries[3 * k + i], entries[3 * k + j], entries[3 * k + k] = s2, -s1 * c2, c1 * c2
+        return entries
+
+    return evaluate(formula, (3, 3), ('angles', angles, (3,)))
+
+
+def body_fixed_from_dcm(dcm, sequence):
+    r"""Body fixed angles of a direction cosine matrix, for any of the twelve sequences.
+
+    The first angle comes from the one row (or column) that the third turn leaves alone; turning back
+    by it leaves two simple turns, whose angles are read off. Each step is an ``atan2``, so no
+    threshold is needed: at gimbal lock the split between the first and the last angle is arbitrary
+    (the first is 0 when the matrix is exactly locked), and the orientation is still right to rounding.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^D\mathbf{C}^A`. Numbers only.
+    sequence : str
+        One of :data:`SEQUENCES`.
+
+    Returns
+    -------
+    array of shape ``(3,)`` or ``(..., 3)``
+        Radians. The first and the last lie in :math:`[-\pi, \pi]`; the middle one in
+        :math:`[-\pi/2, \pi/2]` for three different axes, and in :math:`[0, \pi]` otherwise.
+
+    Raises
+    ------
+    ValueError
+        If the matrix or the sequence is not valid.
+    SymbolsNotPossible
+        If the matrix holds symbols.
+
+    Examples
+    --------
+    >>> from orientation import body_fixed_from_dcm, dcm_from_body_fixed
+    >>> body_fixed_from_dcm(dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'), 'zxy').round(12).tolist()
+    [0.1, 0.2, 0.3]
+    """
+    i, j, k, sign = _layout_of(sequence)
+    proper = sequence[0] == sequence[2]
+
+    def formula(f, *entries):
+        def c(row, column):
+            return entries[3 * row + column]
+        # Adding zero turns -0 into 0: atan2(0, -0) would be pi.
+        if proper:
+            psi = f.atan2(sign * c(i, j) + 0.0, 0.0 - sign * c(i, k))
+        else:
+            psi = f.atan2(0.0 - c(k, j), c(k, k) + 0.0)
+        sine, cosine = f.sin(psi), f.cos(psi)
+        # What remains once the first turn is undone: column j of the matrix of the last two turns.
+        jj = c(j, j) * cosine + c(j, k) * sine
+        if proper:
+            theta = f.atan2(c(i, j) * sine - c(i, k) * cosine, c(i, i))
+            phi = f.atan2(-c(k, j) * cosine - c(k, k) * sine, jj)
+        else:
+            theta = f.atan2(c(k, i), c(k, k) * cosine - c(k, j) * sine)
+            phi = f.atan2(c(i, j) * cosine + c(i, k) * sine, jj)
+        return sign * psi, sign * theta, sign * phi
+
+    return evaluate(formula, (3,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+
+
+def dcm_from_space_fixed(angles, sequence):
+    r"""Direction cosine matrix of three successive turns about the axes of the frame that stays.
+
+    Turning about fixed axes multiplies the matrices in the other order: for the sequence z-x-y,
+
+    .. math::
+
+       {}^D\mathbf{C}^A = \mathbf{C}_z(\psi)\,\mathbf{C}_x(\theta)\,\mathbf{C}_y(\varphi),
+
+    which is the body fixed sequence y-x-z with the angles in reverse.
+
+    Parameters, results and errors are those of :func:`dcm_from_body_fixed`.
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_body_fixed, dcm_from_space_fixed, same_orientation
+    >>> same_orientation(dcm_from_space_fixed((0.1, 0.2, 0.3), 'zxy'),
+    ...                  dcm_from_body_fixed((0.3, 0.2, 0.1), 'yxz'))
+    True
+    """
+    _layout_of(sequence)
+    return dcm_from_body_fixed(_reversed(angles), sequence[::-1])
+
+
+def space_fixed_from_dcm(dcm, sequence):
+    """Space fixed angles of a direction cosine matrix: see :func:`body_fixed_from_dcm`.
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_space_fixed, space_fixed_from_dcm
+    >>> space_fixed_from_dcm(dcm_from_space_fixed((0.1, 0.2, 0.3), 'xyz'), 'xyz').round(12).tolist()
+    [0.1, 0.2, 0.3]
+    """
+    _layout_of(sequence)
+    return body_fixed_from_dcm(dcm, sequence[::-1])[..., ::-1]
+
+
+def gimbal_lock_margin(angles, sequence):
+    r"""How far three Euler angles are from gimbal lock, in radians.
+
+    Lock is where the first and the last axes are parallel: at :math:`\theta = \pm\pi/2` for three
+    different axes, at :math:`\theta = 0` or :math:`\pi` for a sequence that returns to its first axis.
+    The margin is the angle between the two axes, from 0 (locked) to :math:`\pi/2`.
+
+    Parameters
+    ----------
+    angles : floats ``(psi, theta, phi)`` or array of shape ``(..., 3)``
+    sequence : str
+        One of :data:`SEQUENCES`.
+
+    Returns
+    -------
+    float or array of shape ``(...)``
+
+    Examples
+    --------
+    >>> import math
+    >>> from orientation import gimbal_lock_margin
+    >>> gimbal_lock_margin((0.3, math.pi / 2 - 0.01, 0.1), 'zxy').__round__(12)
+    0.01
+    """
+    _layout_of(sequence)
+    proper = sequence[0] == sequence[2]
+
+    def formula(f, psi, theta, phi):
+        along, across = f.cos(theta), f.sin(theta)
+        if not proper:
+            along, across = across, along
+        return [f.atan2(abs(across), abs(along))]
+
+    return evaluate(formula, (), ('angles', angles, (3,)), symbols=False)
+
+
+def _reversed(angles):
+    if hasattr(angles, 'shape') and not is_symbolic(angles):
+        return angles[..., ::-1]
+    if is_symbolic(angles):
+        return list(angles)[::-1]
+    import numpy
+    return number_array(angles, (3,), 'angles')[..., ::-1]

@@ -1,0 +1,151 @@
+"""Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
+
+from ._kinds import evaluate
+from .direction_cosines import DCM_GUARD
+
+
+def _length_excess(f, scalar, x, y, z):
+    return abs(scalar * scalar + x * x + y * y + z * z - 1)
+
+
+def _explain_length(components, where):
+    length = sum(entry * entry for entry in components) ** 0.5
+    if length == 0:
+        cause = 'the zero quaternion is no orientation'
+    elif abs(length - 1) < 1e-2:
+        cause = 'were its components rounded, or integrated without restoring the length? Divide by it'
+    else:
+        cause = ('is the angle halved in the cosine and in the sine, and the axis a unit vector? '
+                 'Divide by the length only if you know where it comes from')
+    raise ValueError(f'quaternion{where} has length {length:.10g}, not 1: {cause}')
+
+
+QUATERNION_GUARD = (4, _length_excess, _explain_length)
+
+
+def dcm_from_quaternion(quaternion):
+    r"""Direction cosine matrix of a unit quaternion.
+
+    .. math::
+
+       {}^A\mathbf{C}^N = \begin{bmatrix}
+       q_0^2 + q_i^2 - q_j^2 - q_k^2 & 2(q_i q_j + q_0 q_k) & 2(q_i q_k - q_0 q_j) \\
+       2(q_i q_j - q_0 q_k) & q_0^2 - q_i^2 + q_j^2 - q_k^2 & 2(q_j q_k + q_0 q_i) \\
+       2(q_i q_k + q_0 q_j) & 2(q_j q_k - q_0 q_i) & q_0^2 - q_i^2 - q_j^2 + q_k^2
+       \end{bmatrix}
+
+    Parameters
+    ----------
+    quaternion : SymPy expressions, floats or array of shape ``(4,)`` or ``(..., 4)``
+        Scalar first. Symbols are taken to be of unit length.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
+
+    Raises
+    ------
+    ValueError
+        If numbers are not of unit length to ``1e-9``: the matrix would be :math:`|q|^2` times an
+        orthogonal one. Also if a shape is wrong or a number is not finite.
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_quaternion
+    >>> dcm_from_quaternion((0.6, 0, 0, 0.8)).round(12).tolist()
+    [[-0.28, 0.96, 0.0], [-0.96, -0.28, 0.0], [0.0, 0.0, 1.0]]
+
+    Notes
+    -----
+    Source: [Shuster1993]_, [Moore2022]_.
+    """
+    def formula(f, scalar, x, y, z):
+        ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
+        return (ss + xx - yy - zz, 2 * (x * y + scalar * z), 2 * (x * z - scalar * y),
+                2 * (x * y - scalar * z), ss - xx + yy - zz, 2 * (y * z + scalar * x),
+                2 * (x * z + scalar * y), 2 * (y * z - scalar * x), ss - xx - yy + zz)
+
+    return evaluate(formula, (3, 3), ('quaternion', quaternion, (4,)), guard=QUATERNION_GUARD)
+
+
+def quaternion_components_from_dcm(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
+    """Formula of :func:`quaternion_from_dcm`, shared with the axis and angle."""
+    # Each row is the quaternion times four of its own components; the longest loses no digits.
+    scores = [1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz]
+    si, sj, sk, ij, ik, jk = yz - zy, zx - xz, xy - yx, xy + yx, xz + zx, yz + zy
+    scalar, x, y, z = f.pick(scores, [(scores[0], si, sj, sk), (si, scores[1], ij, ik),
+                                      (sj, ij, scores[2], jk), (sk, ik, jk, scores[3])])
+    share = f.where(scalar < 0, -1.0, 1.0) / f.norm(scalar, x, y, z)
+    return share * scalar + 0.0, share * x + 0.0, share * y + 0.0, share * z + 0.0
+
+
+def quaternion_from_dcm(dcm):
+    r"""Unit quaternion of a direction cosine matrix, without loss near half a turn.
+
+    Four rows of sums and differences of the entries are each the quaternion times one of its own
+    components; the one belonging to the largest component is used, and brought to unit length.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`. Numbers only.
+
+    Returns
+    -------
+    array of shape ``(4,)`` or ``(..., 4)``
+        Scalar first. Of :math:`q` and :math:`-q`, which are the same orientation, the one with
+        :math:`q_0 \geq 0`; at :math:`q_0 = 0`, the one whose largest component is positive.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not a direction cosine matrix.
+    SymbolsNotPossible
+        If the matrix holds symbols.
+
+    Examples
+    --------
+    >>> from orientation import quaternion_from_dcm
+    >>> quaternion_from_dcm([[1, 0, 0], [0, -1, 0], [0, 0, -1]]).tolist()
+    [0.0, 1.0, 0.0, 0.0]
+
+    Notes
+    -----
+    Source: [Shepperd1978]_, [Markley2008]_.
+    """
+    return evaluate(quaternion_components_from_dcm, (4,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD,
+                    symbols=False)
+
+
+def multiply_quaternions(first, second):
+    r"""Hamilton product of two quaternions.
+
+    With :math:`i^2 = j^2 = k^2 = ijk = -1`. If ``first`` turns :math:`N` to :math:`A` and ``second``
+    turns :math:`A` to :math:`B`, their product turns :math:`N` to :math:`B`: quaternions are written
+    in the order of the turns, where matrices are written the other way,
+    :math:`{}^B\mathbf{C}^N = {}^B\mathbf{C}^A\,{}^A\mathbf{C}^N`.
+
+    Parameters
+    ----------
+    first, second : SymPy expressions, floats or arrays of shape ``(4,)`` or ``(..., 4)``
+        Scalar first, of any length.
+
+    Returns
+    -------
+    SymPy column of four, array of shape ``(4,)`` or ``(..., 4)``
+
+    Examples
+    --------
+    >>> from orientation import multiply_quaternions
+    >>> multiply_quaternions((0, 1, 0, 0), (0, 0, 1, 0)).tolist()  # i j = k
+    [0.0, 0.0, 0.0, 1.0]
+
+    Notes
+    -----
+    Source: [Hamilton1844]_.
+    """
+    def formula(f, a, b, c, d, e, g, h, k):
+        return (a * e - b * g - c * h - d * k, a * g + b * e + c * k - d * h,
+                a * h - b * k + c * e + d * g, a * k + b * h - c * g + d * e)
+
+    return evaluate(formula, (4,), ('first', first, (4,)), ('second', second, (4,)))

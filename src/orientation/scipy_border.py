@@ -1,0 +1,66 @@
+r"""The one place where this book's matrices meet SciPy's rotations.
+
+SciPy's ``Rotation`` of a frame :math:`A` in :math:`N` turns components measured along :math:`A` into
+components along :math:`N`, so its matrix is :math:`{}^N\mathbf{C}^A`. The transpose happens here and
+nowhere else.
+"""
+
+from ._kinds import evaluate
+from .direction_cosines import DCM_GUARD
+
+
+def scipy_rotation_from_dcm(dcm):
+    r"""SciPy ``Rotation`` of a direction cosine matrix.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`. Numbers only.
+
+    Returns
+    -------
+    scipy.spatial.transform.Rotation
+        Its ``as_matrix()`` is :math:`{}^N\mathbf{C}^A`, the transpose.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not a direction cosine matrix.
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_body_fixed, scipy_rotation_from_dcm
+    >>> rotation = scipy_rotation_from_dcm(dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'))
+    >>> rotation.as_euler('ZXY').round(12).tolist()  # capitals are SciPy's way to say body fixed
+    [0.1, 0.2, 0.3]
+    """
+    from scipy.spatial.transform import Rotation
+
+    def transposed(f, *entries):
+        return [entries[3 * column + row] for row in range(3) for column in range(3)]
+
+    return Rotation.from_matrix(
+        evaluate(transposed, (3, 3), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False))
+
+
+def dcm_from_scipy_rotation(rotation):
+    r"""Direction cosine matrix :math:`{}^A\mathbf{C}^N` of a SciPy ``Rotation``.
+
+    Parameters
+    ----------
+    rotation : scipy.spatial.transform.Rotation
+        One rotation or a stack of them.
+
+    Returns
+    -------
+    array of shape ``(3, 3)`` or ``(..., 3, 3)``
+
+    Examples
+    --------
+    >>> from scipy.spatial.transform import Rotation
+    >>> from orientation import dcm_from_body_fixed, dcm_from_scipy_rotation, same_orientation
+    >>> rotation = Rotation.from_euler('ZXY', (0.1, 0.2, 0.3))
+    >>> same_orientation(dcm_from_scipy_rotation(rotation), dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'))
+    True
+    """
+    return rotation.as_matrix().swapaxes(-1, -2)
