@@ -11,11 +11,12 @@ from .direction_cosines import NearestDCM, check_dcm, nearest_dcm, simple_dcm
 from .euler_angles import (
     PROPER_EULER, SEQUENCES, TAIT_BRYAN, body_fixed_from_dcm, dcm_from_body_fixed, dcm_from_space_fixed,
     gimbal_lock_margin, space_fixed_from_dcm)
+from .frames import Frames
 from .quaternions import dcm_from_quaternion, multiply_quaternions, quaternion_from_dcm
 from .scipy_border import dcm_from_scipy_rotation, scipy_rotation_from_dcm
 
 __all__ = [
-    'Diagnosis', 'NearestDCM', 'PROPER_EULER', 'SEQUENCES', 'SymbolsNotPossible', 'TAIT_BRYAN',
+    'Diagnosis', 'Frames', 'NearestDCM', 'PROPER_EULER', 'SEQUENCES', 'SymbolsNotPossible', 'TAIT_BRYAN',
     'axis_angle_from_dcm', 'body_fixed_from_dcm', 'check_dcm', 'dcm_from_axis_angle',
     'dcm_from_body_fixed', 'dcm_from_quaternion', 'dcm_from_scipy_rotation', 'dcm_from_space_fixed',
     'diagnose', 'gimbal_lock_margin', 'multiply_quaternions', 'nearest_dcm', 'quaternion_from_axis_angle',

@@ -197,8 +197,7 @@ def symbol_components(value, item, name):
 def _shape_message(name, shape, item):
     if item == ():
         return f'{name} has shape {shape}, where one number was expected'
-    wanted = ', '.join(map(str, item))
-    return f'{name} has shape {shape}, where ({wanted}) or (..., {wanted}) was expected'
+    return (f'{name} has shape {shape}, where {item} or (..., {", ".join(map(str, item))}) was expected')
 
 
 # --- the functions that a formula may use, for each kind ----------------------------------------

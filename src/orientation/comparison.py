@@ -5,11 +5,12 @@ take seconds, or not come back at all.
 """
 
 import itertools
+import math
 import random
 from typing import NamedTuple
 
 from ._kinds import TOLERANCE, is_symbolic
-from .direction_cosines import check_dcm
+from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, dcm_from_body_fixed, dcm_from_space_fixed
 from .quaternions import multiply_quaternions
 
@@ -184,9 +185,9 @@ def diagnose(given, expected, angles=None, sequence=None):
 
 def _matrix_fault(values):
     try:
-        check_dcm(values.real)
+        demand_dcm(values.real, where='', name='it')
     except ValueError as error:
-        return str(error).replace('dcm (item [0]) ', 'it ').replace('dcm ', 'it ', 1)
+        return str(error)
     return None
 
 
@@ -198,7 +199,6 @@ def _quaternion_fault(values):
 
 def _substitution_mixups(expected, names, points):
     """Mix-ups of the angles' signs, places and units in a symbolic matrix."""
-    from math import pi
     if not is_symbolic(expected):
         return
 
@@ -210,15 +210,16 @@ def _substitution_mixups(expected, names, points):
     for first, second in itertools.combinations(names, 2):
         yield (f'the angles {first} and {second} have changed places',
                with_changes(lambda p: {first: p[second], second: p[first]}))
-    yield ('degrees were put in where radians are expected',
-           with_changes(lambda p: {name: p[name] * 180 / pi for name in names}))
-    yield ('the angles were turned from degrees to radians once too often',
-           with_changes(lambda p: {name: p[name] * pi / 180 for name in names}))
+    for group in {tuple(names): None, **{(name,): None for name in names}}:
+        those = ', '.join(group)
+        yield (f'degrees were put in for {those} where radians are expected',
+               with_changes(lambda p: {name: p[name] * 180 / math.pi for name in group}))
+        yield (f'{those} was turned from degrees to radians once too often',
+               with_changes(lambda p: {name: p[name] * math.pi / 180 for name in group}))
 
 
 def _sequence_mixups(expected_values, names, points, angles, sequence):
     """Mix-ups of a body fixed sequence, given or recognised."""
-    from math import pi
     if angles is not None:
         values = _put_in(angles, names, points).real
     else:
@@ -238,9 +239,9 @@ def _sequence_mixups(expected_values, names, points, angles, sequence):
             yield (f'the angle of the {which} turn has the wrong sign',
                    dcm_from_body_fixed(values * signs, sequence))
         yield ('degrees were put in where radians are expected',
-               dcm_from_body_fixed(values * 180 / pi, sequence))
+               dcm_from_body_fixed(values * 180 / math.pi, sequence))
         yield ('the angles were turned from degrees to radians once too often',
-               dcm_from_body_fixed(values * pi / 180, sequence))
+               dcm_from_body_fixed(values * math.pi / 180, sequence))
 
 
 def _recognise(expected_values, names, points):

@@ -102,8 +102,18 @@ def check_dcm(dcm):
         if abs(dcm.imag).max() > TOLERANCE:
             raise ValueError('dcm is not real: an entry has an imaginary part of '
                              f'{abs(dcm.imag).max():.3g} for real values of its symbols')
-        dcm = dcm.real
-    evaluate(lambda f, *entries: entries, (3, 3), ('dcm', dcm, (3, 3)), guard=DCM_GUARD)
+        demand_dcm(dcm.real, ' at random values of its symbols')
+    else:
+        demand_dcm(dcm)
+
+
+def demand_dcm(array, where=None, name='dcm'):
+    """Raise the error of :func:`check_dcm` for numbers, with the caller's words for what they are."""
+    def explain(entries, item):
+        _explain(entries, item if where is None else where, name)
+
+    evaluate(lambda f, *entries: entries, (3, 3), (name, array, (3, 3)), guard=(9, _excess, explain),
+             symbols=False)
 
 
 def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
@@ -117,7 +127,7 @@ def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
         abs(xx * yy - xy * yx - zz))
 
 
-def _explain(entries, where):
+def _explain(entries, where, name='dcm'):
     rows = {'x': entries[0:3], 'y': entries[3:6], 'z': entries[6:9]}
     names = list(rows)
     products = {(p, q): sum(a * b for a, b in zip(rows[p], rows[q]))
@@ -127,7 +137,7 @@ def _explain(entries, where):
     (a, b, c), (d, e, g), (h, k, m) = rows.values()
     determinant = a * (e * m - g * k) - b * (d * m - g * h) + c * (d * k - e * h)
     if abs(worst) <= 2 * TOLERANCE and determinant < 0:
-        raise ValueError(f'dcm{where} is orthogonal but left-handed: its determinant is '
+        raise ValueError(f'{name}{where} is orthogonal but left-handed: its determinant is '
                          f'{determinant:.6g}, not +1. One row or column has the wrong sign, or two '
                          f'have changed places')
     if p == q:
@@ -146,7 +156,7 @@ def _explain(entries, where):
         cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix'
     else:
         cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad'
-    raise ValueError(f'dcm{where} is not orthogonal: {fault}. {cause}')
+    raise ValueError(f'{name}{where} is not orthogonal: {fault}. {cause}')
 
 
 #: What every conversion from a direction cosine matrix asks of it first.
