@@ -4,12 +4,8 @@ KaTeX runs inside Python (quickjs) and gives HTML for the eye and MathML for
 screen readers. TeX that it cannot set becomes a build warning.
 """
 
-import base64
-import re
-import shutil
 from functools import lru_cache
 from html import escape
-from pathlib import Path
 
 import quickjs
 from docutils import nodes
@@ -18,13 +14,7 @@ from sphinx.util.math import get_node_equation_number
 
 from .paths import NODE_MODULES, where
 
-KATEX = NODE_MODULES / "katex" / "dist"
-# The fonts that matrices, hats and Greek letters need ride inside the style
-# sheet: it is there before the first paint, so nothing moves when they show.
-INLINE_FONTS = {
-    "Main-Regular", "Main-Bold", "Math-Italic",
-    "Size1-Regular", "Size2-Regular", "Size3-Regular", "Size4-Regular",
-}  # fmt: skip
+KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 RENDER = """(function (tex, display) {
   try {
     return "+" + katex.renderToString(tex, {
@@ -40,7 +30,7 @@ logger = logging.getLogger(__name__)
 def katex():
     context = quickjs.Context()
     context.eval("globalThis.console = {log() {}, warn() {}, error() {}}")
-    context.eval((KATEX / "katex.min.js").read_text("utf8"))
+    context.eval(KATEX.read_text("utf8"))
     return context.eval(RENDER)
 
 
@@ -79,32 +69,7 @@ def visit_display(translator, node):
     raise nodes.SkipNode
 
 
-def write_styles(app):
-    """Copy KaTeX's style sheet with its woff2 fonts only."""
-    if app.builder.format != "html":
-        return
-    target = Path(app.outdir) / "_static" / "katex"
-    target.mkdir(parents=True, exist_ok=True)
-
-    def source(match):
-        name = match["name"]
-        font = KATEX / "fonts" / f"KaTeX_{name}.woff2"
-        if name in INLINE_FONTS:
-            data = base64.b64encode(font.read_bytes()).decode()
-            return f'src:url(data:font/woff2;base64,{data}) format("woff2")'
-        shutil.copyfile(font, target / font.name)
-        return f'src:url({font.name}) format("woff2")'
-
-    css = (KATEX / "katex.min.css").read_text("utf8")
-    css, count = re.subn(r"src:url\(fonts/KaTeX_(?P<name>[\w-]+)\.woff2\)[^}]*", source, css)
-    if count < len(INLINE_FONTS):
-        raise RuntimeError("KaTeX's style sheet no longer names its fonts as expected")
-    (target / "katex.css").write_text(css, "utf8")
-
-
 def setup(app):
     app.add_html_math_renderer(
         "katex", inline_renderers=(visit_inline, None), block_renderers=(visit_display, None)
     )
-    app.connect("builder-inited", write_styles)
-    app.add_css_file("katex/katex.css", priority=300)

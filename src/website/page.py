@@ -1,12 +1,27 @@
 """The page around the text: templates, styles, and nothing that it does not use."""
 
+import re
 from pathlib import Path
+
+from docutils import nodes
 
 from .paths import WEBSITE
 
-# What the theme and the other extensions would put on every page although no
-# page uses it. Icons come from book.css; hidden cells are <details> elements.
-UNUSED_ON_PAGES = ("thebe", "togglebutton", "design-tabs", "sphinx_highlight", "sphinx-design")
+# The style sheets of the theme and of the other extensions, in their order.
+# They become one file in one cascade layer, so that every rule of book.css
+# goes before theirs without a contest of selectors.
+THEME_STYLES = (
+    "basic.css",
+    "styles/pydata-sphinx-theme.css",
+    "styles/sphinx-book-theme.css",
+    "pygments.css",
+    "copybutton.css",
+    "mystnb.*.css",
+    "exercise.css",
+)
+STYLES = ("theme.css", "fonts/fonts.css", "book.css")
+# Scripts that some extension would put on every page although no page uses them.
+UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS")
 UNUSED_FILES = (
     "**/*.map",
     "**/fontawesome*",
@@ -18,9 +33,13 @@ UNUSED_FILES = (
     "togglebutton*",
     "design-tabs*",
     "sphinx-design*",
-    "check-solid.svg",
+    "play-solid.svg",
+    "copy-button.svg",
+    "copybutton_funcs.js",
     "webpack-macros.html",
     "sbt-webpack-macros.html",
+    "styles/*.css",
+    "check-solid.svg",
 )
 
 
@@ -29,23 +48,43 @@ def add_own_files(app, config):
     config.templates_path.insert(0, str(WEBSITE / "templates"))
     config.html_static_path.append(str(WEBSITE / "static"))
     config.html_copy_source = False
+    config.html_context["default_mode"] = "auto"
 
 
-def is_used(asset):
-    name = getattr(asset, "filename", None) or ""
-    body = getattr(asset, "attributes", {}).get("body") or ""
-    return not any(word in name or word in body for word in UNUSED_ON_PAGES)
+def drop_thebe(app, doctree, docname):
+    """Take out what sphinx-thebe, always on in Jupyter Book, appends to each page."""
+    for node in list(doctree.findall(nodes.raw)):
+        if "x-thebe-config" in node.astext() or node.astext().startswith("<script>kernelName"):
+            node.parent.remove(node)
 
 
 def trim_page(app, pagename, templatename, context, doctree):
-    for kind in ("script_files", "css_files"):
-        context[kind][:] = [asset for asset in context[kind] if is_used(asset)]
+    def is_used(script):
+        name = getattr(script, "filename", None) or ""
+        body = getattr(script, "attributes", {}).get("body") or ""
+        return not any(word in name or word in body for word in UNUSED_SCRIPTS)
+
+    context["script_files"][:] = filter(is_used, context["script_files"])
+    context["styles"] = STYLES
 
 
-def trim_files(app, exception):
+def bundle_styles(static):
+    """Write the theme's style sheets as one layer, without its icon font."""
+    parts = [path for name in THEME_STYLES for path in sorted(static.glob(name))]
+    if not (static / "basic.css").exists():
+        return  # Sphinx found nothing to build and copied nothing
+    rules = "\n".join(path.read_text("utf8") for path in parts)
+    rules = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", rules, flags=re.DOTALL)
+    (static / "theme.css").write_text("@layer theme {\n" + rules + "\n}\n", "utf8")
+    for path in parts:
+        path.unlink()
+
+
+def finish(app, exception):
     if exception or app.builder.format != "html":
         return
     static = Path(app.outdir) / "_static"
+    bundle_styles(static)
     for pattern in UNUSED_FILES:
         for path in static.glob(pattern):
             if path.is_file():
@@ -57,7 +96,7 @@ def trim_files(app, exception):
 
 def setup(app):
     app.connect("config-inited", add_own_files)
+    app.connect("doctree-resolved", drop_thebe, priority=950)
     app.connect("html-page-context", trim_page, priority=950)
-    app.connect("build-finished", trim_files, priority=950)
-    app.add_css_file("book.css", priority=900)
+    app.connect("build-finished", finish, priority=950)
     app.add_js_file("book.js", loading_method="defer")
