@@ -1,0 +1,60 @@
+# The commands of the book. All that must be there is Python 3.11 or newer: each
+# command sets up what it needs in .venv and node_modules, from exact pins.
+
+PYTHON ?= python3
+PORT ?= 8000
+VENV := .venv
+RUN := $(VENV)/bin/python
+PIP := $(RUN) -m pip install --quiet --disable-pip-version-check --no-build-isolation --constraint constraints.txt
+
+# Kernels see this book's settings and nobody's own.
+export IPYTHONDIR := $(CURDIR)/_build/ipython
+export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
+KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
+
+.PHONY: help setup book serve test notebooks benchmark clean
+
+help:
+	@echo "make book       build the site into _build/html"
+	@echo "make serve      build it, serve it on a local address and print that"
+	@echo "make test       run every test"
+	@echo "make notebooks  run every notebook and store it with its outputs"
+	@echo "make benchmark  compare with other libraries"
+	@echo "make clean      remove what was built, not what was set up"
+
+setup: $(VENV)/ready node_modules/ready $(KERNEL_SETTINGS)
+
+$(VENV)/ready: constraints.txt pyproject.toml
+	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'The book needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Name one: make PYTHON=python3.12')"
+	@echo "Setting up Python in $(VENV) (about a minute) ..."
+	@test -x $(RUN) || $(PYTHON) -m venv $(VENV)
+	@$(PIP) setuptools
+	@$(PIP) --editable '.[book,test,benchmark]'
+	@touch $@
+
+node_modules/ready: package-lock.json $(VENV)/ready
+	@echo "Setting up KaTeX and the typefaces in node_modules ..."
+	@PATH="$(CURDIR)/$(VENV)/bin:$$PATH" npm ci --silent --ignore-scripts --no-audit --no-fund
+	@touch $@
+
+$(KERNEL_SETTINGS): src/website/ipython_kernel_config.py
+	@mkdir -p $(@D)
+	@cp $< $@
+
+book: setup
+	@$(RUN) -m website.build
+
+serve: book
+	@$(RUN) -m website.serve $(PORT)
+
+test: book
+	@$(RUN) -m pytest -n 2
+
+notebooks: setup
+	@$(RUN) -m website.notebooks
+
+benchmark: setup
+	@$(RUN) -m benchmarks
+
+clean:
+	rm -rf _build

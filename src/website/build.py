@@ -1,0 +1,48 @@
+"""``python -m website.build``: build the book, and accept nothing less than all of it."""
+
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import yaml
+
+BUILD = Path("_build")
+HTML = BUILD / "html"
+
+
+def pages():
+    """The names of the pages in ``_toc.yml``."""
+    contents = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
+    chapters = [chapter["file"] for part in contents["parts"] for chapter in part["chapters"]]
+    return [contents["root"], *chapters]
+
+
+def missing_pages():
+    """Pages that did not come out as real HTML with a title of their own."""
+    files = {page: HTML / f"{page}.html" for page in pages()}
+    return [
+        page for page, file in files.items() if not file.is_file() or "<h1>" not in file.read_text("utf8")
+    ]
+
+
+def main():
+    start = time.monotonic()
+    print("Building the book ...", flush=True)
+    command = [sys.executable, "-m", "jupyter_book.cli.main", "build", ".", "-q", "-W", "-n", "--keep-going"]
+    code = subprocess.run(command).returncode
+    if code == 0 and (missing := missing_pages()):
+        print("These pages did not come out:", ", ".join(missing), file=sys.stderr)
+        code = 1
+    if code:
+        # Sphinx warns of a page only when it reads it: without this, a second
+        # try would find nothing to do and call the same faulty book built.
+        for folder in (HTML, BUILD / ".doctrees"):
+            shutil.rmtree(folder, ignore_errors=True)
+        sys.exit("The book was not built: see the warnings above.")
+    print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
+
+
+if __name__ == "__main__":
+    main()

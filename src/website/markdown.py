@@ -1,0 +1,191 @@
+"""A resolved page of the book as plain Markdown, for Jupyter or any editor.
+
+The page's tree is read after Sphinx has numbered and linked everything, so
+that a reference is simply its text: "Figure 2.1", "Exercise 2.1", "Moore".
+Only markup that every Markdown reader knows comes out.
+"""
+
+import re
+from textwrap import indent
+
+from docutils import nodes
+from sphinx import addnodes
+
+SILENT = (
+    nodes.comment, nodes.target, nodes.raw, nodes.system_message, nodes.substitution_definition,
+    addnodes.toctree, addnodes.index, addnodes.highlightlang,
+)  # fmt: skip
+
+
+class MarkdownWriter:
+    """Turns nodes into Markdown. ``cell`` is called with each code cell's node."""
+
+    def __init__(self, env, docname):
+        self.figure_numbers = env.toc_fignumbers.get(docname, {})
+        self.section_numbers = env.toc_secnumbers.get(docname, {})
+        self.names = env.config.numfig_format
+        self.pieces = []  # (is_cell, Markdown or the cell's node)
+
+    # ---- what has a number -------------------------------------------------
+
+    def digits(self, kind, node):
+        """The number of ``node`` among those of its kind, such as "2.1", or ``None``."""
+        numbers = self.figure_numbers.get(kind, {})
+        found = [numbers[name] for name in node.get("ids", ()) if name in numbers]
+        return ".".join(map(str, found[0])) if found else None
+
+    def number(self, kind, node):
+        digits = self.digits(kind, node)
+        return self.names[kind] % digits if digits else ""
+
+    def heading(self, node, level):
+        section = node.parent
+        number = self.section_numbers.get("#" + section["ids"][0]) if section["ids"] else None
+        if number is None and level == 1:
+            number = self.section_numbers.get("")
+        digits = ".".join(map(str, number)) + ". " if number else ""
+        return "#" * level + " " + digits + self.inline(node)
+
+    # ---- inline ------------------------------------------------------------
+
+    def inline(self, node):
+        return "".join(map(self.inline_node, node.children)).strip()
+
+    def inline_node(self, node):
+        if isinstance(node, nodes.Text):
+            return str(node).replace("\n", " ")
+        if isinstance(node, nodes.math):
+            return f"${node.astext().strip()}$"
+        if isinstance(node, nodes.literal):
+            ticks = "``" if "`" in node.astext() else "`"
+            inner = all(isinstance(child, nodes.Text) for child in node.children)
+            # A number that Sphinx sets as code ("Exercise 2.1") is not code.
+            is_reference = isinstance(node.parent, nodes.reference)
+            return ticks + node.astext() + ticks if inner and not is_reference else self.inline(node)
+        if isinstance(node, SILENT):
+            return ""
+        if isinstance(node, nodes.image):
+            return f"[Picture: {node.get('alt', '')}]"
+        text = self.inline(node)
+        if isinstance(node, nodes.emphasis):
+            return f"*{text}*"
+        if isinstance(node, nodes.strong):
+            return f"**{text}**"
+        if isinstance(node, nodes.reference) and "://" in node.get("refuri", ""):
+            return f"[{text}]({node['refuri']})"
+        if isinstance(node, nodes.footnote_reference):
+            return f"[{text}]"
+        # Leave the spaces at the edges of nested text as they are.
+        return "".join(map(self.inline_node, node.children))
+
+    # ---- blocks ------------------------------------------------------------
+
+    def blocks(self, children, level=1):
+        return "\n\n".join(filter(None, (self.block(child, level) for child in children)))
+
+    def block(self, node, level):
+        if isinstance(node, SILENT):
+            return ""
+        if isinstance(node, nodes.title):
+            return self.heading(node, level)
+        if isinstance(node, nodes.math_block):
+            number = self.digits("displaymath", node)
+            tag = f" \\tag{{{number}}}" if number else ""
+            return f"$$\n{node.astext().strip()}{tag}\n$$"
+        if isinstance(node, nodes.literal_block):
+            language = node.get("language", "")
+            return f"```{'' if language in ('none', 'default') else language}\n{node.astext()}\n```"
+        if isinstance(node, (nodes.bullet_list, nodes.enumerated_list)):
+            return self.list(node, level)
+        if isinstance(node, nodes.definition_list_item):
+            term = "**" + self.inline(node[0]) + "**"
+            return term + "\n\n" + self.blocks(node[-1].children, level)
+        if isinstance(node, nodes.table):
+            return self.table(node)
+        if isinstance(node, nodes.figure):
+            return self.figure(node, level)
+        if isinstance(node, nodes.block_quote):
+            return indent(self.blocks(node.children, level), "> ", lambda line: True)
+        if isinstance(node, (nodes.Admonition, nodes.topic, nodes.sidebar)):
+            return self.admonition(node, level)
+        if isinstance(node, nodes.TextElement):
+            return self.inline(node)
+        if isinstance(node, nodes.image):
+            return self.inline_node(node)
+        return self.blocks(node.children, level)
+
+    def list(self, node, level):
+        items = []
+        for position, item in enumerate(node.children, start=node.get("start", 1)):
+            mark = f"{position}. " if isinstance(node, nodes.enumerated_list) else "- "
+            body = indent(self.blocks(item.children, level), " " * len(mark))
+            items.append(mark + body.lstrip(" "))
+        return "\n".join(items) if all("\n\n" not in item for item in items) else "\n\n".join(items)
+
+    def table(self, node):
+        rows = [
+            "| " + " | ".join(self.cell_text(entry) for entry in row.children) + " |"
+            for row in node.findall(nodes.row)
+        ]
+        columns = len(next(node.findall(nodes.row)).children)
+        rows.insert(1, "|" + " --- |" * columns)
+        titles = [f"**{self.number('table', node)}** " + self.inline(t) for t in node if isinstance(t, nodes.title)]
+        return "\n\n".join([*titles, "\n".join(rows)])
+
+    def cell_text(self, entry):
+        # Inside mathematics a bar would end the cell: \vert is the same sign.
+        text = self.blocks(entry.children).replace("\n", " ")
+        return re.sub(r"\$[^$]*\$", lambda m: m[0].replace("|", r"\vert "), text)
+
+    def figure(self, node, level):
+        parts = []
+        for child in node.children:
+            if isinstance(child, nodes.caption):
+                number = self.number("figure", node)
+                parts.append(f"**{number}.** {self.inline(child)}" if number else self.inline(child))
+            else:
+                parts.append(self.block(child, level))
+        return "\n\n".join(filter(None, parts))
+
+    def admonition(self, node, level):
+        children = list(node.children)
+        title = type(node).__name__.capitalize()
+        if children and isinstance(children[0], nodes.title):
+            title = self.inline(children.pop(0))
+        title = (self.number("exercise", node) + " " + title).strip()
+        body = f"**{title}**\n\n{self.blocks(children, level)}".strip()
+        return indent(body, "> ", lambda line: True)
+
+    # ---- the page ----------------------------------------------------------
+
+    def page(self, document):
+        """The page as a list of ``(is_cell, text or node)``, in order."""
+        self.walk(document, 0)
+        return self.pieces
+
+    def say(self, text):
+        if text:
+            self.pieces.append((False, text))
+
+    def walk(self, node, level):
+        for child in node.children:
+            if isinstance(child, nodes.section):
+                self.walk(child, level + 1)
+            elif isinstance(child, nodes.container) and child.get("nb_element") == "cell_code":
+                self.pieces.append((True, child))
+                for figure in child.findall(nodes.figure):
+                    self.say(self.figure_caption(figure))
+            elif any(c.get("nb_element") == "cell_code" for c in child.findall(nodes.container)):
+                if isinstance(child, nodes.Admonition):
+                    title = self.admonition(type(child)("", *child.children[:1]), level)
+                    self.say(title)
+                    self.walk(type(child)("", *child.children[1:]), level)
+                else:
+                    self.walk(child, level)
+            else:
+                self.say(self.block(child, max(level, 1)))
+
+    def figure_caption(self, figure):
+        captions = nodes.figure("", *[c for c in figure.children if isinstance(c, (nodes.caption, nodes.legend))])
+        captions["ids"] = figure["ids"]
+        return self.figure(captions, 1)
