@@ -44,6 +44,7 @@ STYLE = (
     '.orientation-figure .guide{stroke-width:1.3;stroke-dasharray:4 4}'
     '.orientation-figure .faint{stroke-width:1;stroke-opacity:.45}'
     '.orientation-figure .thick{stroke-width:3}'
+    '.orientation-figure .bare{stroke-width:.4}'
     '.orientation-figure .paper{fill:var(--paper)}.orientation-figure [class*=fill]{stroke-linecap:butt}'
     '.orientation-figure .tube{stroke-width:13}.orientation-figure .tube.core{stroke-width:9.5;'
     'stroke:color-mix(in srgb,currentColor 22%%,var(--paper))}'
@@ -135,10 +136,11 @@ class Drawing:
             self.path('M' + 'L' * (len(sheet) - 1), sheet, f'{layer} {colour}')
         return self
 
-    def area(self, points, colour='ink', fill=16):
+    def area(self, points, colour='ink', fill=16, edge=True):
         """Fill the polygon with corners `points`, shape (n, 3); `fill` is 0 (paper), 8, 16, 26 or 38 per cent."""
         sheet = self.on_sheet(points)
-        return self.path('M' + 'L' * (len(sheet) - 1) + 'Z', sheet, (f'fill-{fill} ' if fill else 'paper ') + colour)
+        kind = (f'fill-{fill} ' if fill else 'paper ') + ('' if edge else 'bare ')
+        return self.path('M' + 'L' * (len(sheet) - 1) + 'Z', sheet, kind + colour)
 
     def dot(self, point, colour='ink', radius=4):
         """Draw a dot, `radius` pixels large, at a point."""
@@ -152,7 +154,7 @@ class Drawing:
     def note(self, text, colour='ink', size=18):
         """Write a line of `text` under all that has been drawn so far."""
         left, _, right, bottom = self.bounds()
-        self.marks.append((f'text {colour}', (text, size), np.array(((left + right) / 2, bottom + size)), 1.0))
+        self.marks.append((f'text {colour}', (text, size), np.array(((left + right) / 2, bottom + 1.4 * size)), 1.0))
         return self
 
     # Arrows and frames.
@@ -176,11 +178,11 @@ class Drawing:
             outward = np.array((15, 15))
         elif bow:
             left = np.array((along[1], -along[0]))
-            middle = (tail + tip) / 2 + bow * left
-            turned = _direction(tip - middle)[0]
-            self.path('MQ', [tail, 2 * middle - (tail + tip) / 2, tip - 9 * turned], f'{kind} {colour}')
-            self._head(tip, _direction(tip - 2 * middle + (tail + tip) / 2)[0], 1, colour)
-            outward, tip = np.sign(bow) * 15 * left, middle
+            first, second = (tail + (tip - tail) * part + 4 / 3 * bow * left for part in (0.25, 0.75))
+            turned = _direction(tip - second)[0]
+            self.path('MC', [tail, first, second, tip - 9 * turned], f'{kind} {colour}')
+            self._head(tip, turned, 1, colour)
+            outward, tip = np.sign(bow) * 15 * left, (tail + tip) / 2 + bow * left
         else:
             size = min(1, 0.5 * length / 14)
             self.path('ML', [tail, tip - 10 * size * along], f'{kind} {colour}')
@@ -246,10 +248,10 @@ class Drawing:
             self.marks.append((f'text {colour}', (label, 20), place, min(1.0, abs(float(angle)) / 0.2)))
         return self
 
-    def arc(self, start, end, radius=0.5, label='', origin=(0, 0, 0), colour='ink', shift=(0, 0), kind=''):
+    def arc(self, start, end, radius=0.5, label='', origin=(0, 0, 0), colour='ink', shift=(0, 0), kind='', head=True):
         """Draw the angle from the direction `start` to the direction `end`, the short way round."""
         axis, sine = _direction(np.cross(start, end))
-        return self.turn(axis, np.arctan2(sine, np.dot(start, end)), start, radius, label, origin, colour, shift, kind)
+        return self.turn(axis, np.arctan2(sine, np.dot(start, end)), start, radius, label, origin, colour, shift, kind, head)
 
     def right_angle(self, first, second, origin=(0, 0, 0), size=0.12, colour='muted'):
         """Mark the right angle between two directions at `origin`."""
@@ -303,8 +305,8 @@ class Drawing:
         """Return left, top, right and bottom of what has been drawn, in pixels from the origin."""
         corners = []
         for kind, shape, place, _ in self.marks:
-            half = 0 if isinstance(shape, str) else shape[1] / 1000 * typeset(shape[0])[2] / 2
-            corners += [np.min(np.atleast_2d(place), axis=0) - half, np.max(np.atleast_2d(place), axis=0) + half]
+            ink = np.zeros((2, 2)) if isinstance(shape, str) else shape[1] / 1000 * typeset(shape[0])[1]
+            corners += [np.min(np.atleast_2d(place), axis=0) + ink[0], np.max(np.atleast_2d(place), axis=0) + ink[1]]
         return np.concatenate([np.min(corners, axis=0), np.max(corners, axis=0)])
 
     def svg(self, motions=None, bounds=None, decimals=2):
@@ -335,11 +337,11 @@ def _element(mark, motion, outlines, decimals):
     if isinstance(shape, str):
         return f'<path class="{kind.strip()}" d="{path_data(shape, place, decimals)}"' + (f'>{motion}</path>' if motion else '/>')
     text, size = shape
-    glyphs, middle, _ = typeset(text)
+    glyphs, _ = typeset(text)
     uses = ''
     for outline, corner, glyph_size in glyphs:
         number = outlines.setdefault(outline, len(outlines))
-        x, y = size / 1000 * (corner - middle)
+        x, y = size / 1000 * corner
         uses += (f'<use href="#@{number}" transform="translate({_number(x, 2)} {_number(y, 2)}) '
                  f'scale({_number(size * glyph_size / 1000, 5)})"/>')
     fade = f' opacity="{_number(opacity, 2)}"' if opacity < 1 else ''
@@ -350,7 +352,7 @@ def _element(mark, motion, outlines, decimals):
 def typeset(text):
     """Set `text` in Computer Modern, 1000 units to the em, x right and y down from the start of the line.
 
-    Returns a list of (outline as path data, corner, size) the middle of the ink and its size.
+    Returns a list of (outline as path data, corner, size) and corners.
     """
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
@@ -369,8 +371,9 @@ def typeset(text):
             glyphs.append((_outline(flipped, codes), place, size))
     if not ink:
         raise ValueError(f'the text {text!r} has nothing to draw')
-    first, last = np.min(ink, axis=0), np.max(ink, axis=0)
-    return glyphs, (first + last) / 2, last - first
+    corners = np.array([np.min(ink, axis=0), np.max(ink, axis=0)])
+    middle = np.array((corners[:, 0].mean(), -220))
+    return [(outline, place - middle, size) for outline, place, size in glyphs], corners - middle
 
 
 def _outline(vertices, codes):

@@ -12,15 +12,15 @@ from .drawing import STYLE, collapsed, pair, path_data
 SCRIPT = '''
 document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure => {
   const svg = figure.querySelector('svg'), [button, slider] = figure.querySelectorAll('button, input');
-  const said = figure.querySelector('output'), texts = JSON.parse(figure.dataset.texts);
+  const said = figure.querySelector('output'), [steps, texts] = JSON.parse(figure.dataset.texts);
   const frame = %s, last = texts.length - 1;
   let playing = false;
   figure.dataset.ready = '';
   figure.querySelector('div').hidden = false;
   const show = () => {
-    const [step, value] = texts[Math.round(slider.value)];
-    slider.setAttribute('aria-valuetext', step + value);
-    if (said.textContent !== step) said.textContent = step;
+    const [step, more] = texts[slider.value];
+    slider.setAttribute('aria-valuetext', steps[step] + more);
+    if (said.textContent !== steps[step]) said.textContent = steps[step];
     button.textContent = playing ? 'Pause' : 'Play';
   };
   const tick = () => {
@@ -63,9 +63,9 @@ class Animation:
     draw : callable
         `draw(progress)` returns the `Drawing` at that moment; `progress` runs from 0 to the number of
         steps. All drawings must consist of the same marks in the same order.
-    steps : sequence of str or (str, float)
-        What happens in each step, in words, with the angle (radians) that it reaches where the words
-        shall be followed by the number of degrees.
+    steps : sequence of (str, float or str)
+        What happens in each step: the words shown under the picture, and what a screen reader adds to
+        them, either the angle turned so far (the last value is given, in radians) or more words.
     still : float, optional
         The moment shown until the reader asks for motion, by default the end. Its `alt` is used.
     frames : int
@@ -80,7 +80,7 @@ class Animation:
     """
 
     def __init__(self, draw, steps, still=None, frames=6, seconds=2.5):
-        self.steps = [(step, None) if isinstance(step, str) else step for step in steps]
+        self.steps = list(steps)
         eased = [(j / frames) ** 2 * (3 - 2 * j / frames) for j in range(1, frames + 1)]
         self.moments = [0] + [step + part for step in range(len(steps)) for part in [*eased, 1]]
         self.still = len(self.moments) - 1 if still is None else round(still * (frames + 1))
@@ -93,13 +93,12 @@ class Animation:
                                  'may point straight at the reader there: choose another view')
 
     def texts(self):
-        """Return, for each key frame, the step in words and the angle reached."""
-        count, texts = len(self.steps), []
+        """Return, for each key frame, the number of its step (from 0) and what a screen reader adds to its words."""
+        texts = []
         for moment in self.moments:
-            number = min(int(moment), count - 1) if moment == 0 or moment % 1 else int(moment) - 1
-            words, angle = self.steps[number]
-            reached = '' if angle is None else f', {(moment - number) * angle * 57.29578:.0f} degrees'
-            texts.append((f'Step {number + 1} of {count}: {words}', reached))
+            step = max(int(np.ceil(moment)) - 1, 0)
+            more = self.steps[step][1]
+            texts.append((step, more if isinstance(more, str) else f', {np.degrees((moment - step) * more):.0f} degrees'))
         return texts
 
     def motions(self):
@@ -113,9 +112,10 @@ class Animation:
 
     def _repr_html_(self):
         svg = self.drawings[self.still].svg(self.motions(), self.bounds(), decimals=1)
-        texts = json.dumps(self.texts(), separators=(',', ':'))
+        words = [f'Step {step} of {len(self.steps)}: {words}' for step, (words, _) in enumerate(self.steps, start=1)]
+        texts = json.dumps([words, self.texts()], separators=(',', ':'))
         name = hashlib.sha256(svg.encode()).hexdigest()[:10]
-        return (f'<figure class="orientation-figure" data-moving="{name}" data-texts="{escape(texts)}">'
+        return (f'<figure class="orientation-figure" data-moving="{name}" data-texts=\'{escape(texts, quote=False).replace(chr(39), chr(8217))}\'>'
                 f'<style>{STYLE}</style>{svg}<div class="controls" hidden><button type="button">Play</button> '
                 f'<input type="range" min="0" max="{len(self.moments) - 1}" step="1" value="{self.still}" '
                 'aria-label="Moment of the animation"><br><output aria-live="polite"></output></div>'

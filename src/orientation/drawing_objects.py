@@ -2,7 +2,8 @@
 import numpy as np
 
 from .direction_cosines import simple_dcm
-from .drawing import Drawing, view_from
+from .drawing import IN_SPACE, Drawing, looking_down, view_from
+from .drawing_animation import Animation, one_after_another
 
 
 def draw_eye(drawing, point, size=40, colour='ink'):
@@ -28,6 +29,42 @@ def draw_book(drawing, dcm, origin=(0, 0, 0), colour='A', size=(0.8, 1.1, 0.22))
     return drawing
 
 
+def plane_drawing(axis, angle, first='N', second='A', name='theta', components=False, scale=185):
+    """Draw the frame `second`, turned from `first` through `angle` (radians) about the shared `axis`, seen down it.
+
+    `axis` is 'x', 'y' or 'z', or one of these after a minus sign; `name` is the Greek letter of the angle. With
+    `components` the tips are dropped onto the arrows of `first`, and the feet marked with sine and cosine.
+    """
+    along = axis[-1]
+    view = looking_down(along)
+    turn = np.asarray(simple_dcm(along, float(angle)))
+    if axis.startswith('-'):
+        view, turn = view[[1, 0, 2]] * [[1], [1], [-1]], turn.T
+    right, up = ('xyz'[np.argmax(row)] for row in view[:2])
+    old, new = first.lower(), second.lower()
+    drawing = Drawing(
+        f'Looking down the {axis} axis that the frames {first} and {second} share' + (f'; {old} {along} and {new} {along} point away '
+        'from the reader, a circle with a cross' if axis.startswith('-') else f'; {old} {along} and {new} {along} point at the reader, a '
+        f'circle with a dot') + f'. {old} {right} points to the right and {old} {up} up. {new} {right} is turned counterclockwise from '
+        f'{old} {right} through {name}, and {new} {up} from {old} {up} through the same angle.' + components * (
+        f' Dropped onto the arrows of {first}, the tip of {new} {right} has its feet at cosine {name} along {old} {right} and sine {name} '
+        f'along {old} {up}; the tip of {new} {up} at minus sine {name} along {old} {right} and cosine {name} along {old} {up}.'), view, scale)
+    symbol = r'\varphi' if name == 'phi' else '\\' + name
+    (x, y), (tip, top) = view[:2], view[:2] @ turn
+    if components:
+        for end in (tip, top):
+            drawing.line([end @ x * x, end, end @ y * y], 'muted', 'guide')
+        drawing.line([(0, 0, 0), top @ x * x], 'muted')
+        for foot, words, shift in ((tip @ x * x, r'\cos', (-6, 18)), (tip @ y * y, r'\sin', (32, 16)), (top @ y * y, r'\cos', (36, 3)),
+                                   (top @ x * x, r'-\sin', (-4, 18))):
+            drawing.dot(foot, 'muted', 3).label(foot, f'${words}{symbol}$', 'muted', shift, 18)
+    for letter, dcm in ((first, np.eye(3)), (second, turn)):
+        drawing.triad(letter, dcm, labels=[None if name == along else rf'$\hat{{{letter.lower()}}}_{name}$' for name in 'xyz'])
+    for start, end in ((x, tip), (y, top)):
+        drawing.arc(start, end, 0.44, f'${symbol}$')
+    return drawing.arrow(np.eye(3)['xyz'.index(along)], colour=second, label=rf'$\hat{{{old}}}_{along} = \hat{{{new}}}_{along}$', shift=(-40, 32))
+
+
 GIMBAL_ALT = (
     'A hand-held camera gimbal. The upright handgrip is frame A. On its top a motor turns link B about the upright z axis '
     'through psi. At the back end of link B a motor turns link C about the lengthwise x axis through theta. At the end of '
@@ -45,7 +82,7 @@ def gimbal_drawing(angles, alt=GIMBAL_ALT):
     B = np.asarray(simple_dcm('z', psi)) @ A
     C = np.asarray(simple_dcm('x', theta)) @ B
     D = np.asarray(simple_dcm('y', phi)) @ C
-    drawing = Drawing(alt, view_from(np.radians(68), np.radians(22)), 112)
+    drawing = Drawing(alt, view_from(np.radians(92), np.radians(24)), 112)
 
     def place(frame, *points):
         return np.array(points) @ frame
@@ -74,7 +111,44 @@ def gimbal_drawing(angles, alt=GIMBAL_ALT):
     drawing.line(place(C, (0, 0.6, 0), (0, 1.1, 0)), 'muted', 'guide')
     joint(C, (0, 1, 0), (0.5, 0, -0.86), (0, 0.8, 0), 'varphi')
     joint(A, (0, 0, 1), (0.94, 0.34, 0), (0, 0, -1.03), 'psi')
-    beside = drawing.view[0] * 2.5
+    for letter, frame, point, shift in (('A', A, (0, 0, -1.65), (0, 0)), ('B', B, (-0.8, 0, -0.86), (0, 20)),
+                                        ('C', C, (-0.9, 0.58, 0), (0, 20)), ('D', D, (0, 0, 0.27), (0, -18))):
+        drawing.label(place(frame, point)[0], f'${letter}$', letter, shift, 22)
+    beside = drawing.view[0] * 2.55
     for row, (letter, frame) in enumerate(zip('DCBA', (D, C, B, A))):
-        drawing.triad(letter, frame, beside + drawing.view[1] * (0.85 - 0.98 * row), 0.44)
+        drawing.triad(letter, frame, beside + drawing.view[1] * (0.85 - 1.06 * row), 0.46)
     return drawing
+
+
+def turning_frames_animation():
+    """Return the animation of four frames that turn one after another, for the exercise on Euler angles.
+
+    The turns are kept here, so that the page of the exercise does not tell its answer.
+    """
+    angles, sequence = np.radians((50, 45, 40)), 'zxz'
+
+    def draw(progress):
+        drawing = Drawing(
+            'Four frames, each drawn at its own place: A yellow with solid arrows, B red with dashed arrows, C green with dash-dotted '
+            'arrows, D blue with dotted arrows. At first they are aligned, x towards the reader and to the left, y to the right, z up. '
+            'First B, C and D turn together through 50 degrees; the arrows marked z of B, C and D stay where they are. Then C and D turn '
+            'together through 45 degrees; the arrows marked x of C and D stay where they are. Last, D turns alone through 40 degrees; the '
+            'arrow marked z of D stays where it is, no longer upright. Seen from the tip of the arrow that stays, each turn is '
+            'counterclockwise. The still picture is the end: next to each frame a thin grey triad shows the frame before it in the '
+            'order A, B, C, D, and curved arrows lead from the grey tips to the turned ones.', scale=92)
+        dcm = before = np.eye(3)
+        for number, letter in enumerate('ABCD'):
+            place = 2.75 * (number % 2) * drawing.view[0] - 2.45 * (number // 2) * drawing.view[1]
+            if number:
+                axis, angle = sequence[number - 1], one_after_another(angles, progress)[number - 1]
+                before, dcm = dcm, np.asarray(simple_dcm(axis, angle)) @ dcm
+                for row, fixed in zip(before, 'xyz'):
+                    drawing.line([place, place + row], 'muted')
+                    if fixed != axis:
+                        drawing.turn(before['xyz'.index(axis)], angle, row, 0.8, origin=place, colour='muted')
+            drawing.triad(letter, dcm, place)
+        return drawing
+
+    return Animation(draw, [('B, C and D turn together', '; the z arrows of B, C and D stay where they are'),
+                            ('C and D turn together', '; the x arrows of C and D stay where they are'),
+                            ('D turns alone', '; the z arrow of D stays where it is')])
