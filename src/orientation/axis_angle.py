@@ -57,7 +57,7 @@ def dcm_from_axis_angle(axis, angle):
 
     Notes
     -----
-    Source: Rodrigues' formula [Rodrigues1840]_, transposed to act on components.
+    Source: Rodrigues' formula Rodrigues (1840), transposed to act on components.
     """
     def formula(f, x, y, z, angle):
         length = f.norm(x, y, z)
@@ -96,7 +96,7 @@ def quaternion_from_axis_angle(axis, angle):
 
     Notes
     -----
-    Source: [Moore2022]_, section "Alternatives for representing orientation"; [Shuster1993]_.
+    Source: Moore (2022), section "Alternatives for representing orientation"; Shuster (1993).
     """
     def formula(f, x, y, z, angle):
         share = f.sin(angle / 2) / f.norm(x, y, z)

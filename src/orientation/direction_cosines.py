@@ -49,7 +49,7 @@ def simple_dcm(axis, angle):
 
     Notes
     -----
-    Source: [Moore2022]_, section "Simple orientations".
+    Source: Moore (2022), section "Simple orientations".
     """
     if axis not in AXES:
         raise ValueError(f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction "
@@ -97,12 +97,12 @@ def check_dcm(dcm):
     """
     if is_symbolic(dcm):
         from .comparison import values_at_random_points
-        symbol_components(dcm, (3, 3), 'dcm')
+        unknown = any(entry.free_symbols for entry in symbol_components(dcm, (3, 3), 'dcm'))
         dcm, = values_at_random_points(dcm)
         if abs(dcm.imag).max() > TOLERANCE:
             raise ValueError('dcm is not real: an entry has an imaginary part of '
                              f'{abs(dcm.imag).max():.3g} for real values of its symbols')
-        demand_dcm(dcm.real, ' at random values of its symbols')
+        demand_dcm(dcm.real, ' at random values of its symbols' if unknown else '')
     else:
         demand_dcm(dcm)
 
@@ -152,7 +152,7 @@ def _explain(entries, where, name='dcm'):
     elif scaled:
         cause = (f'The whole matrix is {squares[0] ** 0.5:.6g} times an orthogonal one, as from a '
                  f'quaternion that is not of unit length')
-    elif abs(worst) < 1e-2:
+    elif abs(worst) < 0.1:
         cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix'
     else:
         cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad'
@@ -203,7 +203,7 @@ def nearest_dcm(matrix):
 
     Notes
     -----
-    Source: [Kabsch1978]_, [Umeyama1991]_.
+    Source: Kabsch (1978), Umeyama (1991).
     """
     import numpy
     array = number_array(matrix, (3, 3), 'matrix')

@@ -77,7 +77,7 @@ def dcm_from_body_fixed(angles, sequence):
     Notes
     -----
     The three turns are multiplied out once, for axes in cyclic order; the other order only changes
-    the sign of the angles. Source: [Shuster1993]_, [Diebel2006]_.
+    the sign of the angles. Source: Shuster (1993), Diebel (2006).
     """
     i, j, k, sign = _layout_of(sequence)
     proper = sequence[0] == sequence[2]

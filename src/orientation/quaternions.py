@@ -12,7 +12,7 @@ def _explain_length(components, where):
     length = sum(entry * entry for entry in components) ** 0.5
     if length == 0:
         cause = 'the zero quaternion is no orientation'
-    elif abs(length - 1) < 1e-2:
+    elif abs(length - 1) < 0.05:
         cause = 'were its components rounded, or integrated without restoring the length? Divide by it'
     else:
         cause = ('is the angle halved in the cosine and in the sine, and the axis a unit vector? '
@@ -57,7 +57,7 @@ def dcm_from_quaternion(quaternion):
 
     Notes
     -----
-    Source: [Shuster1993]_, [Moore2022]_.
+    Source: Shuster (1993), Moore (2022).
     """
     def formula(f, scalar, x, y, z):
         ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
@@ -111,7 +111,7 @@ def quaternion_from_dcm(dcm):
 
     Notes
     -----
-    Source: [Shepperd1978]_, [Markley2008]_.
+    Source: Shepperd (1978), Markley (2008).
     """
     return evaluate(quaternion_components_from_dcm, (4,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD,
                     symbols=False)
@@ -142,7 +142,7 @@ def multiply_quaternions(first, second):
 
     Notes
     -----
-    Source: [Hamilton1844]_.
+    Source: Hamilton (1844).
     """
     def formula(f, a, b, c, d, e, g, h, k):
         return (a * e - b * g - c * h - d * k, a * g + b * e + c * k - d * h,
