@@ -19,16 +19,16 @@ def says_something(text):
     return len((text or "").split()) >= FEWEST_WORDS
 
 
-def spoken_text(tag):
+def spoken_text(tag, page):
     """What a screen reader says for ``tag``, or ``None`` where it is told to skip it."""
-    if any(parent.get("aria-hidden") == "true" for parent in [tag, *tag.parents] if parent.attrs):
+    if any(element.get("aria-hidden") == "true" for element in [tag, *tag.parents]):
         return None
     if tag.name == "img":
         return tag.get("aria-label") or tag.get("alt") or ""
     if tag.name == "svg" and tag.get("role") != "img":
         return ""  # without the role, readers spell out the labels inside it
     if tag.get("aria-labelledby"):
-        named = tag.find_parent("[document]").find(id=tag["aria-labelledby"])
+        named = page.find(id=tag["aria-labelledby"])
         return named.get_text() if named else ""
     title = tag.find("title", recursive=False)
     return tag.get("aria-label") or (title.get_text() if title else "")
@@ -42,7 +42,7 @@ def check(app, doctree, docname):
             soup = BeautifulSoup(node.astext(), "html.parser")
             pictures = soup.find_all(["img", "svg", "canvas", "video"])
             outer = [tag for tag in pictures if not tag.find_parent("svg")]
-            texts = [text for text in map(spoken_text, outer) if text is not None]
+            texts = [text for tag in outer if (text := spoken_text(tag, soup)) is not None]
         else:
             continue
         for text in texts:

@@ -30,7 +30,8 @@ def missing_pages():
 def main():
     start = time.monotonic()
     print("Building the book ...", flush=True)
-    command = [sys.executable, "-m", "jupyter_book.cli.main", "build", ".", "-q", "-W", "-n", "--keep-going"]
+    jupyter_book = Path(sys.executable).with_name("jupyter-book")
+    command = [jupyter_book, "build", ".", "-q", "-W", "-n", "--keep-going"]
     code = subprocess.run(command).returncode
     if code == 0 and (missing := missing_pages()):
         print("These pages did not come out:", ", ".join(missing), file=sys.stderr)

@@ -17,6 +17,10 @@ SILENT = (
 )  # fmt: skip
 
 
+def quote(text):
+    return "\n".join(f"> {line}".rstrip() for line in text.splitlines())
+
+
 class MarkdownWriter:
     """Turns nodes into Markdown. ``cell`` is called with each code cell's node."""
 
@@ -105,7 +109,7 @@ class MarkdownWriter:
         if isinstance(node, nodes.figure):
             return self.figure(node, level)
         if isinstance(node, nodes.block_quote):
-            return indent(self.blocks(node.children, level), "> ", lambda line: True)
+            return quote(self.blocks(node.children, level))
         if isinstance(node, (nodes.Admonition, nodes.topic, nodes.sidebar)):
             return self.admonition(node, level)
         if isinstance(node, nodes.TextElement):
@@ -153,8 +157,7 @@ class MarkdownWriter:
         if children and isinstance(children[0], nodes.title):
             title = self.inline(children.pop(0))
         title = (self.number("exercise", node) + " " + title).strip()
-        body = f"**{title}**\n\n{self.blocks(children, level)}".strip()
-        return indent(body, "> ", lambda line: True)
+        return quote(f"**{title}**\n\n{self.blocks(children, level)}".strip())
 
     # ---- the page ----------------------------------------------------------
 

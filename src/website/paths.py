@@ -23,8 +23,8 @@ def fingerprint(*paths):
 def where(node):
     """The place of ``node`` in its source, as a reader of the warning needs it.
 
-    MyST-NB counts the lines of a notebook as 10000 times the cell's number
-    (from 1) plus the line in the cell.
+    MyST-NB gives the lines of a notebook as 10000 times the cell's number, plus
+    the line in the cell, plus one.
     """
     while node is not None and not (node.source and node.line):
         node = node.parent
@@ -32,5 +32,5 @@ def where(node):
         return None
     cell, line = divmod(node.line, 10000)
     if str(node.source).endswith(".ipynb") and cell:
-        return f"{node.source}:{line} (cell {cell})"
+        return f"{node.source}:{max(line - 1, 1)} (cell {cell})"
     return f"{node.source}:{node.line}"

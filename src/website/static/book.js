@@ -26,3 +26,13 @@ if (menu) {
     }
   });
 }
+
+// Excerpts on the search page show each formula once, and no TeX.
+if (typeof Search !== "undefined") {
+  const toText = Search.htmlToText;
+  Search.htmlToText = (html, anchor) => {
+    const page = new DOMParser().parseFromString(html, "text/html");
+    page.querySelectorAll(".katex-mathml").forEach((element) => element.remove());
+    return toText(page.documentElement.outerHTML, anchor);
+  };
+}

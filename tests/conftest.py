@@ -1,0 +1,66 @@
+"""What the tests share: the built site, a server for it, and a browser."""
+
+import os
+import shutil
+import threading
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+HTML = REPOSITORY / "_build" / "html"
+# Set where a missing browser must not pass unnoticed (.ci/run sets it).
+BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Keep the cells of one notebook, which share a kernel, on one worker."""
+    for item in items:
+        if item.path.suffix == ".ipynb":
+            item.add_marker(pytest.mark.xdist_group(str(item.path)))
+
+
+def html_pages():
+    """The addresses of all pages of the built site, relative to its root."""
+    return sorted(str(path.relative_to(HTML)) for path in HTML.rglob("*.html"))
+
+
+@pytest.fixture(scope="session")
+def site():
+    """The address of the built book, served locally."""
+    from website.serve import server
+
+    if not (HTML / "index.html").exists():
+        pytest.fail("the book is not built: run `make book`")
+    book = server(folder=HTML)
+    threading.Thread(target=book.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{book.server_port}/"
+    book.shutdown()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Headless Chromium; skipped with a reason where there is none."""
+    from playwright.sync_api import sync_playwright
+
+    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if found is None:
+        reason = "no Chromium on this machine: the built pages cannot be opened"
+        pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(
+            executable_path=found,
+            # The first flag is for containers, where tests run as root; the others
+            # keep the browser from talking to its maker.
+            args=[
+                "--no-sandbox",
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--disable-sync",
+                "--no-first-run",
+            ],
+        )
+        yield chromium
+        chromium.close()

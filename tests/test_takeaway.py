@@ -1,0 +1,138 @@
+"""What readers take away: notebooks and scripts that run, with the prose, without solutions."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from functools import cache
+
+import nbformat
+import pytest
+from conftest import HTML, REPOSITORY
+from nbclient import NotebookClient
+
+FOLDER = HTML / "take-away"
+SOURCES = {path.stem: path for part in ("chapters", "appendix") for path in sorted((REPOSITORY / part).glob("*.ipynb"))}
+CHAPTERS = [name for name, path in SOURCES.items() if path.parent.name == "chapters"]
+SOLUTIONS = SOURCES.get("solutions")
+# Signs of MyST that plain Markdown does not know.
+MYST = re.compile(r"\{[a-z:-]+\}`|^ *(```+|:::+) *\{|^\([\w-]+\)=$|\$\$ *\([\w-]+\)", re.MULTILINE)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    if not FOLDER.is_dir():
+        pytest.fail("the book is not built: run `make book`")
+
+
+@cache
+def notebook(name):
+    return nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
+
+
+def script(name):
+    return (FOLDER / f"{name}.py").read_text("utf8")
+
+
+def prose(nb):
+    return "\n\n".join(cell.source for cell in nb.cells if cell.cell_type == "markdown")
+
+
+def environment():
+    """Import the package from the wheel that lies beside the downloads."""
+    (wheel,) = FOLDER.glob("*.whl")
+    return os.environ | {"PYTHONPATH": str(wheel), "MPLBACKEND": "agg"}
+
+
+def plain_sentences(name):
+    """Lines of the chapter's prose that hold no markup, as they must appear word for word."""
+    for line in prose(nbformat.read(SOURCES[name], as_version=4)).splitlines():
+        if len(line) > 40 and not re.search(r"[{}$\[\]*_`#|<>:=~\\]", line):
+            yield line.strip().removeprefix("- ")
+
+
+def test_every_notebook_is_offered():
+    assert SOURCES
+    for name in SOURCES:
+        assert (FOLDER / f"{name}.ipynb").is_file() and (FOLDER / f"{name}.py").is_file()
+
+
+def test_the_wheel_holds_the_package_and_no_more():
+    import zipfile
+
+    (wheel,) = FOLDER.glob("*.whl")
+    names = zipfile.ZipFile(wheel).namelist()
+    assert {name.split("/")[0] for name in names if "dist-info" not in name} == {"orientation"}
+    code = "import orientation; assert '.whl' in orientation.__file__, orientation.__file__"
+    subprocess.run([sys.executable, "-c", code], env=environment(), check=True)
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_notebook_runs(name, tmp_path):
+    client = NotebookClient(
+        notebook(name).copy(), timeout=120, kernel_name="python3", resources={"metadata": {"path": tmp_path}}
+    )
+    client.execute(env=environment())
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_script_runs(name, tmp_path):
+    path = FOLDER / f"{name}.py"
+    done = subprocess.run(
+        [sys.executable, path], cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_prose_is_inside(name):
+    sentences = list(plain_sentences(name))
+    in_notebook = re.sub(r"\s+", " ", prose(notebook(name)))
+    in_script = re.sub(r"\s+(# )?", " ", re.sub(r"^# ?> ?", "# ", script(name), flags=re.MULTILINE))
+    for sentence in sentences:
+        assert sentence in in_notebook
+        assert sentence in in_script
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_prose_is_plain_markdown(name):
+    text = prose(notebook(name))
+    found = MYST.search(text)
+    assert found is None, text[max(0, found.start() - 60) : found.end() + 60]
+    assert "None" not in re.findall(r"(?:Figure|Exercise|Table) (\S+)", text)
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_code_is_that_of_the_chapter(name):
+    source = nbformat.read(SOURCES[name], as_version=4)
+    codes = [[c.source for c in nb.cells if c.cell_type == "code"] for nb in (source, notebook(name))]
+    assert codes[0] == codes[1]
+    assert all(not cell.get("outputs") for cell in notebook(name).cells)
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_script_is_valid_python(name):
+    ast.parse(script(name))
+
+
+@pytest.mark.parametrize("name", CHAPTERS)
+def test_no_solution_is_inside(name):
+    """Neither in the download nor in the chapter that it was made from."""
+    if SOLUTIONS is None:
+        pytest.fail("there are no worked solutions to look for")
+    downloads = prose(notebook(name)) + script(name)
+    chapter = SOURCES[name].read_text("utf8")
+    assert "{solution" not in chapter and "Solution to Exercise" not in downloads
+    assert "solution-start" not in chapter
+    solutions = nbformat.read(SOLUTIONS, as_version=4)
+    answers = [c.source for c in solutions.cells if c.cell_type == "code"]
+    inside = {c.source for c in notebook(name).cells if c.cell_type == "code"}
+    long_lines = {
+        line.strip()
+        for answer in answers
+        for line in answer.splitlines()
+        if len(line) > 30 and "import" not in line and "symbols" not in line
+    }
+    chapter_lines = {line.strip() for code in inside for line in code.splitlines()}
+    assert not long_lines & chapter_lines

@@ -1,0 +1,197 @@
+"""The build refuses a faulty book: tiny books, each with one fault."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+
+import nbformat
+import pytest
+import yaml
+from conftest import REPOSITORY
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from website.alternative_text import says_something
+from website.notebooks import normalise
+from website.paths import fingerprint
+from website.serve import Handler
+
+FIGURE = '''
+class Figure:
+    def __repr__(self):
+        return "a figure"
+    def _repr_html_(self):
+        return """<figure><svg viewBox="0 0 9 9" {}><path d="M0 0h9"/></svg></figure>"""
+Figure()'''
+GOOD_FIGURE = FIGURE.format('role="img" aria-label="A line from left to right along the top"')
+PLOT = """
+import matplotlib.pyplot as plt
+plt.plot([1, 2])
+plt.show()"""
+
+GOOD_TEXT = r"""
+(chapter-one)=
+# A chapter
+
+:::{admonition} Learning objectives
+:class: objectives
+- Know ${}^A\mathbf{C}^N$.
+:::
+
+```{math}
+:label: eq-first
+{}^A\mathbf{C}^N = \begin{bmatrix} \cos\theta & \sin\theta \\ -\sin\theta & \cos\theta \end{bmatrix}
+```
+
+See {eq}`eq-first`, {numref}`fig-line`, {ref}`exercise-one` and {ref}`chapter-one`.
+
+$$ a = b $$ (eq-second)
+
+| a | b |
+|---|---|
+| $|x|$ | `code` |
+
+1. first
+   - nested *point*
+
+> Quoted
+
+```{exercise} Try
+:label: exercise-one
+
+Do it.
+```
+"""
+
+
+def build(folder, cells):
+    """Build a book of one chapter with the real settings; return the exit code and the words."""
+    settings = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
+    settings["sphinx"]["local_extensions"] = {"website": str(REPOSITORY / "src")}
+    settings["html"].pop("favicon")
+    settings.pop("bibtex_bibfiles")
+    for key in list(settings["sphinx"]["config"]):
+        if key.startswith("bibtex"):
+            settings["sphinx"]["config"].pop(key)
+    (folder / "_config.yml").write_text(json.dumps(settings))
+    contents = {
+        "format": "jb-book",
+        "root": "index",
+        "parts": [{"caption": "Part", "numbered": True, "chapters": [{"file": "chapter"}]}],
+    }
+    (folder / "_toc.yml").write_text(json.dumps(contents))
+    (folder / "index.md").write_text("# Front\n\nWords.\n")
+    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    nbformat.write(new_notebook(cells=cells, metadata=kernel), folder / "chapter.ipynb")
+    jupyter_book = Path(sys.executable).with_name("jupyter-book")
+    done = subprocess.run(
+        [jupyter_book, "build", folder, "-W", "-n", "--keep-going"], capture_output=True, text=True
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def chapter(text=GOOD_TEXT, code=GOOD_FIGURE, metadata=None):
+    figure = {"figure": {"name": "fig-line", "caption": "A *line*, as in {eq}`eq-second`."}}
+    cell = new_code_cell(code.strip(), metadata={"mystnb": figure | (metadata or {})})
+    return [new_markdown_cell(text), cell]
+
+
+def test_good_book(tmp_path):
+    code, words = build(tmp_path, chapter())
+    assert code == 0, words
+    html = (tmp_path / "_build/html/chapter.html").read_text("utf8")
+    assert "Figure 1.1" in html and "(1.1)" in html and "Exercise 1.1" in html
+    assert 'class="katex"' in html and "<math" in html
+    assert "mathjax@" not in html.lower() and "thebe" not in html.lower()
+    markdown = nbformat.read(tmp_path / "_build/html/take-away/chapter.ipynb", as_version=4)
+    text = "\n\n".join(cell.source for cell in markdown.cells if cell.cell_type == "markdown")
+    for expected in (
+        "# 1. A chapter",
+        "> **Learning objectives**\n>\n> - Know ${}^A\\mathbf{C}^N$.",
+        "\\end{bmatrix} \\tag{1.1}\n$$",
+        "See (1.1), Figure 1.1, Exercise 1.1 and A chapter.",
+        "$$\na = b \\tag{1.2}\n$$",
+        "| a | b |\n| --- | --- |\n| $\\vert x\\vert $ | `code` |",
+        "1. first\n\n   - nested *point*",
+        "> Quoted",
+        "> **Exercise 1.1 (Try)**\n>\n> Do it.",
+        "**Figure 1.1.** A *line*, as in (1.2).",
+    ):
+        assert expected in text, text
+
+
+@pytest.mark.parametrize(
+    "cells, expected",
+    [
+        pytest.param(chapter(code="1 / 0"), "ZeroDivisionError", id="a cell fails"),
+        pytest.param(
+            chapter(code="import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE), "stderr", id="a cell warns"
+        ),
+        pytest.param(
+            chapter(GOOD_TEXT + "\nSee {numref}`fig-nowhere`.\n"), "fig-nowhere", id="a figure is not there"
+        ),
+        pytest.param(chapter(GOOD_TEXT + "\nSee {eq}`eq-nowhere`.\n"), "eq-nowhere", id="an equation is not there"),
+        pytest.param(chapter(GOOD_TEXT + "\nSee {ref}`nowhere`.\n"), "nowhere", id="a section is not there"),
+        pytest.param(chapter(GOOD_TEXT + "\nSee [it](#nowhere).\n"), "nowhere", id="a link leads nowhere"),
+        pytest.param(chapter(GOOD_TEXT + "\nA {term}`thing`.\n"), "thing", id="a term is not in the glossary"),
+        pytest.param(
+            chapter(GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here")),
+            "chapter.ipynb:26 (cell 1): WARNING: bad TeX",
+            id="inline TeX is wrong",
+        ),
+        pytest.param(
+            chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")), "Undefined control sequence", id="TeX is unknown"
+        ),
+        pytest.param(chapter(code=FIGURE.format("")), "no alternative text", id="a figure says nothing"),
+        pytest.param(
+            chapter(code=FIGURE.format('role="img" aria-label="figure"')), "found 'figure'", id="it says too little"
+        ),
+        pytest.param(chapter(code=PLOT), "no alternative text", id="a plot says nothing"),
+    ],
+)
+def test_faulty_book(tmp_path, cells, expected):
+    code, words = build(tmp_path, cells)
+    assert code != 0, words
+    assert expected in words.replace("\n", " "), words
+
+
+def test_plot_with_alternative_text(tmp_path):
+    alt = {"image": {"alt": "A straight line that rises from one to two."}}
+    code, words = build(tmp_path, chapter(code=PLOT, metadata=alt))
+    assert code == 0, words
+    assert alt["image"]["alt"] in (tmp_path / "_build/html/chapter.html").read_text("utf8")
+
+
+def test_alternative_text_needs_words():
+    assert not any(map(says_something, (None, "", "figure", "plot.png", "a b c")))
+    assert says_something("Frame A turned about z")
+
+
+def test_fingerprint_follows_every_file(tmp_path):
+    (tmp_path / "inner").mkdir()
+    file = tmp_path / "inner" / "module.py"
+    file.write_text("a = 1")
+    before = fingerprint(tmp_path)
+    assert fingerprint(tmp_path) == before
+    file.write_text("a = 2")
+    changed = fingerprint(tmp_path)
+    assert changed != before
+    file.rename(tmp_path / "inner" / "other.py")
+    assert fingerprint(tmp_path) not in (before, changed)
+
+
+def test_modules_are_served_as_javascript():
+    assert Handler.extensions_map[".mjs"] == "text/javascript"
+
+
+NOTEBOOKS = [path for part in ("chapters", "appendix") for path in sorted((REPOSITORY / part).glob("*.ipynb"))]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebook_is_stored_as_make_notebooks_stores_it(path):
+    """Run in order, every cell, with normal metadata: else nbval would compare nothing."""
+    notebook = nbformat.read(path, as_version=4)
+    counts = [cell.execution_count for cell in notebook.cells if cell.cell_type == "code"]
+    assert counts == list(range(1, len(counts) + 1)), "run `make notebooks`"
+    stored = dedent(path.read_text("utf8"))
+    assert nbformat.writes(normalise(notebook)) == stored.rstrip("\n"), "run `make notebooks`"
