@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from copy import deepcopy
 from functools import cache
 
 import nbformat
@@ -71,7 +72,10 @@ def test_the_wheel_holds_the_package_and_no_more():
 @pytest.mark.parametrize("name", SOURCES)
 def test_notebook_runs(name, tmp_path):
     client = NotebookClient(
-        notebook(name).copy(), timeout=120, kernel_name="python3", resources={"metadata": {"path": tmp_path}}
+        deepcopy(notebook(name)),  # running it adds outputs
+        timeout=120,
+        kernel_name="python3",
+        resources={"metadata": {"path": tmp_path}},
     )
     client.execute(env=environment())
 

@@ -49,7 +49,7 @@ $$ a = b $$ (eq-second)
 
 | a | b |
 |---|---|
-| $|x|$ | `code` |
+| $x^2$ | `code` |
 
 1. first
    - nested *point*
@@ -111,7 +111,7 @@ def test_good_book(tmp_path):
         "\\end{bmatrix} \\tag{1.1}\n$$",
         "See (1.1), Figure 1.1, Exercise 1.1 and A chapter.",
         "$$\na = b \\tag{1.2}\n$$",
-        "| a | b |\n| --- | --- |\n| $\\vert x\\vert $ | `code` |",
+        "| a | b |\n| --- | --- |\n| $x^2$ | `code` |",
         "1. first\n\n   - nested *point*",
         "> Quoted",
         "> **Exercise 1.1 (Try)**\n>\n> Do it.",

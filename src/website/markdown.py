@@ -5,7 +5,6 @@ that a reference is simply its text: "Figure 2.1", "Exercise 2.1", "Moore".
 Only markup that every Markdown reader knows comes out.
 """
 
-import re
 from textwrap import indent
 
 from docutils import nodes
@@ -137,9 +136,7 @@ class MarkdownWriter:
         return "\n\n".join([*titles, "\n".join(rows)])
 
     def cell_text(self, entry):
-        # Inside mathematics a bar would end the cell: \vert is the same sign.
-        text = self.blocks(entry.children).replace("\n", " ")
-        return re.sub(r"\$[^$]*\$", lambda m: m[0].replace("|", r"\vert "), text)
+        return self.blocks(entry.children).replace("\n", " ").replace("|", "\\|")
 
     def figure(self, node, level):
         parts = []
