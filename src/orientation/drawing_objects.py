@@ -148,7 +148,7 @@ def gimbal_drawing(angles, alt=GIMBAL_ALT):
                                         ('C', C, (-0.9, 0.58, 0), (4, 22)), ('D', D, (0, 0, 0.27), (0, -18))):
         drawing.label(place(frame, point)[0], f'${letter}$', letter, shift, 22)
     for row, (letter, frame) in enumerate(zip('DCBA', (D, C, B, A))):
-        drawing.triad(letter, frame, 2.55 * drawing.view[0] + (0.85 - 1.06 * row) * drawing.view[1], 0.46)
+        drawing.triad(letter, frame, 2.55 * drawing.view[0] + (1 - 1.2 * row) * drawing.view[1], 0.46)
     return drawing
 
 
