@@ -12,9 +12,10 @@ import nbformat
 import pytest
 from conftest import HTML, REPOSITORY
 from nbclient import NotebookClient
+from website.notebooks import all_notebooks
 
 FOLDER = HTML / "take-away"
-SOURCES = {path.stem: path for part in ("chapters", "appendix") for path in sorted((REPOSITORY / part).glob("*.ipynb"))}
+SOURCES = {path.stem: path for path in all_notebooks(REPOSITORY)}
 CHAPTERS = [name for name, path in SOURCES.items() if path.parent.name == "chapters"]
 SOLUTIONS = SOURCES.get("solutions")
 # Signs of MyST that plain Markdown does not know.

@@ -12,7 +12,7 @@ import yaml
 from conftest import REPOSITORY
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from website.alternative_text import says_something
-from website.notebooks import normalise
+from website.notebooks import all_notebooks, normalise
 from website.paths import fingerprint
 from website.serve import Handler
 
@@ -184,10 +184,7 @@ def test_modules_are_served_as_javascript():
     assert Handler.extensions_map[".mjs"] == "text/javascript"
 
 
-NOTEBOOKS = [path for part in ("chapters", "appendix") for path in sorted((REPOSITORY / part).glob("*.ipynb"))]
-
-
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", all_notebooks(REPOSITORY), ids=lambda path: path.stem)
 def test_notebook_is_stored_as_make_notebooks_stores_it(path):
     """Run in order, every cell, with normal metadata: else nbval would compare nothing."""
     notebook = nbformat.read(path, as_version=4)

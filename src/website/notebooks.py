@@ -1,4 +1,4 @@
-"""``python -m website.notebooks``: run every notebook and store it with its outputs.
+"""``python -m website.notebooks [paths]``: run every notebook and store it with its outputs.
 
 This is how notebooks are committed: run from a clean kernel from the first
 cell to the last, and free of what differs from one machine or day to another.
@@ -12,12 +12,17 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
-FOLDERS = ("chapters", "appendix")
+PLACES = ("*.ipynb", "chapters/*.ipynb", "appendix/*.ipynb")
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
     "language_info": {"name": "python"},
 }
 KEPT_IN_CELLS = ("tags", "mystnb")
+
+
+def all_notebooks(book):
+    """The book's notebooks, in the folder ``book``."""
+    return sorted(path for place in PLACES for path in book.glob(place))
 
 
 def normalise(notebook):
@@ -50,8 +55,7 @@ def run(path):
 
 
 def main():
-    paths = [Path(name) for name in sys.argv[1:]]
-    paths = paths or sorted(path for folder in FOLDERS for path in Path(folder).glob("*.ipynb"))
+    paths = [Path(name) for name in sys.argv[1:]] or all_notebooks(Path())
     with ThreadPoolExecutor(max_workers=2) as pool:  # each has a kernel of its own
         faults = [fault for fault in pool.map(run, paths) if fault]
     sys.exit("\n".join(faults) or 0)
