@@ -231,4 +231,6 @@ def _symbol_functions():
     import sympy
     return SimpleNamespace(
         sin=sympy.sin, cos=sympy.cos,
+        # Symbols take the general branch; an exact number may decide for the special one.
+        where=lambda condition, yes, no: no if condition == False else yes,  # noqa: E712
         norm=lambda *components: sympy.sqrt(sum(entry**2 for entry in components)))

@@ -22,7 +22,7 @@ def _layout(sequence):
 _LAYOUTS = {sequence: _layout(sequence) for sequence in SEQUENCES}
 
 
-def _layout_of(sequence):
+def layout_of(sequence):
     try:
         return _LAYOUTS[sequence]
     except (KeyError, TypeError):
@@ -79,7 +79,7 @@ def dcm_from_body_fixed(angles, sequence):
     The three turns are multiplied out once, for axes in cyclic order; the other order only changes
     the sign of the angles. Source: Shuster (1993), Diebel (2006).
     """
-    i, j, k, sign = _layout_of(sequence)
+    i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
     def formula(f, psi, theta, phi):
@@ -141,7 +141,7 @@ def body_fixed_from_dcm(dcm, sequence):
     >>> body_fixed_from_dcm(dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'), 'zxy').round(12).tolist()
     [0.1, 0.2, 0.3]
     """
-    i, j, k, sign = _layout_of(sequence)
+    i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
     def formula(f, *entries):
@@ -186,7 +186,7 @@ def dcm_from_space_fixed(angles, sequence):
     ...                  dcm_from_body_fixed((0.3, 0.2, 0.1), 'yxz'))
     True
     """
-    _layout_of(sequence)
+    layout_of(sequence)
     return dcm_from_body_fixed(_reversed(angles), sequence[::-1])
 
 
@@ -199,7 +199,7 @@ def space_fixed_from_dcm(dcm, sequence):
     >>> space_fixed_from_dcm(dcm_from_space_fixed((0.1, 0.2, 0.3), 'xyz'), 'xyz').round(12).tolist()
     [0.1, 0.2, 0.3]
     """
-    _layout_of(sequence)
+    layout_of(sequence)
     return body_fixed_from_dcm(dcm, sequence[::-1])[..., ::-1]
 
 
@@ -227,7 +227,7 @@ def gimbal_lock_margin(angles, sequence):
     >>> gimbal_lock_margin((0.3, math.pi / 2 - 0.01, 0.1), 'zxy').__round__(12)
     0.01
     """
-    _layout_of(sequence)
+    layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
     def formula(f, psi, theta, phi):

@@ -1,6 +1,6 @@
 """Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
 
-from ._kinds import evaluate
+from ._kinds import TOLERANCE, evaluate
 from .direction_cosines import DCM_GUARD
 
 
@@ -8,7 +8,7 @@ def _length_excess(f, scalar, x, y, z):
     return abs(scalar * scalar + x * x + y * y + z * z - 1)
 
 
-def _explain_length(components, where):
+def _explain_length(components, where, name='quaternion'):
     length = sum(entry * entry for entry in components) ** 0.5
     if length == 0:
         cause = 'the zero quaternion is no orientation'
@@ -17,7 +17,7 @@ def _explain_length(components, where):
     else:
         cause = ('is the angle halved in the cosine and in the sine, and the axis a unit vector? '
                  'Divide by the length only if you know where it comes from')
-    raise ValueError(f'quaternion{where} has length {length:.10g}, not 1: {cause}')
+    raise ValueError(f'{name}{where} has length {length:.10g}, not 1: {cause}')
 
 
 QUATERNION_GUARD = (4, _length_excess, _explain_length)
@@ -149,3 +149,74 @@ def multiply_quaternions(first, second):
                 a * h - b * k + c * e + d * g, a * k + b * h - c * g + d * e)
 
     return evaluate(formula, (4,), ('first', first, (4,)), ('second', second, (4,)))
+
+
+def interpolate_quaternions(first, second, share):
+    r"""Unit quaternion part of the way from one orientation to another, at constant speed (slerp).
+
+    With the angle :math:`\Omega` between :math:`q_1` and :math:`q_2`, taken the shorter way round,
+
+    .. math::
+
+       q(s) = \frac{\sin((1 - s)\,\Omega)\,q_1 + \sin(s\,\Omega)\,q_2}{\sin\Omega} .
+
+    Parameters
+    ----------
+    first, second : floats or arrays of shape ``(4,)`` or ``(..., 4)``
+        Unit quaternions, scalar first. Numbers only: which way is shorter depends on them.
+    share : float or array of shape ``(...)``
+        0 gives the first orientation, 1 the second.
+
+    Returns
+    -------
+    array of shape ``(4,)`` or ``(..., 4)``
+        At 1 it is ``second`` or its negative, which is the same orientation.
+
+    Raises
+    ------
+    ValueError
+        If a quaternion is not of unit length, or the two are half a turn apart, where both ways
+        round are equally long.
+    SymbolsNotPossible
+        If symbols are given.
+
+    Examples
+    --------
+    >>> from orientation import interpolate_quaternions
+    >>> interpolate_quaternions((1, 0, 0, 0), (0.6, 0.8, 0, 0), 0.5).round(12).tolist()
+    [0.894427191, 0.4472135955, 0.0, 0.0]
+
+    Notes
+    -----
+    Source: Shoemake (1985).
+    """
+    def excess(f, *components):
+        return f.largest(_length_excess(f, *components[:4]), _length_excess(f, *components[4:8]),
+                         f.where(abs(_dot(components[:4], components[4:8])) > 1e-12, 0, 1))
+
+    def explain(components, where):
+        for name, part in (('first', components[:4]), ('second', components[4:8])):
+            if _length_excess(None, *part) > TOLERANCE:
+                _explain_length(part, where, name)
+        raise ValueError(f'the orientations{where} are half a turn apart: both ways round are equally '
+                         f'long, so there is no shorter one to follow. Go by way of a third orientation')
+
+    def formula(f, a, b, c, d, e, g, h, k, share):
+        dot = _dot((a, b, c, d), (e, g, h, k))
+        sign = f.where(dot < 0, -1.0, 1.0)
+        e, g, h, k = sign * e, sign * g, sign * h, sign * k
+        # Half the sum and half the difference give the angle without the loss of an inverse cosine.
+        angle = 2 * f.atan2(f.norm(e - a, g - b, h - c, k - d), f.norm(e + a, g + b, h + c, k + d))
+        sine = f.sin(angle)
+        small = sine < 1e-8
+        safe = f.where(small, 1.0, sine)
+        near = f.where(small, 1 - share, f.sin((1 - share) * angle) / safe)
+        far = f.where(small, share, f.sin(share * angle) / safe)
+        return near * a + far * e, near * b + far * g, near * c + far * h, near * d + far * k
+
+    return evaluate(formula, (4,), ('first', first, (4,)), ('second', second, (4,)), ('share', share, ()),
+                    guard=(8, excess, explain), symbols=False)
+
+
+def _dot(first, second):
+    return sum(one * other for one, other in zip(first, second))

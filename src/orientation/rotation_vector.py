@@ -1,0 +1,92 @@
+"""Rotation vectors: the exponential and the logarithm of rotations."""
+
+from ._kinds import evaluate
+from .direction_cosines import DCM_GUARD
+from .quaternions import quaternion_components_from_dcm
+
+
+def dcm_from_rotation_vector(vector):
+    r"""Direction cosine matrix of a rotation vector: the exponential.
+
+    The rotation vector :math:`\mathbf{r} = \theta\,\hat{e}` points along the axis and is as long as the
+    angle. With :math:`\theta = |\mathbf{r}|`,
+
+    .. math::
+
+       {}^A\mathbf{C}^N = \exp\left(-[\mathbf{r}]_\times\right)
+       = \mathbf{I} - \frac{\sin\theta}{\theta}[\mathbf{r}]_\times
+       + \frac{1 - \cos\theta}{\theta^2}[\mathbf{r}]_\times^2 .
+
+    Parameters
+    ----------
+    vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
+        Radians. The zero vector is no turn at all.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong or a number is not finite.
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_rotation_vector, same_orientation, simple_dcm
+    >>> same_orientation(dcm_from_rotation_vector((0, 0.3, 0)), simple_dcm('y', 0.3))
+    True
+
+    Notes
+    -----
+    Source: Shuster (1993).
+    """
+    def formula(f, x, y, z):
+        angle = f.norm(x, y, z)
+        length = f.where(angle > 0, angle, 1.0)
+        half = f.sin(angle / 2) / length
+        first = f.where(angle > 0, f.sin(angle) / length, 1.0)
+        # (1 - cos) / angle^2 as a square of sines: no digits are lost when the angle is small.
+        second, cosine = 2 * half**2, f.cos(angle)
+        xy, xz, yz = second * x * y, second * x * z, second * y * z
+        return (cosine + second * x * x, xy + first * z, xz - first * y,
+                xy - first * z, cosine + second * y * y, yz + first * x,
+                xz + first * y, yz - first * x, cosine + second * z * z)
+
+    return evaluate(formula, (3, 3), ('vector', vector, (3,)))
+
+
+def rotation_vector_from_dcm(dcm):
+    r"""Rotation vector of a direction cosine matrix: the logarithm.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`. Numbers only.
+
+    Returns
+    -------
+    array of shape ``(3,)`` or ``(..., 3)``
+        :math:`\theta\,\hat{e}` with :math:`\theta` from 0 to :math:`\pi`, radians.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not a direction cosine matrix.
+    SymbolsNotPossible
+        If the matrix holds symbols.
+
+    Examples
+    --------
+    >>> from orientation import rotation_vector_from_dcm, simple_dcm
+    >>> rotation_vector_from_dcm(simple_dcm('z', -0.3)).round(12).tolist()
+    [0.0, 0.0, -0.3]
+    """
+    def formula(f, *entries):
+        scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
+        sine = f.norm(x, y, z)
+        # Both limits are right at rest: twice the vector part.
+        share = f.where(sine > 0, 2 * f.atan2(sine, scalar) / f.where(sine > 0, sine, 1.0), 2.0)
+        return share * x, share * y, share * z
+
+    return evaluate(formula, (3,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
