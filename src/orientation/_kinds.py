@@ -11,6 +11,7 @@ so symbols work where there is no NumPy.
 
 import functools
 import math
+import numbers
 from types import SimpleNamespace
 
 #: Largest departure from orthogonality, or from unit length, that still counts as rounding.
@@ -22,6 +23,10 @@ BLOCK = 8192
 
 class SymbolsNotPossible(TypeError):
     """A conversion that must compare sizes to choose its branch was given symbols."""
+
+
+class WrongShape(ValueError):
+    """Something has a shape that a function cannot take."""
 
 
 def is_symbolic(value):
@@ -110,7 +115,8 @@ def _evaluate_batch(formula, shape, arrays, arguments, guard):
                       for column in numpy.ascontiguousarray(array[start:start + BLOCK].T)]
         if guard:
             count, excess, explain = guard
-            size = excess(functions, *components[:count])
+            with numpy.errstate(over='ignore', invalid='ignore'):  # told below, as an error
+                size = excess(functions, *components[:count])
             if not numpy.all(size <= TOLERANCE):
                 worst = int(numpy.argmax(size))
                 index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
@@ -135,16 +141,21 @@ def number_array(value, item, name):
         raise ValueError(f'{name} is a sequence of {len(value)} arrays, which can be read in two ways: '
                          f'join separate components with numpy.stack(..., axis=-1), '
                          f'or a list of items with numpy.stack(...)')
+    if hasattr(value, 'filled'):  # a masked array: what is masked is missing
+        value = value.astype(float).filled(numpy.nan)
     try:
         array = numpy.asarray(value)
+        if array.dtype == object and all(isinstance(entry, numbers.Real) and not isinstance(entry, bool)
+                                         for entry in array.flat):
+            array = array.astype(float)  # fractions, integers of any size
         if array.dtype.kind not in 'iuf':
             raise ValueError
-    except ValueError:
+    except (ValueError, OverflowError):
         raise TypeError(f'{name} must hold real numbers or SymPy expressions in a regular shape, '
                         f'not {value!r}') from None
     array = array.astype(float, copy=False)
     if array.ndim < len(item) or array.shape[array.ndim - len(item):] != item:
-        raise ValueError(_shape_message(name, array.shape, item))
+        raise WrongShape(_shape_message(name, array.shape, item))
     finite = numpy.isfinite(array)
     if not finite.all():
         index = tuple(int(k) for k in numpy.argwhere(~finite)[0])
@@ -171,6 +182,9 @@ def _floats(value, name):
 def symbol_components(value, item, name):
     """Return the SymPy components of one item of the given shape."""
     import sympy
+    if hasattr(value, 'to_matrix'):
+        raise TypeError(f'{name} is the vector {value}: give its components along one frame, which its '
+                        f'method to_matrix finds')
     shape = getattr(value, 'shape', None)
     if shape is None and isinstance(value, (list, tuple)):
         nested = [list(row) if isinstance(row, (list, tuple)) or hasattr(row, 'shape') else row
@@ -185,11 +199,17 @@ def symbol_components(value, item, name):
     else:
         shape, value = (), [value]
     if tuple(shape) != item:
-        raise ValueError(_shape_message(name, tuple(shape), item)
+        raise WrongShape(_shape_message(name, tuple(shape), item)
                          + ' (SymPy expressions come one item at a time)')
-    components = [sympy.sympify(entry) for entry in value]
+    try:
+        components = [sympy.sympify(entry, strict=True) for entry in value]
+    except sympy.SympifyError as error:
+        raise TypeError(f'{name} holds {error.expr!r}, which is neither a number nor a SymPy '
+                        f'expression') from None
     for position, entry in enumerate(components):
-        if entry.has(sympy.nan, sympy.zoo, sympy.oo):
+        if not isinstance(entry, sympy.Expr):
+            raise TypeError(f'{name} holds {entry}, which is neither a number nor a SymPy expression')
+        if entry.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
             raise ValueError(f'{name} holds {entry} (entry {position}): a division by zero happened before')
     return components
 
@@ -204,7 +224,6 @@ def _shape_message(name, shape, item):
 
 def _pick_number(scores, rows):
     return rows[scores.index(max(scores))]
-
 
 
 NUMBERS = SimpleNamespace(

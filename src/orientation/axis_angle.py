@@ -5,16 +5,22 @@ from .direction_cosines import DCM_GUARD
 from .quaternions import quaternion_components_from_dcm
 
 
+#: Shortest axis whose direction can be computed; the longest is its inverse.
+SHORTEST = 1e-150
+
+
 def _length_missing(f, x, y, z):
     # 1 where no direction can be computed, 0 elsewhere: compared with the tolerance like any excess.
     length = f.norm(x, y, z)
-    return f.where((length > 0) & (length < 1e150), 0, 1)
+    # Beyond the limits the square of the length is no longer a number with all its digits.
+    return f.where((length > SHORTEST) & (length < 1 / SHORTEST), 0, 1)
 
 
 def _explain_zero(components, where):
-    if max(map(abs, components)) > 1:
-        raise ValueError(f'axis{where} is {tuple(components)}: too long to compute with; divide it by its '
-                         f'length')
+    largest = max(map(abs, components))
+    if largest:
+        raise ValueError(f'axis{where} is {tuple(components)}: too {"long" if largest > 1 else "short"} to '
+                         f'compute with; divide it by its largest component')
     raise ValueError(f'axis{where} is {tuple(components)}: a zero vector points nowhere, so there is '
                      f'nothing to turn about. Was a difference of equal vectors taken?')
 

@@ -1,7 +1,8 @@
 """Deciding whether two orientations are the same, and naming the mix-up when they are not.
 
 Everything is decided by numbers, at random values of the symbols: an algebraic simplification can
-take seconds, or not come back at all.
+take seconds, or not come back at all. Like the conversions, this works on components, so symbols need
+no NumPy.
 """
 
 import itertools
@@ -9,67 +10,90 @@ import math
 import random
 from typing import NamedTuple
 
-from ._kinds import TOLERANCE, is_symbolic
+from ._kinds import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, symbol_components
 from .direction_cosines import demand_dcm
-from .euler_angles import SEQUENCES, dcm_from_body_fixed, dcm_from_space_fixed
-from .quaternions import multiply_quaternions
+from .euler_angles import SEQUENCES, body_fixed_formula
+from .quaternions import demand_unit_length, product_components
 
-#: Random values that each symbol is given.
+#: Random values that each symbol is given: one from each quadrant.
 POINTS = 4
 
 
-def _unknowns(values):
-    """Symbols and functions of time in the values, grouped by name."""
-    import sympy
-    from sympy.core.function import AppliedUndef
+def _read(value, name):
+    """Components of a matrix or a quaternion: SymPy expressions, floats, or the columns of a batch."""
+    for item in ((3, 3), (4,)):
+        try:
+            if is_symbolic(value):
+                return symbol_components(value, item, name)
+            array = number_array(value, item, name)
+        except WrongShape:
+            continue
+        flat = array.reshape(*array.shape[:array.ndim - len(item)], math.prod(item))
+        return flat.tolist() if flat.ndim == 1 else [flat[..., k] for k in range(math.prod(item))]
+    raise ValueError(f'{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of '
+                     f'shape (4,)')
+
+
+def _read_both(first, second, *names):
+    first, second = _read(first, names[0]), _read(second, names[1])
+    if len(first) != len(second):
+        kinds = {9: 'a direction cosine matrix', 4: 'a quaternion'}
+        raise ValueError(f'{names[0]} is {kinds[len(first)]} and {names[1]} is {kinds[len(second)]}: '
+                         f'convert one of them')
+    return first, second
+
+
+def _unknowns(components):
+    """Symbols and functions of time in the components, grouped by name."""
     names = {}
-    for value in values:
-        expression = value if hasattr(value, 'atoms') else sympy.Matrix(value)
+    for expression in filter(is_symbolic, components):
+        import sympy
+        from sympy.core.function import AppliedUndef
         functions = expression.atoms(AppliedUndef)
-        hidden = set().union(*(function.free_symbols for function in functions))
-        for atom in functions | (expression.free_symbols - hidden):
+        # The time inside theta(t) is no unknown of its own, unless it stands outside as well.
+        rest = expression.xreplace({function: sympy.Dummy('function') for function in functions})
+        for atom in functions | (rest.free_symbols & expression.free_symbols):
             names.setdefault(getattr(atom, 'name', None) or atom.func.__name__, set()).add(atom)
     return dict(sorted(names.items()))
 
 
 def _draw(names):
     """Values for every name: a dictionary for each point, the same ones on every call."""
+    if not names:
+        return [{}]
     source = random.Random(20)
-    return [{name: source.uniform(0.2, 1.3) * source.choice((1, -1)) for name in names}
-            for _ in range(POINTS)]
+    points = [{} for _ in range(POINTS)]
+    for name in names:
+        # All four quadrants, so that the root of a square is not taken for the cosine itself; and
+        # two turns, so that it is not taken for the cosine of half the angle either.
+        for point, quadrant in zip(points, source.sample(range(4), POINTS)):
+            point[name] = (quadrant + source.uniform(0.1, 0.9)) * math.pi / 2 - math.tau * source.randrange(2)
+    return points
 
 
-def _put_in(value, names, points):
-    """Complex array of shape ``(points, ...)`` of a value at the points."""
-    import numpy
+def _put_in(components, names, point):
+    """Numbers for the components, with the values of one point for their symbols."""
+    if not any(map(is_symbolic, components)):
+        return components
     import sympy
-    if not is_symbolic(value):
-        array = numpy.asarray(value, dtype=complex)
-        return numpy.broadcast_to(array, (len(points), *array.shape))
-    matrix = value if hasattr(value, 'shape') else sympy.Matrix(value)
-    shape = matrix.shape if 1 not in matrix.shape else (len(matrix),)
-    results = []
-    for point in points:
-        numbers = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
-        results.append([complex(sympy.sympify(entry).xreplace(numbers).evalf()) for entry in matrix])
-    return numpy.array(results).reshape(len(points), *shape)
+    values = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
+    return [complex(entry.xreplace(values).evalf()) if is_symbolic(entry) else entry for entry in components]
 
 
-def values_at_random_points(*values):
-    """Complex arrays of shape ``(points, ...)``: the values where their symbols are random numbers."""
-    names = _unknowns([value for value in values if is_symbolic(value)])
-    points = _draw(names)
-    return [_put_in(value, names, points) for value in values]
+def at_random_points(*components):
+    """For each random choice of the symbols' values, a tuple of the lists of components as numbers."""
+    names = _unknowns([entry for entries in components for entry in entries])
+    for point in _draw(names):
+        yield tuple(_put_in(entries, names, point) for entries in components)
 
 
-def _close(first, second, tolerance=TOLERANCE):
-    return bool(abs(first - second).max() <= tolerance)
-
-
-def _up_to_sign(first, second, tolerance=TOLERANCE):
-    """Quaternions: the sign of each one is free."""
-    sign = ((first * second.conj()).sum(axis=-1).real >= 0) * 2 - 1
-    return _close(first, sign[..., None] * second, tolerance)
+def _match(first, second, tolerance=TOLERANCE):
+    """Whether numbers, or columns of a batch, are equal; quaternions: up to their signs."""
+    if len(first) == 4:
+        sign = (sum((a * b.conjugate()).real for a, b in zip(first, second)) >= 0) * 2 - 1
+        second = [sign * entry for entry in second]
+    equal = [abs(a - b) <= tolerance for a, b in zip(first, second)]
+    return all(entry if isinstance(entry, bool) else entry.all() for entry in equal)
 
 
 def same_orientation(first, second, tolerance=TOLERANCE):
@@ -101,17 +125,11 @@ def same_orientation(first, second, tolerance=TOLERANCE):
     >>> same_orientation(simple_dcm('z', a) * simple_dcm('z', b), simple_dcm('z', a + b))
     True
     """
-    first, second = values_at_random_points(first, second)
-    return _comparison_for(first, second)(first, second, tolerance)
-
-
-def _comparison_for(first, second):
-    if first.shape[-2:] == second.shape[-2:] == (3, 3):
-        return _close
-    if first.shape[-1] == second.shape[-1] == 4 and first.shape[-2:] != (3, 3):
-        return _up_to_sign
-    raise ValueError(f'shapes {first.shape[1:]} and {second.shape[1:]} cannot be compared: give two '
-                     f'direction cosine matrices (3, 3), or two quaternions (4,)')
+    first, second = _read_both(first, second, 'first', 'second')
+    shapes = [getattr(entries[0], 'shape', ()) for entries in (first, second)]
+    if () not in shapes and shapes[0] != shapes[1]:
+        raise ValueError(f'batches of shapes {shapes[0]} and {shapes[1]} cannot be compared')
+    return all(_match(*values, tolerance) for values in at_random_points(first, second))
 
 
 class Diagnosis(NamedTuple):
@@ -161,110 +179,130 @@ def diagnose(given, expected, angles=None, sequence=None):
     >>> diagnose(dcm_from_space_fixed(angles, 'zxy'), expected).causes
     ('the matrices are multiplied in the other order, which is space fixed',)
     """
-    names = _unknowns([value for value in (given, expected, angles) if is_symbolic(value)])
+    given, expected = _read_both(given, expected, 'given', 'expected')
+    if any(getattr(entry, 'ndim', 0) for entry in given + expected):
+        raise ValueError('diagnose looks at one answer at a time, not at a batch')
+    if (angles is None) != (sequence is None):
+        raise ValueError('angles and sequence belong together: give both, or neither')
+    if angles is not None:
+        angles = (symbol_components(angles, (3,), 'angles') if is_symbolic(angles)
+                  else number_array(angles, (3,), 'angles').tolist())
+    names = _unknowns(given + expected + (angles or []))
     points = _draw(names)
-    given_values, expected_values = (_put_in(value, names, points) for value in (given, expected))
-    matches = _comparison_for(given_values, expected_values)
-    if matches(given_values, expected_values):
+    answers, truths = ([_put_in(entries, names, point) for point in points] for entries in (given, expected))
+    turns = _turns(expected, truths, names, points, angles, sequence)
+    if all(map(_match, answers, truths)):
         return Diagnosis(True, ())
-    if matches is _close:
-        # A reflection cannot come from a turn, so its faults are told first and alone.
-        candidates = itertools.chain(
-            [('it is the transpose, the orientation the other way round', expected_values.swapaxes(1, 2))],
-            _substitution_mixups(expected, names, points),
-            _sequence_mixups(expected_values, names, points, angles, sequence))
-        fault = _matrix_fault(given_values)
-    else:
-        candidates = _quaternion_mixups(expected_values)
-        fault = _quaternion_fault(given_values)
-    if fault:
+    # A matrix that is no orientation cannot come from a turn: its fault is told alone. Symbols that
+    # obey a condition, as a quaternion's four do, miss it at random values: then nothing can be told.
+    fault = _fault(answers)
+    if fault and not _fault(truths):
         return Diagnosis(False, (fault,))
-    causes = [cause for cause, values in candidates if matches(given_values, values)]
+    mixups = itertools.chain(
+        _transpositions(truths) if len(given) == 9 else _quaternion_mixups(truths),
+        _substitutions(expected, names, points),
+        _sequence_mixups(*turns, given=angles is not None, symbols=bool(names)))
+    causes = [cause for cause, values in mixups if all(map(_match, answers, values))]
     return Diagnosis(False, tuple(dict.fromkeys(causes)))
 
 
-def _matrix_fault(values):
-    try:
-        demand_dcm(values.real, where='', name='it')
-    except ValueError as error:
-        return str(error)
+def _fault(values):
+    """What is wrong with numbers that should be an orientation at every point; None if nothing is."""
+    for entries in values:
+        try:
+            if len(entries) == 9:
+                demand_dcm(entries, name='it')
+            else:
+                demand_unit_length(entries, name='it')
+        except ValueError as error:
+            return str(error)
     return None
 
 
-def _quaternion_fault(values):
-    lengths = (abs(values)**2).sum(axis=-1)**0.5
-    worst = lengths[abs(lengths - 1).argmax()]
-    return f'its length is {worst:.6g}, not 1' if abs(worst - 1) > TOLERANCE else None
+def _transpositions(truths):
+    yield ('it is the transpose, the orientation the other way round',
+           [[entries[3 * column + row] for row in range(3) for column in range(3)] for entries in truths])
 
 
-def _substitution_mixups(expected, names, points):
-    """Mix-ups of the angles' signs, places and units in a symbolic matrix."""
-    if not is_symbolic(expected):
-        return
-
+def _substitutions(expected, names, points):
+    """Mix-ups of the angles' signs, places and units in a symbolic answer."""
     def with_changes(change):
-        return _put_in(expected, names, [{**point, **change(point)} for point in points])
+        return (_put_in(expected, names, {**point, **change(point)}) for point in points)
 
     for name in names:
-        yield f'the angle {name} has the wrong sign', with_changes(lambda p: {name: -p[name]})
+        yield f'{name} has the wrong sign', with_changes(lambda p: {name: -p[name]})
     for first, second in itertools.combinations(names, 2):
-        yield (f'the angles {first} and {second} have changed places',
+        yield (f'{first} and {second} have changed places',
                with_changes(lambda p: {first: p[second], second: p[first]}))
-    for group in {tuple(names): None, **{(name,): None for name in names}}:
-        those = ', '.join(group)
-        yield (f'degrees were put in for {those} where radians are expected',
-               with_changes(lambda p: {name: p[name] * 180 / math.pi for name in group}))
-        yield (f'{those} was turned from degrees to radians once too often',
-               with_changes(lambda p: {name: p[name] * math.pi / 180 for name in group}))
+    for group in dict.fromkeys([tuple(names), *((name,) for name in names)]):
+        those = f'{", ".join(group)} {"was" if len(group) == 1 else "were"}'
+        yield (f'{those} given in degrees where radians are expected',
+               with_changes(lambda p: {name: math.degrees(p[name]) for name in group}))
+        yield (f'{those} turned from degrees to radians once too often',
+               with_changes(lambda p: {name: math.radians(p[name]) for name in group}))
 
 
-def _sequence_mixups(expected_values, names, points, angles, sequence):
-    """Mix-ups of a body fixed sequence, given or recognised."""
-    if angles is not None:
-        values = _put_in(angles, names, points).real
-    else:
-        values, sequence = _recognise(expected_values, names, points)
+def _turns(expected, truths, names, points, angles, sequence):
+    """Values of the three angles at each point, and the sequence: as given, or else recognised."""
+    if angles is None:
+        return _recognise(truths, names, points) if len(expected) == 9 else (None, None)
+    values = [[entry.real for entry in _put_in(angles, names, point)] for point in points]
+    if not all(_match(truth, entries) for truth, entries in zip(truths, _body_fixed(values, sequence))):
+        raise ValueError(f'expected is not the body fixed orientation {sequence} of these angles')
+    return values, sequence
+
+
+def _body_fixed(values, sequence):
+    formula = body_fixed_formula(sequence)
+    return (formula(NUMBERS, *angles) for angles in values)
+
+
+def _sequence_mixups(values, sequence, given, symbols):
+    """Mix-ups of a body fixed sequence of turns."""
     if sequence is None:
         return
+    back = [angles[::-1] for angles in values]
     yield ('the matrices are multiplied in the other order, which is space fixed',
-           dcm_from_space_fixed(values, sequence))
-    if angles is None and len(names) < 3:
-        return
-    yield 'the angles are in reverse order', dcm_from_body_fixed(values[:, ::-1], sequence)
+           _body_fixed(back, sequence[::-1]))
+    if not given and 0 in values[0]:
+        return  # two turns are recognised as part of several sequences
+    yield 'the angles are in reverse order', _body_fixed(back, sequence)
     for other in SEQUENCES:
         if other != sequence:
-            yield f'it is the sequence {other}, not {sequence}', dcm_from_body_fixed(values, other)
-    if not names:
+            yield f'it is the sequence {other}, not {sequence}', _body_fixed(values, other)
+    if not symbols:
         for which, signs in (('first', (-1, 1, 1)), ('second', (1, -1, 1)), ('third', (1, 1, -1))):
             yield (f'the angle of the {which} turn has the wrong sign',
-                   dcm_from_body_fixed(values * signs, sequence))
-        yield ('degrees were put in where radians are expected',
-               dcm_from_body_fixed(values * 180 / math.pi, sequence))
+                   _body_fixed([[a * b for a, b in zip(angles, signs)] for angles in values], sequence))
+        yield ('the angles were given in degrees where radians are expected',
+               _body_fixed([list(map(math.degrees, angles)) for angles in values], sequence))
         yield ('the angles were turned from degrees to radians once too often',
-               dcm_from_body_fixed(values * math.pi / 180, sequence))
+               _body_fixed([list(map(math.radians, angles)) for angles in values], sequence))
 
 
-def _recognise(expected_values, names, points):
+def _recognise(truths, names, points):
     """Find the sequence and the signed angles that make the expected matrix out of its symbols."""
-    import numpy
     if not 1 < len(names) <= 3:
         return None, None
-    values = numpy.array([[point[name] for name in names] + [0.0] * (3 - len(names)) for point in points])
-    orders = [values[:, order] * signs for order in itertools.permutations(range(3))
-              for signs in itertools.product((1, -1), repeat=3)]
+    table = [[point[name] for name in names] + [0.0] * (3 - len(names)) for point in points]
     for sequence in SEQUENCES:
-        found = abs(dcm_from_body_fixed(numpy.array(orders), sequence) - expected_values).max(axis=(1, 2, 3))
-        if found.min() <= TOLERANCE:
-            return orders[int(found.argmin())], sequence
+        for order in itertools.permutations(range(3)):
+            for signs in itertools.product((1, -1), repeat=3):
+                values = [[sign * row[place] for sign, place in zip(signs, order)] for row in table]
+                if all(map(_match, truths, _body_fixed(values, sequence))):
+                    return values, sequence
     return None, None
 
 
-def _quaternion_mixups(expected):
-    import numpy
-    conjugate = expected * [1, -1, -1, -1]
-    yield 'the scalar part stands last; in this book it stands first', numpy.roll(expected, -1, axis=-1)
-    yield 'it is the conjugate, the orientation the other way round', conjugate
+def _quaternion_mixups(truths):
+    def rearranged(rule):
+        return [rule(*entries) for entries in truths]
+
+    yield ('the scalar part stands last; in this book it stands first',
+           rearranged(lambda a, b, c, d: [b, c, d, a]))
+    yield ('it is the conjugate, the orientation the other way round',
+           rearranged(lambda a, b, c, d: [a, -b, -c, -d]))
     yield ('it is the conjugate, and the scalar part stands last; in this book it stands first',
-           numpy.roll(conjugate, -1, axis=-1))
+           rearranged(lambda a, b, c, d: [-b, -c, -d, a]))
     yield ('the angle was not halved: a quaternion holds the cosine and sine of half the angle',
-           multiply_quaternions(expected.real, expected.real))
+           rearranged(lambda *q: product_components(NUMBERS, *q, *q)))

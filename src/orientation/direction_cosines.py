@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ._kinds import TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
+from ._kinds import NUMBERS, TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
 
 AXES = ('x', 'y', 'z')
 
@@ -51,7 +51,7 @@ def simple_dcm(axis, angle):
     -----
     Source: Moore (2022), section "Simple orientations".
     """
-    if axis not in AXES:
+    if not isinstance(axis, str) or axis not in AXES:
         raise ValueError(f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction "
                          f"use dcm_from_axis_angle, and for -y turn about y through the negative angle")
     first = AXES.index(axis)
@@ -96,24 +96,23 @@ def check_dcm(dcm):
     ValueError: dcm is orthogonal but left-handed: its determinant is -1, not +1. One row or ...
     """
     if is_symbolic(dcm):
-        from .comparison import values_at_random_points
-        unknown = any(entry.free_symbols for entry in symbol_components(dcm, (3, 3), 'dcm'))
-        dcm, = values_at_random_points(dcm)
-        if abs(dcm.imag).max() > TOLERANCE:
-            raise ValueError('dcm is not real: an entry has an imaginary part of '
-                             f'{abs(dcm.imag).max():.3g} for real values of its symbols')
-        demand_dcm(dcm.real, ' at random values of its symbols' if unknown else '')
+        from .comparison import at_random_points
+        entries = symbol_components(dcm, (3, 3), 'dcm')
+        unknown = any(entry.free_symbols for entry in entries)
+        for values, in at_random_points(entries):
+            demand_dcm(values, ' at random values of its symbols' if unknown else '')
     else:
-        demand_dcm(dcm)
+        evaluate(lambda f, *entries: entries, (3, 3), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
-def demand_dcm(array, where=None, name='dcm'):
-    """Raise the error of :func:`check_dcm` for numbers, with the caller's words for what they are."""
-    def explain(entries, item):
-        _explain(entries, item if where is None else where, name)
-
-    evaluate(lambda f, *entries: entries, (3, 3), (name, array, (3, 3)), guard=(9, _excess, explain),
-             symbols=False)
+def demand_dcm(entries, where='', name='dcm'):
+    """Raise the error of :func:`check_dcm` for nine numbers, with the caller's words for them."""
+    imaginary = max(abs(entry.imag) for entry in entries)
+    if imaginary > TOLERANCE:
+        raise ValueError(f'{name}{where} is not real: an entry has an imaginary part of {imaginary:.3g}')
+    entries = [entry.real for entry in entries]
+    if not _excess(NUMBERS, *entries) <= TOLERANCE:
+        _explain(entries, where, name)
 
 
 def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
@@ -141,7 +140,7 @@ def _explain(entries, where, name='dcm'):
                          f'{determinant:.6g}, not +1. One row or column has the wrong sign, or two '
                          f'have changed places')
     if p == q:
-        fault = f'row {p} has length {products[p, q] ** 0.5:.10g}, not 1'
+        fault = f'row {p} has length {products[p, q] ** 0.5:.12g}, not 1'
     else:
         fault = f'rows {p} and {q} have dot product {products[p, q]:.6g}, not 0'
     squares = [products[name, name] for name in names]
@@ -210,12 +209,15 @@ def nearest_dcm(matrix):
     left, scales, right = numpy.linalg.svd(array)
     handedness = numpy.sign(numpy.linalg.det(left @ right))
     gap = scales[..., 1] + handedness * scales[..., 2]
-    if numpy.any(gap <= TOLERANCE * scales[..., 0]):
+    excess = gap - TOLERANCE * scales[..., 0]
+    if numpy.any(excess <= 0):
+        worst = numpy.unravel_index(numpy.argmin(excess), gap.shape)
+        where = f' (item {[int(k) for k in worst]})' if worst else ''
         raise ValueError(
-            f'several direction cosine matrices are equally near: the singular values are '
-            f'{numpy.array2string(scales.reshape(-1, 3)[numpy.argmin(gap)], precision=6)} and the '
-            f'determinant is {numpy.linalg.det(array).reshape(-1)[numpy.argmin(gap)]:.6g}. The matrix '
-            f'is a reflection, or two of its rows are parallel or zero')
+            f'several direction cosine matrices are equally near matrix{where}: its singular values are '
+            f'{numpy.array2string(scales[worst], precision=6)} and its determinant is '
+            f'{numpy.linalg.det(array[worst]):.6g}. It is a reflection, or two of its rows are parallel or '
+            f'zero')
     left[..., :, 2] *= handedness[..., None]
     dcm = left @ right
     return NearestDCM(dcm, numpy.linalg.norm(dcm - array, axis=(-2, -1)))

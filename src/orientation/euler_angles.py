@@ -1,6 +1,6 @@
 """Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
 
-from ._kinds import evaluate, is_symbolic, number_array
+from ._kinds import evaluate, is_symbolic, number_array, symbol_components
 from .direction_cosines import AXES, DCM_GUARD
 
 #: Sequences whose first and last axes are the same.
@@ -79,6 +79,11 @@ def dcm_from_body_fixed(angles, sequence):
     The three turns are multiplied out once, for axes in cyclic order; the other order only changes
     the sign of the angles. Source: Shuster (1993), Diebel (2006).
     """
+    return evaluate(body_fixed_formula(sequence), (3, 3), ('angles', angles, (3,)))
+
+
+def body_fixed_formula(sequence):
+    """Formula of :func:`dcm_from_body_fixed`, for the components of the angles."""
     i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
@@ -104,7 +109,7 @@ def dcm_from_body_fixed(angles, sequence):
             entries[3 * k + i], entries[3 * k + j], entries[3 * k + k] = s2, -s1 * c2, c1 * c2
         return entries
 
-    return evaluate(formula, (3, 3), ('angles', angles, (3,)))
+    return formula
 
 
 def body_fixed_from_dcm(dcm, sequence):
@@ -156,7 +161,8 @@ def body_fixed_from_dcm(dcm, sequence):
         # What remains once the first turn is undone: column j of the matrix of the last two turns.
         jj = c(j, j) * cosine + c(j, k) * sine
         if proper:
-            theta = f.atan2(c(i, j) * sine - c(i, k) * cosine, c(i, i))
+            # The sine has the sign of the order, and the size alone keeps the middle angle in [0, pi].
+            theta = sign * f.atan2(abs(c(i, j) * sine - c(i, k) * cosine), c(i, i))
             phi = f.atan2(-c(k, j) * cosine - c(k, k) * sine, jj)
         else:
             theta = f.atan2(c(k, i), c(k, k) * cosine - c(k, j) * sine)
@@ -240,9 +246,6 @@ def gimbal_lock_margin(angles, sequence):
 
 
 def _reversed(angles):
-    if hasattr(angles, 'shape') and not is_symbolic(angles):
-        return angles[..., ::-1]
     if is_symbolic(angles):
-        return list(angles)[::-1]
-    import numpy
+        return symbol_components(angles, (3,), 'angles')[::-1]
     return number_array(angles, (3,), 'angles')[..., ::-1]

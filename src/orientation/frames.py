@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ._kinds import is_symbolic
+from ._kinds import is_symbolic, number_array, symbol_components
 from .axis_angle import dcm_from_axis_angle
 from .comparison import same_orientation
 from .direction_cosines import check_dcm, simple_dcm
@@ -19,7 +19,17 @@ class _Turn(NamedTuple):
     words: str
 
     def dcm(self):
-        return simple_dcm(self.axis, self.angle) if self.axis else self.matrix
+        # A copy: what a reader does with the result must not change the frames.
+        return simple_dcm(self.axis, self.angle) if self.axis else self.matrix.copy()
+
+    def is_symbolic(self):
+        return is_symbolic(self.angle) or is_symbolic(self.matrix)
+
+    def batch(self):
+        """Shape of the batch that this turn is, () for a single one."""
+        if self.is_symbolic():
+            return ()
+        return getattr(self.angle, 'shape', ()) if self.axis else self.matrix.shape[:-2]
 
     def back(self):
         if self.axis:
@@ -81,9 +91,12 @@ class Frames:
         ValueError
             If the two frames are connected already and not by this same orientation.
         """
+        symbolic = is_symbolic((axis, angle))
+        angle = _own(angle, (), 'angle', symbolic)
         if isinstance(axis, str):
             simple_dcm(axis, angle)  # refuses what is not valid, before it is stored
             return self._with(frame, reference, _Turn(axis, angle, None, ''))
+        axis = _own(axis, (3,), 'axis', symbolic)
         words = rf'\text{{axis }}({", ".join(map(_latex, axis))}),\ {_latex(angle)}'
         return self._with(frame, reference, _Turn(None, None, dcm_from_axis_angle(axis, angle), words))
 
@@ -93,9 +106,9 @@ class Frames:
         Parameters are those of :func:`orientation.dcm_from_body_fixed`.
         """
         dcm_from_body_fixed(angles, sequence)  # refuses what is not valid, before it is stored
+        angles = _own(angles, (3,), 'angles', is_symbolic(angles))
         if not is_symbolic(angles):
-            import numpy
-            angles = numpy.moveaxis(numpy.asarray(angles, dtype=float), -1, 0)
+            angles = [angles[..., k] for k in range(3)]
         return self._with(frame, reference,
                           *(_Turn(axis, angle, None, '') for axis, angle in zip(sequence, angles)))
 
@@ -105,12 +118,11 @@ class Frames:
         With ``('A', 'N', A_C_N)`` the matrix is :math:`{}^A\mathbf{C}^N`; it is checked first.
         """
         check_dcm(dcm)
-        if not is_symbolic(dcm):
-            import numpy
-            dcm = numpy.asarray(dcm, dtype=float)
-        elif isinstance(dcm, (list, tuple)):
+        symbolic = is_symbolic(dcm)
+        dcm = _own(dcm, (3, 3), 'dcm', symbolic)
+        if symbolic:
             import sympy
-            dcm = sympy.Matrix(dcm)
+            dcm = sympy.Matrix(3, 3, dcm)
         return self._with(frame, reference, _Turn(None, None, dcm, r'\text{matrix}'))
 
     def orient_quaternion(self, frame, reference, quaternion):
@@ -130,7 +142,7 @@ class Frames:
             new = Frames()
             new._edges = (*self._edges, edge)
             return new
-        if len(edges) == 1 and same_orientation(_product(edge.turns), _product(edges[0].turns)):
+        if len(edges) == 1 and _same(edge.turns, edges[0].turns):
             return self
         raise ValueError(
             f'{frame} and {reference} are already connected, by {self.path(frame, reference)}: a second '
@@ -173,7 +185,16 @@ class Frames:
         ValueError
             If a name is unknown, or no path connects the two.
         """
-        return _product([turn for edge in self._edges_between(target, source) for turn in edge.turns])
+        turns = [turn for edge in self._edges_between(target, source) for turn in edge.turns]
+        return _product(turns or [_Turn('x', self._zero(), None, '')])
+
+    def _zero(self):
+        """The angle of a frame in itself: of the kind that these frames hold."""
+        symbols = [turn for edge in self._edges for turn in edge.turns if turn.is_symbolic()]
+        if not symbols:
+            return 0.0
+        import sympy
+        return sympy.Integer(0)
 
     def equation(self, target, source):
         r"""Return :math:`{}^D\mathbf{C}^A` as the product over the path, each factor with its turns."""
@@ -219,16 +240,29 @@ class Equation:
 
 
 def _orient(frame, reference, edge):
+    shapes = [turn.batch() for turn in edge.turns if turn.batch()]
+    if shapes:
+        raise ValueError(f'{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}; a '
+                         f'ReferenceFrame holds one orientation')
     if len(edge.turns) == 1 and edge.turns[0].axis:
         turn, = edge.turns
         frame.orient_axis(reference, getattr(reference, turn.axis), turn.angle)
         return
     import sympy
-    matrix = _product(edge.turns)
-    if matrix.shape != (3, 3):
-        raise ValueError(f'{edge.frame} in {edge.reference} is a batch of shape {matrix.shape}; a '
-                         f'ReferenceFrame holds one orientation')
-    frame.orient_dcm(reference, sympy.Matrix(matrix))
+    frame.orient_dcm(reference, sympy.Matrix(_product(edge.turns)))
+
+
+def _own(value, item, name, symbolic):
+    """The frames' own copy of what they were given: SymPy expressions or a float array."""
+    if symbolic:
+        components = symbol_components(value, item, name)
+        return components if item else components[0]
+    return number_array(value, item, name) + 0.0
+
+
+def _same(turns, others):
+    first, second = _product(turns), _product(others)
+    return first.shape == second.shape and same_orientation(first, second)
 
 
 def _transposed(matrix):
@@ -236,6 +270,17 @@ def _transposed(matrix):
 
 
 def _product(turns):
+    shapes = dict.fromkeys(turn.batch() for turn in turns if turn.batch())
+    if shapes and any(turn.is_symbolic() for turn in turns):
+        raise ValueError('this path holds symbols and a batch of numbers: put numbers in for the symbols '
+                         'first, or one item for the batch')
+    if len(shapes) > 1:
+        import numpy
+        try:
+            numpy.broadcast_shapes(*shapes)
+        except ValueError:
+            raise ValueError(f'the batches along this path do not fit each other: their shapes are '
+                             f'{" and ".join(map(str, shapes))}') from None
     joined = []
     for turn in turns:
         if joined and turn.axis and turn.axis == joined[-1].axis:
@@ -259,6 +304,7 @@ def _latex(value):
 
 
 def _symbol(target, source):
+    target, source = (name.replace('_', r'\_') for name in (target, source))
     return rf'{{}}^{{{target}}}\mathbf{{C}}^{{{source}}}'
 
 

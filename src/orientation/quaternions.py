@@ -1,11 +1,13 @@
 """Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
 
-from ._kinds import TOLERANCE, evaluate
+from ._kinds import NUMBERS, TOLERANCE, evaluate
 from .direction_cosines import DCM_GUARD
 
 
 def _length_excess(f, scalar, x, y, z):
-    return abs(scalar * scalar + x * x + y * y + z * z - 1)
+    # The rows of the matrix are |q|^2 long: what passes here makes a matrix that passes as well.
+    square = scalar * scalar + x * x + y * y + z * z
+    return abs(square * square - 1)
 
 
 def _explain_length(components, where, name='quaternion'):
@@ -17,7 +19,14 @@ def _explain_length(components, where, name='quaternion'):
     else:
         cause = ('is the angle halved in the cosine and in the sine, and the axis a unit vector? '
                  'Divide by the length only if you know where it comes from')
-    raise ValueError(f'{name}{where} has length {length:.10g}, not 1: {cause}')
+    raise ValueError(f'{name}{where} has length {length:.12g}, not 1: {cause}')
+
+
+def demand_unit_length(entries, name='quaternion'):
+    """Raise the error of a quaternion that is not of unit length, for four numbers."""
+    entries = [entry.real for entry in entries]
+    if not _length_excess(NUMBERS, *entries) <= TOLERANCE:
+        _explain_length(entries, '', name)
 
 
 QUATERNION_GUARD = (4, _length_excess, _explain_length)
@@ -144,11 +153,13 @@ def multiply_quaternions(first, second):
     -----
     Source: Hamilton (1844).
     """
-    def formula(f, a, b, c, d, e, g, h, k):
-        return (a * e - b * g - c * h - d * k, a * g + b * e + c * k - d * h,
-                a * h - b * k + c * e + d * g, a * k + b * h - c * g + d * e)
+    return evaluate(product_components, (4,), ('first', first, (4,)), ('second', second, (4,)))
 
-    return evaluate(formula, (4,), ('first', first, (4,)), ('second', second, (4,)))
+
+def product_components(f, a, b, c, d, e, g, h, k):
+    """Formula of :func:`multiply_quaternions`."""
+    return (a * e - b * g - c * h - d * k, a * g + b * e + c * k - d * h,
+            a * h - b * k + c * e + d * g, a * k + b * h - c * g + d * e)
 
 
 def interpolate_quaternions(first, second, share):

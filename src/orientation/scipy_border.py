@@ -55,6 +55,11 @@ def dcm_from_scipy_rotation(rotation):
     -------
     array of shape ``(3, 3)`` or ``(..., 3, 3)``
 
+    Raises
+    ------
+    TypeError
+        If it is something else, such as a matrix.
+
     Examples
     --------
     >>> from scipy.spatial.transform import Rotation
@@ -63,4 +68,6 @@ def dcm_from_scipy_rotation(rotation):
     >>> same_orientation(dcm_from_scipy_rotation(rotation), dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'))
     True
     """
+    if not hasattr(rotation, 'as_matrix'):
+        raise TypeError(f'rotation must be a SciPy Rotation, not {type(rotation).__name__}')
     return rotation.as_matrix().swapaxes(-1, -2)
