@@ -1,0 +1,8 @@
+"""Figures that the reader moves: alive in Jupyter, and on the pages of the book without a kernel.
+
+``orientation`` does not load this package, which needs anywidget.
+"""
+from .figure import MovingFigure
+from .triad import TriadFigure
+
+__all__ = ['MovingFigure', 'TriadFigure']

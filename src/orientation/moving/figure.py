@@ -1,0 +1,60 @@
+"""What every moving figure is: a widget in Jupyter, a still on paper, and the state that both show."""
+import json
+from html import escape
+
+import anywidget
+import numpy as np
+import traitlets
+
+from ..drawing import STYLE
+from . import bundle
+
+
+class MovingFigure(anywidget.AnyWidget):
+    """A figure that the reader moves, in Jupyter and on the pages of the book.
+
+    Its attributes and the figure move together: setting one moves the figure, moving the figure sets it
+    and calls what ``observe`` has registered. In Jupyter a kernel keeps both in step; a page of the book
+    runs the same front end without one, in place of the still.
+
+    A figure has a ``kind``, the name of its module in ``js``; traits tagged ``state=True``; and a method
+    ``drawing`` that returns its still. ``sheet`` gives left, top, right and bottom of what may be drawn, in
+    pixels from the origin: still and figure have the same size, so that a page does not move.
+    """
+
+    kind = ''
+    sheet = (-180, -180, 180, 180)
+
+    _esm = traitlets.Unicode().tag(sync=True)
+    _css = traitlets.Unicode().tag(sync=True)
+
+    @traitlets.default('_esm')
+    def _default_esm(self):
+        return bundle.esm(self.kind)
+
+    @traitlets.default('_css')
+    def _default_css(self):
+        return STYLE + bundle.style()
+
+    def drawing(self):
+        """Return the ``Drawing`` that stands for the figure where it cannot move."""
+        raise NotImplementedError
+
+    def state(self):
+        """Return the attributes that the figure shows, by their names."""
+        return {name: getattr(self, name) for name in sorted(self.trait_names(state=True))}
+
+    def still(self):
+        """Return the HTML for pages without a kernel: the still, and the state to start from."""
+        # The drawing adds a margin of 8 pixels to the bounds it is given.
+        svg = self.drawing().svg(bounds=np.add(self.sheet, (8, 8, -8, -8)))
+        state = escape(json.dumps(self.state(), separators=(',', ':')), quote=False).replace("'", '&#39;')
+        return (f'<figure class="orientation-figure moving" data-figure="{self.kind}" data-state=\'{state}\'>'
+                f'<style>{STYLE}</style><div class="still">{svg}</div></figure>')
+
+    def _repr_mimebundle_(self, **kwargs):
+        data, metadata = super()._repr_mimebundle_(**kwargs)
+        return data | {'text/html': self.still()}, metadata
+
+    def __repr__(self):
+        return f'{type(self).__name__}: {self.drawing().alt}'

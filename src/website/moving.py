@@ -1,0 +1,58 @@
+"""Figures that move: their scripts on the pages that hold them, and nothing of widgets' own.
+
+A cell that ends in a figure of ``orientation.moving`` puts out a still, with the state of the figure, and
+a widget for Jupyter. The page shows the still, and one script for each kind of figure brings it to life.
+"""
+
+from pathlib import Path
+
+from docutils import nodes
+
+WIDGET = "application/vnd.jupyter.widget-view+json"
+
+
+def prefer_stills(app, config):
+    """A widget needs a kernel: pages show the other forms of such an output."""
+    config.nb_mime_priority_overrides = [*config.nb_mime_priority_overrides, ("*", WIDGET, None)]
+
+
+def drop_widget_state(app, doctree):
+    """Take out the widgets' state and the scripts that MyST-NB would load for it from elsewhere."""
+    scripts = doctree.get("nb_js_files", {})
+    for key in [key for key in scripts if key.startswith("ipywidgets_")]:
+        del scripts[key]
+
+
+def kinds_on(doctree):
+    """The kinds of moving figures on a page, in their order."""
+    from bs4 import BeautifulSoup
+
+    found = {}
+    for node in doctree.findall(nodes.raw):
+        if "data-figure=" in node.astext():
+            figures = BeautifulSoup(node.astext(), "html.parser").select("[data-figure]")
+            found |= dict.fromkeys(figure["data-figure"] for figure in figures)
+    return list(found)
+
+
+def add_scripts(app, pagename, templatename, context, doctree):
+    kinds = kinds_on(doctree) if doctree is not None else []
+    if not kinds:
+        return
+    from orientation.moving import bundle
+
+    texts = {"shared.js": bundle.shared_script(), "moving.css": bundle.style()}
+    texts |= {f"{kind}.js": bundle.script(kind) for kind in kinds}
+    folder = Path(app.outdir) / "_static" / "moving"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in texts.items():
+        (folder / name).write_text(text, "utf8")
+        if name.endswith(".js"):
+            app.add_js_file(f"moving/{name}", loading_method="defer")
+    context["styles"] = [*context["styles"], "moving/moving.css"]
+
+
+def setup(app):
+    app.connect("config-inited", prefer_stills)
+    app.connect("doctree-read", drop_widget_state)
+    app.connect("html-page-context", add_scripts, priority=960)  # after page.py has set the styles
