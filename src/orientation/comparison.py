@@ -15,8 +15,10 @@ from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
 from .quaternions import demand_unit_length, product_components
 
-#: Random values that each symbol is given: one from each quadrant.
-POINTS = 4
+#: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and two
+#: values beyond half a turn: the root of a square is then not taken for the cosine of the angle, nor
+#: for that of half the angle.
+QUARTERS = (-3, -1, 0, 2)
 
 
 def _read(value, name):
@@ -62,12 +64,10 @@ def _draw(names):
     if not names:
         return [{}]
     source = random.Random(20)
-    points = [{} for _ in range(POINTS)]
+    points = [{} for _ in QUARTERS]
     for name in names:
-        # All four quadrants, so that the root of a square is not taken for the cosine itself; and
-        # two turns, so that it is not taken for the cosine of half the angle either.
-        for point, quadrant in zip(points, source.sample(range(4), POINTS)):
-            point[name] = (quadrant + source.uniform(0.1, 0.9)) * math.pi / 2 - math.tau * source.randrange(2)
+        for point, quarter in zip(points, source.sample(QUARTERS, len(QUARTERS))):
+            point[name] = (quarter + source.uniform(0.1, 0.9)) * math.pi / 2
     return points
 
 
@@ -226,15 +226,17 @@ def _transpositions(truths):
 
 def _substitutions(expected, names, points):
     """Mix-ups of the angles' signs, places and units in a symbolic answer."""
+    own = list(_unknowns(expected))
+
     def with_changes(change):
         return (_put_in(expected, names, {**point, **change(point)}) for point in points)
 
-    for name in names:
+    for name in own:
         yield f'{name} has the wrong sign', with_changes(lambda p: {name: -p[name]})
-    for first, second in itertools.combinations(names, 2):
+    for first, second in itertools.combinations(own, 2):
         yield (f'{first} and {second} have changed places',
                with_changes(lambda p: {first: p[second], second: p[first]}))
-    for group in dict.fromkeys([tuple(names), *((name,) for name in names)]):
+    for group in dict.fromkeys([tuple(own), *((name,) for name in own)] if own else []):
         those = f'{", ".join(group)} {"was" if len(group) == 1 else "were"}'
         yield (f'{those} given in degrees where radians are expected',
                with_changes(lambda p: {name: math.degrees(p[name]) for name in group}))
@@ -245,7 +247,7 @@ def _substitutions(expected, names, points):
 def _turns(expected, truths, names, points, angles, sequence):
     """Values of the three angles at each point, and the sequence: as given, or else recognised."""
     if angles is None:
-        return _recognise(truths, names, points) if len(expected) == 9 else (None, None)
+        return _recognise(truths, list(_unknowns(expected)), points) if len(expected) == 9 else (None, None)
     values = [[entry.real for entry in _put_in(angles, names, point)] for point in points]
     if not all(_match(truth, entries) for truth, entries in zip(truths, _body_fixed(values, sequence))):
         raise ValueError(f'expected is not the body fixed orientation {sequence} of these angles')
