@@ -14,14 +14,6 @@ BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    """Keep the cells of one notebook, which share a kernel, on one worker."""
-    for item in items:
-        if item.path.suffix == ".ipynb":
-            item.add_marker(pytest.mark.xdist_group(str(item.path)))
-
-
 def html_pages():
     """The addresses of all pages of the built site, relative to its root."""
     return sorted(str(path.relative_to(HTML)) for path in HTML.rglob("*.html"))
@@ -38,6 +30,7 @@ def site():
     threading.Thread(target=book.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{book.server_port}/"
     book.shutdown()
+    book.server_close()
 
 
 @pytest.fixture(scope="session")

@@ -2,6 +2,7 @@
 
 from docutils import nodes
 from myst_nb.sphinx_ import HideCodeCellNode
+from sphinx.writers.html5 import HTML5Translator
 
 
 def visit_hidden(translator, node):
@@ -23,6 +24,19 @@ def depart_citation(translator, node):
     translator.body.append("</div>\n")
 
 
+def visit_entry(translator, node):
+    """An empty corner of a table heads nothing: an ordinary cell, not a heading."""
+    HTML5Translator.visit_entry(translator, node)
+    if not node.astext().strip() and translator.body[-1].startswith("<th"):
+        translator.body[-1] = translator.body[-1].replace("<th", "<td", 1)
+        translator.context[-1] = translator.context[-1].replace("</th>", "</td>")
+
+
+def depart_entry(translator, node):
+    HTML5Translator.depart_entry(translator, node)
+
+
 def setup(app):
+    app.add_node(nodes.entry, override=True, html=(visit_entry, depart_entry))
     app.add_node(HideCodeCellNode, override=True, html=(visit_hidden, depart_hidden))
     app.add_node(nodes.citation, override=True, html=(visit_citation, depart_citation))

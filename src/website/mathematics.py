@@ -15,10 +15,11 @@ from sphinx.util.math import get_node_equation_number
 from .paths import NODE_MODULES, where
 
 KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
-RENDER = """(function (tex, display) {
+RENDER = """(function (tex, display, stretch) {
   try {
     return "+" + katex.renderToString(tex, {
-      displayMode: display, output: "htmlAndMathml", throwOnError: true, strict: "error"
+      displayMode: display, output: "htmlAndMathml", throwOnError: true, strict: "error",
+      macros: {"\\\\arraystretch": stretch}
     });
   } catch (error) { return "-" + error.message; }
 })"""
@@ -37,7 +38,8 @@ def katex():
 @lru_cache(maxsize=None)
 def to_html(tex, display):
     """KaTeX's HTML for ``tex``; raises ValueError with KaTeX's own words."""
-    answer = katex()(tex, display)
+    # KaTeX sets the rows of a matrix so close that fractions in them would touch.
+    answer = katex()(tex, display, "1.6" if r"\frac" in tex else "1.15")
     if answer[0] == "-":
         raise ValueError(answer[1:].replace("\u0332", ""))
     return answer[1:]

@@ -71,11 +71,10 @@ def trim_page(app, pagename, templatename, context, doctree):
 def bundle_styles(static):
     """Write the theme's style sheets as one layer, without its icon font."""
     parts = [path for name in THEME_STYLES for path in sorted(static.glob(name))]
-    if not (static / "basic.css").exists():
-        return  # Sphinx found nothing to build and copied nothing
-    rules = "\n".join(path.read_text("utf8") for path in parts)
-    rules = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", rules, flags=re.DOTALL)
-    (static / "theme.css").write_text("@layer theme {\n" + rules + "\n}\n", "utf8")
+    if (static / "basic.css").exists():  # else Sphinx had nothing to build and copied nothing
+        rules = "\n".join(path.read_text("utf8") for path in parts)
+        rules = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", rules, flags=re.DOTALL)
+        (static / "theme.css").write_text("@layer theme {\n" + rules + "\n}\n", "utf8")
     for path in parts:
         path.unlink()
 
