@@ -135,7 +135,7 @@ def number_array(value, item, name):
     """
     import numpy
     if is_symbolic(value):
-        value = _floats(value, name)
+        value = _floats(_listed(value), name)
     elif (len(item) == 1 and isinstance(value, (list, tuple)) and len(value) == item[0]
             and all(getattr(entry, 'ndim', 0) for entry in value)):
         raise ValueError(f'{name} is a sequence of {len(value)} arrays, which can be read in two ways: '
@@ -167,9 +167,7 @@ def number_array(value, item, name):
 
 def _floats(value, name):
     """Nested lists of floats from SymPy objects without symbols."""
-    if hasattr(value, 'tolist'):
-        value = value.tolist()
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, list):
         return [_floats(entry, name) for entry in value]
     try:
         return float(value)
@@ -179,27 +177,34 @@ def _floats(value, name):
             f'on their sizes and signs. Put numbers in first, with .subs(...)') from None
 
 
+def _listed(value):
+    """Nested lists of the entries, whatever holds them; a column or a row becomes one list."""
+    if hasattr(value, 'tolist'):
+        shape = getattr(value, 'shape', ())
+        flat = len(shape) == 2 and 1 in shape
+        value = value.tolist()
+        if flat:
+            value = [entry for row in value for entry in row]
+    if isinstance(value, (list, tuple)) or type(value).__name__ == 'Tuple':
+        return [_listed(entry) for entry in value]
+    return value
+
+
 def symbol_components(value, item, name):
     """Return the SymPy components of one item of the given shape."""
     import sympy
     if hasattr(value, 'to_matrix'):
         raise TypeError(f'{name} is the vector {value}: give its components along one frame, which its '
                         f'method to_matrix finds')
-    shape = getattr(value, 'shape', None)
-    if shape is None and isinstance(value, (list, tuple)):
-        nested = [list(row) if isinstance(row, (list, tuple)) or hasattr(row, 'shape') else row
-                  for row in value]
+    nested = _listed(value)
+    if isinstance(nested, list):
         lengths = {len(row) if isinstance(row, list) else 0 for row in nested}
         shape = (len(nested),) if lengths == {0} else (len(nested), *sorted(lengths))
         value = [entry for row in nested for entry in (row if isinstance(row, list) else [row])]
-    elif shape is not None:
-        value = list(value.ravel() if hasattr(value, 'ravel') else value)
-        if len(item) == 1 and shape in ((item[0], 1), (1, item[0])):
-            shape = item
     else:
-        shape, value = (), [value]
-    if tuple(shape) != item:
-        raise WrongShape(_shape_message(name, tuple(shape), item)
+        shape, value = (), [nested]
+    if shape != item:
+        raise WrongShape(_shape_message(name, shape, item)
                          + ' (SymPy expressions come one item at a time)')
     try:
         components = [sympy.sympify(entry, strict=True) for entry in value]

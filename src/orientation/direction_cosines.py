@@ -144,12 +144,13 @@ def _explain(entries, where, name='dcm'):
     else:
         fault = f'rows {p} and {q} have dot product {products[p, q]:.6g}, not 0'
     squares = [products[name, name] for name in names]
-    scaled = max(squares) - min(squares) <= 1e-6 * max(squares) and all(
+    # A scale closer to 1 than that cannot be told from rounding.
+    scaled = abs(worst) > 1e-5 and max(squares) - min(squares) <= 1e-6 * max(squares) and all(
         abs(value) <= 1e-6 * max(squares) for (p, q), value in products.items() if p != q)
     if max(map(abs, entries)) == 0:
         cause = 'Every entry is zero'
     elif scaled:
-        cause = (f'The whole matrix is {squares[0] ** 0.5:.6g} times an orthogonal one, as from a '
+        cause = (f'The whole matrix is {squares[0] ** 0.5:.8g} times an orthogonal one, as from a '
                  f'quaternion that is not of unit length')
     elif abs(worst) < 0.1:
         cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix'
@@ -214,9 +215,9 @@ def nearest_dcm(matrix):
         worst = numpy.unravel_index(numpy.argmin(excess), gap.shape)
         where = f' (item {[int(k) for k in worst]})' if worst else ''
         raise ValueError(
-            f'several direction cosine matrices are equally near matrix{where}: its singular values are '
-            f'{numpy.array2string(scales[worst], precision=6)} and its determinant is '
-            f'{numpy.linalg.det(array[worst]):.6g}. It is a reflection, or two of its rows are parallel or '
+            f'several direction cosine matrices are equally near to matrix{where}: its singular values are '
+            f'{", ".join(f"{scale:.6f}" for scale in scales[worst])} and its determinant is '
+            f'{numpy.linalg.det(array[worst]):.6f}. It is a reflection, or two of its rows are parallel or '
             f'zero')
     left[..., :, 2] *= handedness[..., None]
     dcm = left @ right
