@@ -23,7 +23,7 @@ class MovingFigure(anywidget.AnyWidget):
     """
 
     kind = ''
-    sheet = (-180, -180, 180, 180)
+    sheet = (-180, -160, 180, 160)
 
     _esm = traitlets.Unicode().tag(sync=True)
     _css = traitlets.Unicode().tag(sync=True)

@@ -9,7 +9,8 @@ from ..euler_angles import body_fixed_from_dcm
 from .figure import MovingFigure
 from .state import Direction, Numbers, Sequence
 
-REACH = 1.25   # of the arrows of N and of the axis, so that no label of A hides one of theirs
+REACH, KNOB = 1.25, 1.38   # of the arrows of N and of the line of the axis: labels keep clear of those of A
+SIZE = 112
 
 
 class TriadFigure(MovingFigure):
@@ -38,7 +39,7 @@ class TriadFigure(MovingFigure):
     """
 
     kind = 'triad'
-    axis = Direction((1, 1, 1)).tag(sync=True, state=True)
+    axis = Direction((1, 2, 2)).tag(sync=True, state=True)
     angle = Numbers(math.radians(50), largest=math.pi).tag(sync=True, state=True)
     sequence = Sequence('zxy').tag(sync=True, state=True)
 
@@ -64,11 +65,12 @@ class TriadFigure(MovingFigure):
             f'The triad of frame N, and from the same origin the triad of A: turned from N through theta, '
             f'{math.degrees(self.angle):.0f} degrees, about the unit vector e, which has the components '
             f'({", ".join(f"{entry:.2f}" for entry in axis)}) in both frames. Along N, a '
-            f'{", a ".join(rows)}. Thin arcs show the way of each tip, all about e.')
-        drawing.line([-axis, axis], 'accent', 'guide')
+            f'{", a ".join(rows)}. Thin arcs show the way of each tip, all about e.', scale=SIZE)
+        drawing.line([-axis, KNOB * axis], 'accent', 'guide')
         for start in np.eye(3):
             foot = start @ axis * axis
             if (radius := np.linalg.norm(start - foot)) > 1e-6:
                 drawing.turn(axis, self.angle, start - foot, radius, origin=foot, colour='muted', head=False)
-        drawing.triad('N', REACH * np.eye(3)).arrow(REACH * axis, colour='accent', label=r'$\hat{e}$')
-        return drawing.triad('A', self.dcm)
+        drawing.triad('N', REACH * np.eye(3)).triad('A', self.dcm)
+        drawing.arrow(axis, colour='accent').dot(KNOB * axis, 'accent', 5)
+        return drawing.label(KNOB * axis, r'$\hat{e}$', 'accent', (15, -9))

@@ -190,7 +190,7 @@ export class Sheet {
   }
 
   line(points, colour = 'ink', kind = '') {
-    for (const [k, layer] of (kind === 'tube' ? ['tube', 'tube core'] : [kind]).entries()) {
+    for (const [k, layer] of (kind.startsWith('tube') ? [kind, `${kind} core`] : [kind]).entries()) {
       this.path(`M${'L'.repeat(points.length - 1)}`, points.map((p) => this.onSheet(p)), `${layer} ${colour}`,
         this.depthOf(points) + 1e-6 * k);
     }
@@ -226,6 +226,15 @@ export class Sheet {
     const made = labels.get(name);
     put(made, 'class', `text ${colour}${this.faded ? ' faded' : ''}`);
     put(made, 'transform', `translate(${pair(place)}) scale(${size / 1000})`);
+  }
+
+  // The part of one vector that lies along another: its shadow, the line that drops it, and a right angle.
+  shadow(vector, direction, colour = 'accent') {
+    const along = unit(direction), foot = scale(dot(vector, along), along), down = subtract(foot, vector);
+    this.line([[0, 0, 0], foot], colour, 'shadow');
+    if (length(down) < 0.02) return;
+    this.line([vector, foot], colour, 'guide');
+    if (length(foot) > 0.1) this.rightAngle(scale(-1, foot), scale(-1, down), { origin: foot, size: 0.07 });
   }
 
   // A place where the reader can take hold; `part` comes back in grab(part, at).
@@ -305,7 +314,7 @@ export class Sheet {
     const up = cross(across, n);   // the point of the circle nearest to the reader
     const [u, v] = [across, dot(up, this.view[2]) < 0 ? scale(-1, up) : up].map((p) => this.onSheet(scale(radius, p)));
     const middle = this.onSheet(origin);
-    for (const [k, layer] of (kind === 'tube' ? ['tube', 'tube core'] : [kind]).entries()) {
+    for (const [k, layer] of (kind.startsWith('tube') ? [kind, `${kind} core`] : [kind]).entries()) {
       const style = `${layer} ${colour}`, depth = this.depthOf([origin]) + 1e-6 * k;
       if (!half) this.ellipse(middle, u, v, style, depth);
       else {
@@ -434,30 +443,39 @@ export function slider({ symbol, name, unit: unitName = 'degrees', sign = '°', 
 }
 
 // A list to choose from; options are [value, text] or just values.
-export function choice({ name, options, change }) {
+export function choice({ name, options, change, hidden = false }) {
   const list = element('select', { 'aria-label': name, change: () => change(list.value) },
     ...options.map((option) => element('option', { value: [option].flat()[0] }, [option].flat().at(-1))));
-  return { element: element('label', { class: 'choice' }, element('span', { 'aria-hidden': 'true' }, name), list),
+  return { element: element('label', { class: 'choice' }, element('span', { 'aria-hidden': 'true', hidden }, name), list),
     show: (value) => { list.value = value; } };
 }
 
 // Numbers that say what they mean: one stop of the Tab key, arrow keys inside. `names` are the spoken names,
-// row by row; `light(row, column)` is called when a number is touched or focused, and `light()` afterwards.
-export function numberTable({ name, names, light, kind = '' }) {
-  const cells = names.map((row, i) => row.map((cellName, j) => element('button', { type: 'button', class: 'number',
-    tabindex: i + j ? -1 : 0, 'data-at': `${i},${j}`,
-    pointerenter: (event) => { if (event.pointerType === 'mouse') light(i, j); },
-    pointerleave: (event) => { if (event.pointerType === 'mouse') relight(); },
-    focus: () => { cells.flat().forEach((cell) => { cell.tabIndex = cell === cells[i][j] ? 0 : -1; }); light(i, j); },
-    blur: () => light(),
-    // Not every browser focuses a button that is touched.
-    click: () => cells[i][j].focus() },
-  element('span', { class: 'unseen' }, `${cellName}: `), element('span'))));
+// row by row; `rows` and `columns` what stands before and above them; `light(row, column)` is called when a
+// number is touched or focused, and `light()` afterwards.
+export function numberTable({ name, names, rows, columns, light, kind = '' }) {
+  const at = (i, j, on) => {
+    const cell = element('button', { type: 'button', class: 'number', tabindex: i + j ? -1 : 0, 'data-at': `${i},${j}`,
+      pointerenter: (event) => { if (event.pointerType === 'mouse') light(i, j); },
+      pointerleave: (event) => { if (event.pointerType === 'mouse') relight(); },
+      focus() {
+        cells.flat().forEach((other) => { other.tabIndex = other === cell ? 0 : -1; });
+        light(i, j);
+      },
+      blur: () => light(),
+      click: () => cell.focus() },   // not every browser focuses a button that is touched
+    element('span', { class: 'unseen' }, `${on}: `), element('span'));
+    return cell;
+  };
+  const cells = names.map((row, i) => row.map((on, j) => at(i, j, on)));
   const relight = () => {
     const focused = cells.flat().find((cell) => cell.matches(':focus'));
-    if (focused) light(...focused.dataset.at.split(',').map(Number)); else light();
+    light(...(focused ? focused.dataset.at.split(',').map(Number) : []));
   };
-  const box = group(name, `numbers ${kind}`, ...cells.map((row) => element('div', { class: 'row' }, ...row)));
+  const head = (text) => element('span', { class: 'head-of-numbers', 'aria-hidden': 'true' }, text);
+  const box = group(name, `numbers ${kind}`,
+    ...(columns ? [element('div', { class: 'row' }, ...(rows ? [head('')] : []), ...columns.map(head))] : []),
+    ...cells.map((row, i) => element('div', { class: 'row' }, ...(rows ? [head(rows[i])] : []), ...row)));
   box.addEventListener('keydown', (event) => {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
     if (event.key === 'Escape') event.target.blur();
@@ -466,9 +484,10 @@ export function numberTable({ name, names, light, kind = '' }) {
     cells[i + step[0]]?.[j + step[1]]?.focus();
     event.preventDefault();
   });
-  return { element: box, show: (values) => cells.forEach((row, i) => row.forEach((cell, j) => {
-    if (cell.lastChild.textContent !== values[i][j]) cell.lastChild.textContent = values[i][j];
-  })), mark: (i, j, on) => put(cells[i][j], 'data-lit', String(Boolean(on))) };
+  return { element: box, show: (values) => values.forEach((row, i) => row.forEach((value, j) => {
+    const shown = cells[i][j].lastChild;
+    if (shown.textContent !== value) shown.textContent = value;
+  })) };
 }
 
 // Text under the figure. It changes at once for the eye, and is read aloud when it has rested.
@@ -539,6 +558,16 @@ export function glide(show, seconds = 0.7) {
   if (calm()) show(1); else frame = requestAnimationFrame(tick);
   return () => cancelAnimationFrame(frame);
 }
+
+// The unit vectors of a frame, as labels.
+export const hats = (letter) => AXES.map((axis) => `$\\hat{${letter}}_${axis}$`);
+
+// A result with its title.
+export const readout = (title, ...parts) => element('div', { class: 'readout' }, element('div', { class: 'title' },
+  ...title.map((part) => (typeof part === 'string' ? element('span', {}, part) : part))), ...parts);
+
+// The drawing with the words under it; on a narrow screen it stays in view while the controls scroll.
+export const stage = (sheet, text) => element('div', { class: 'stage' }, sheet.svg, text.element);
 
 // ---- beginning and end ---------------------------------------------------------------------------------
 

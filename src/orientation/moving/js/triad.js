@@ -1,86 +1,198 @@
-import { AXES, IDENTITY, add, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed, dot, length,
-  quaternionFromAxisAngle, SEQUENCES, scale, simpleDcm, multiply, subtract, unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, group, liveText, numberField,
-  numberTable, onceAFrame, open, plain, slider, wrapped } from './shared.js';
+import { AXES, IDENTITY, bodyFixedFromDcm, dcmFromAxisAngle, dot, gimbalLockMargin, length, multiply,
+  quaternionFromAxisAngle, SEQUENCES, scale, simpleDcm, subtract, unit } from './mathematics.js';
+import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, group, hats, liveText,
+  numberField, numberTable, onceAFrame, open, plain, radians, readout, slider, stage, turned, wrapped } from './shared.js';
 
-const REACH = 1.25;
+const REACH = 1.25, KNOB = 1.38, SIZE = 112;   // as in triad.py
 const ANGLES = ['$\\psi$', '$\\theta$', '$\\varphi$'];
+const [N, A] = ['n', 'a'].map(hats);
+const number = (value, digits = 3) => fixed(value, digits).trim();
+const inDegrees = (angle) => `${number(degrees(angle), 1)}°`;
 
 export function render({ model, el }) {
-  const state = () => ({ axis: model.get('axis'), angle: model.get('angle'), sequence: model.get('sequence') });
-  let lit = null;   // what a touched number means: { kind, i, j }
-  let typed = null;
+  let lit = null;       // the number that is touched: { kind, i, j }
+  let typed = [0, 0, 0];   // the axis as the reader wrote it, of any length
 
-  const sheet = new Sheet({ bounds: [-180, -180, 180, 180], changed: () => redraw(),
+  const light = (kind) => (i, j) => {
+    lit = i === undefined ? null : { kind, i, j };
+    redraw();
+  };
+  const turnTo = (angle) => change(model, { angle });
+  const pointTo = (axis) => change(model, { axis });
+  const sheet = new Sheet({ bounds: [-180, -160, 180, 160], size: SIZE, changed: () => redraw(),
     name: 'Triads of the frames N and A from one origin; A is turned about the unit vector e.',
     grab(part, at) {
-      const { axis, angle } = state();
+      const axis = model.get('axis');
       if (part === 'axis') {
-        const follower = followSphere(sheet, { vector: scale(REACH, axis), at });
-        return (to) => change(model, { axis: follower(to) });
+        const direction = followSphere(sheet, { vector: scale(KNOB, axis), at });
+        return (to) => pointTo(direction(to));
       }
-      if (part) {
-        const follower = followTurn(sheet, { axis, arm: IDENTITY[part], angle, at });
-        return (to) => change(model, { angle: wrapped(follower(to)) });
-      }
-      return null;
+      if (!part) return null;
+      const follower = followTurn(sheet, { axis, arm: IDENTITY[part], angle: model.get('angle'), at });
+      return (to) => turnTo(wrapped(follower(to)));
     } });
   const redraw = onceAFrame(draw);
-  const light = (kind) => (i, j) => { lit = i === undefined ? null : { kind, i, j }; redraw(); };
 
-  const angle = slider({ symbol: '$\\theta$', name: 'theta', change: (value) => change(model, { angle: value }) });
-  const fields = AXES.map((name, k) => numberField({ name: `${name} component of the axis`, change(value) {
+  const angle = slider({ symbol: '$\\theta$', name: 'theta', change: turnTo });
+  const fields = AXES.map((axis, k) => numberField({ name: `${axis} component of the axis`, change(value) {
     typed[k] = value;
-    if (length(typed) > 0) change(model, { axis: unit(typed) });
-    else text.say('A zero vector points nowhere: give the axis at least one component that is not zero.');
+    if (length(typed) > 0) pointTo(unit(typed));
+    else text.say('A zero vector points nowhere: at least one component of the axis must differ from zero.');
   } }));
-  const presets = [['$\\hat{n}_x$', [1, 0, 0]], ['$\\hat{n}_y$', [0, 1, 0]], ['$\\hat{n}_z$', [0, 0, 1]], ['(1, 1, 1)', [1, 1, 1]]]
-    .map(([name, axis]) => button(name, () => { typed = axis.slice(); change(model, { axis: unit(axis) }); fields.forEach((f, k) => f.show(axis[k])); }));
-
-  const matrix = numberTable({ name: 'Direction cosine matrix of A with respect to N', kind: 'bracket', light: light('matrix'),
-    names: AXES.map((i) => AXES.map((j) => `a ${i} dot n ${j}`)) });
-  const euler = numberTable({ name: 'Euler angles in degrees', names: [['psi', 'theta', 'phi']], light: light('euler') });
-  const axisAngle = numberTable({ name: 'Axis and angle', names: [['e x', 'e y', 'e z', 'theta']], light: light('axis') });
-  const quaternion = numberTable({ name: 'Quaternion, scalar first', names: [['q 0', 'q i', 'q j', 'q k']], light: light('quaternion') });
-  const sequence = choice({ name: 'Sequence', options: SEQUENCES, change: (value) => change(model, { sequence: value }) });
+  const presets = [...IDENTITY, [1, 1, 1]].map((axis, k) => button(N[k] ?? '(1, 1, 1)', () => pointTo(unit(axis)),
+    { 'aria-label': k < 3 ? `axis n ${AXES[k]}` : 'axis 1, 1, 1' }));
+  const matrix = numberTable({ name: 'Direction cosine matrix of A with respect to N', kind: 'bracket', rows: A, columns: N,
+    names: AXES.map((i) => AXES.map((j) => `a ${i} dot n ${j}`)), light: light('matrix') });
+  const euler = numberTable({ name: 'Euler angles', columns: ANGLES, names: [['psi', 'theta', 'phi']], light: light('euler') });
+  const axisAngle = numberTable({ name: 'Axis and angle', columns: ['$e_x$', '$e_y$', '$e_z$', '$\\theta$'],
+    names: [['e x', 'e y', 'e z', 'theta']], light: light('axis') });
+  const quaternion = numberTable({ name: 'Quaternion, scalar first', columns: ['$q_0$', '$q_i$', '$q_j$', '$q_k$'],
+    names: [['q 0', 'q i', 'q j', 'q k']], light: light('quaternion') });
+  const sequence = choice({ name: 'Sequence of the Euler angles', hidden: true, options: SEQUENCES,
+    change: (value) => change(model, { sequence: value }) });
   const text = liveText();
-
-  const title = (words) => element('p', { class: 'title' }, words);
-  open(el, sheet.svg,
-    element('div', { class: 'controls readouts' },
-      title('Direction cosine matrix ${}^A\\mathbf{C}^N$'), matrix.element,
-      title('Euler angles'), sequence.element, euler.element,
-      title('Axis and angle'), axisAngle.element, title('Quaternion'), quaternion.element),
+  open(el, stage(sheet, text),
     element('div', { class: 'controls' }, angle.element,
-      group('Axis', 'row-of-controls', element('span', { class: 'symbol' }, '$\\hat{e}$'), ...fields.map((field) => field.element), ...presets)),
-    text.element);
+      group('Axis', 'row-of-controls', element('span', { class: 'symbol', 'aria-hidden': 'true' }, '$\\hat{e}$'),
+        ...fields.map((field) => field.element), ...presets)),
+    element('div', { class: 'readouts' },
+      readout(['Direction cosine matrix ${}^A\\mathbf{C}^N$'], matrix.element),
+      readout(['Euler angles', sequence.element], euler.element),
+      readout(['Axis and angle'], axisAngle.element), readout(['Quaternion'], quaternion.element)));
 
   function draw() {
-    const { axis, angle: theta, sequence: order } = state(), dcm = dcmFromAxisAngle(axis, theta);
-    if (!typed || length(subtract(unit(typed), axis)) > 1e-9) { typed = [...axis]; fields.forEach((field, k) => field.show(axis[k])); }
-    angle.show(theta);
-    sequence.show(order);
-    matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
-    euler.show([bodyFixedFromDcm(dcm, order).map((entry) => `${fixed(degrees(entry), 1)}°`)]);
-    axisAngle.show([[...axis.map((entry) => fixed(entry)), `${fixed(degrees(theta), 1)}°`]]);
-    quaternion.show([quaternionFromAxisAngle(axis, theta).map((entry) => fixed(entry))]);
-    sheet.draw(() => picture(axis, theta, dcm));
-    text.say(`$A$ is turned from $N$ through $\\theta$ = ${plain(degrees(theta))}° about $\\hat{e}$.`);
-  }
-
-  function picture(axis, theta, dcm) {
-    sheet.line([scale(-1, axis), axis], 'accent', 'guide');
-    for (const start of IDENTITY) {
-      const foot = scale(dot(start, axis), axis), arm = subtract(start, foot);
-      if (length(arm) > 1e-6) sheet.turn(axis, theta, arm, { radius: length(arm), origin: foot, colour: 'muted', head: false });
-    }
-    sheet.triad('N', IDENTITY, { reach: REACH });
-    sheet.arrow(scale(REACH, axis), { colour: 'accent', label: '$\\hat{e}$' });
-    sheet.triad('A', dcm);
-    dcm.forEach((row, k) => sheet.grip(row, String(k)));
-    sheet.grip(scale(REACH, axis), 'axis');
+    const now = { axis: model.get('axis'), angle: model.get('angle'), sequence: model.get('sequence') };
+    now.dcm = dcmFromAxisAngle(now.axis, now.angle);
+    now.euler = bodyFixedFromDcm(now.dcm, now.sequence);
+    now.quaternion = quaternionFromAxisAngle(now.axis, now.angle);
+    if (length(subtract(unit(typed), now.axis)) > 1e-9) typed = [...now.axis];
+    fields.forEach((field, k) => field.show(typed[k]));
+    angle.show(now.angle);
+    sequence.show(now.sequence);
+    matrix.show(now.dcm.map((row) => row.map((entry) => fixed(entry))));
+    euler.show([now.euler.map((entry) => `${fixed(degrees(entry), 1)}°`)]);
+    axisAngle.show([[...now.axis.map((entry) => fixed(entry)), `${fixed(degrees(now.angle), 1)}°`]]);
+    quaternion.show([now.quaternion.map((entry) => fixed(entry))]);
+    const meaning = lit && MEANINGS[lit.kind](now, lit.i, lit.j);
+    sheet.draw(() => {
+      picture(sheet, now, Boolean(meaning));
+      sheet.faded = false;
+      sheet.layer = 1;
+      meaning?.draw(sheet);
+    });
+    text.say(meaning?.words ?? `$A$ is turned from $N$ through $\\theta$ = ${plain(degrees(now.angle))}° about $\\hat{e}$ = `
+      + `(${now.axis.map((entry) => number(entry)).join(', ')}). Touch a number to see what it means.`);
   }
 
   draw();
   return follow(model, ['axis', 'angle', 'sequence'], redraw);
+}
+
+function picture(sheet, { axis, angle, dcm }, faded) {
+  sheet.faded = faded;
+  sheet.line([scale(-1, axis), scale(KNOB, axis)], 'accent', 'guide');
+  IDENTITY.forEach((start) => around(sheet, axis, angle, start, { colour: 'muted', head: false }));
+  sheet.triad('N', IDENTITY, { reach: REACH });
+  sheet.triad('A', dcm);
+  sheet.arrow(axis, { colour: 'accent' });
+  const knob = scale(KNOB, axis);
+  sheet.dot(knob, 'accent', 5);
+  sheet.label(knob, '$\\hat{e}$', 'accent', [15, -9]);
+  dcm.forEach((row, k) => sheet.grip(row, String(k)));
+  sheet.grip(knob, 'axis');
+}
+
+// The way of the tip of `start` when it turns about the axis.
+function around(sheet, axis, angle, start, options) {
+  const foot = scale(dot(start, axis), axis), arm = subtract(start, foot);
+  if (length(arm) > 1e-6) sheet.turn(axis, angle, arm, { radius: length(arm), origin: foot, ...options });
+}
+
+// What each number means: words, and what lights up in the drawing.
+const MEANINGS = {
+  matrix({ dcm }, i, j) {
+    const value = dcm[i][j], between = Math.acos(Math.max(-1, Math.min(1, value)));
+    return {
+      words: `Row ${AXES[i]}, column ${AXES[j]}: ${A[i]} · ${N[j]} = cos ${inDegrees(between)} = ${number(value)}. It is the shadow of `
+        + `${A[i]} on the line of ${N[j]}${value < -0.0005 ? ', which falls on the far side' : ''}.`,
+      draw(sheet) {
+        sheet.arrow(scale(REACH, IDENTITY[j]), { colour: 'N', label: N[j] });
+        sheet.arrow(dcm[i], { colour: 'A', label: A[i] });
+        sheet.shadow(dcm[i], IDENTITY[j]);
+        sheet.arc(IDENTITY[j], dcm[i], { radius: 0.36, head: false });
+      },
+    };
+  },
+
+  euler({ euler, sequence, dcm }, _, k) {
+    const turns = [...sequence].map((axis, n) => simpleDcm(axis, euler[n]));
+    const before = turns.slice(0, k).reduce((frame, turn) => multiply(turn, frame), IDENTITY);
+    const after = multiply(turns[k], before), axis = before[AXES.indexOf(sequence[k])];
+    const margin = gimbalLockMargin(euler, sequence);
+    const about = [`${N[AXES.indexOf(sequence[0])]}`, `the ${sequence[1]} unit vector, as the first turn has left it`,
+      `${A[AXES.indexOf(sequence[2])]}, which the first two turns have put in its place`][k];
+    return {
+      words: `${ANGLES[k]} = ${inDegrees(euler[k])}: the ${['first', 'second', 'third'][k]} turn, about ${about}.`
+        + (margin < radians(1) ? ' Here this sequence is at gimbal lock: the first and the third turn have one axis.' : ''),
+      draw(sheet) {
+        const frame = (rows, letter) => (letter ? sheet.triad(letter, rows, { reach: letter === 'N' ? REACH : 1 })
+          : rows.forEach((row) => sheet.arrow(row, { colour: 'muted' })));
+        frame(before, k === 0 ? 'N' : '');
+        frame(after, k === 2 ? 'A' : '');
+        sheet.line([scale(-1, axis), scale(REACH, axis)], 'accent', 'guide');
+        sheet.arrow(axis, { colour: 'accent' });
+        before.forEach((row) => around(sheet, axis, euler[k], scale(0.8, row), { colour: 'accent', kind: 'thick' }));
+        const clear = before.find((row) => Math.abs(dot(row, axis)) < 0.5);
+        sheet.turn(axis, euler[k], clear, { radius: 0.8, label: ANGLES[k], colour: 'accent', kind: 'thick' });
+      },
+    };
+  },
+
+  axis({ axis, angle }, _, k) {
+    if (k === 3) {
+      return { words: `$\\theta$ = ${inDegrees(angle)}: the angle of the one turn about $\\hat{e}$ that brings $N$ to $A$.`,
+        draw: (sheet) => angleAbout(sheet, axis, angle, '$\\theta$') };
+    }
+    return {
+      words: `$e_${AXES[k]}$ = ${number(axis[k])}: the shadow of $\\hat{e}$ on the line of ${N[k]}. On the line of ${A[k]} it is as `
+        + 'long, because the turn leaves its own axis where it is.',
+      draw(sheet) {
+        sheet.arrow(scale(REACH, IDENTITY[k]), { colour: 'N', label: N[k] });
+        sheet.arrow(axis, { colour: 'accent' });
+        sheet.shadow(axis, IDENTITY[k]);
+      },
+    };
+  },
+
+  quaternion({ axis, angle, quaternion }, _, k) {
+    const half = angle / 2, sine = Math.sin(half);
+    if (k === 0) {
+      return {
+        words: `$q_0$ = cos $\\theta/2$ = cos ${inDegrees(half)} = ${number(quaternion[0])}: the cosine of half the angle.`,
+        draw(sheet) {
+          angleAbout(sheet, axis, angle, '$\\theta$', { colour: 'muted' });
+          angleAbout(sheet, axis, half, '$\\theta/2$', { radius: 0.65, kind: 'thick' });
+        },
+      };
+    }
+    return {
+      words: `$q_${'0ijk'[k]}$ = sin $\\theta/2$ · $e_${AXES[k - 1]}$ = ${number(sine)} · ${number(axis[k - 1])} = ${number(quaternion[k])}: the `
+        + `shadow on the line of ${N[k - 1]} of $\\hat{e}$, shortened to sin $\\theta/2$.`,
+      draw(sheet) {
+        sheet.arrow(scale(REACH, IDENTITY[k - 1]), { colour: 'N', label: N[k - 1] });
+        angleAbout(sheet, axis, half, '$\\theta/2$', { radius: 0.65, kind: 'thick' });
+        sheet.arrow(scale(sine, axis), { colour: 'accent' });
+        sheet.shadow(scale(sine, axis), IDENTITY[k - 1]);
+      },
+    };
+  },
+};
+
+// An angle drawn about the axis, between the unit vector of N that it moves most and where it goes.
+function angleAbout(sheet, axis, angle, label, { radius = 0.95, colour = 'accent', kind = '' } = {}) {
+  const far = axis.map(Math.abs), k = far.indexOf(Math.min(...far));
+  const arm = scale(radius + 0.1, unit(subtract(IDENTITY[k], scale(dot(IDENTITY[k], axis), axis))));
+  sheet.arrow(axis, { colour: 'accent' });
+  for (const side of [arm, turned(axis, angle, arm)]) sheet.line([[0, 0, 0], side], colour, 'guide');
+  sheet.turn(axis, angle, arm, { radius, label, colour, kind });
 }
