@@ -3,6 +3,9 @@
 ``orientation`` does not load this package, which needs anywidget.
 """
 from .figure import MovingFigure
+from .gimbal import GimbalFigure
+from .successive import SuccessiveFigure
+from .nine_numbers import NineNumbersFigure
 from .triad import TriadFigure
 
-__all__ = ['MovingFigure', 'TriadFigure']
+__all__ = ['GimbalFigure', 'MovingFigure', 'NineNumbersFigure', 'SuccessiveFigure', 'TriadFigure']

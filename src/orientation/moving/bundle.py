@@ -19,9 +19,9 @@ COMMENT = re.compile(r'^\s*//.*\n|^ +', re.MULTILINE)
 #: Every text that a figure sets as mathematics.
 LABELS = (*(rf'\hat{{{frame}}}_{axis}' for frame in 'nabcd' for axis in 'xyz'), r'\hat{e}', *'NABCDtxyz',
           r'\psi', r'\theta', r'\theta/2', r'\varphi', 'q_0', 'q_i', 'q_j', 'q_k', 'e_x', 'e_y', 'e_z',
-          r'{}^A\mathbf{C}^N', r'{}^D\mathbf{C}^A', r'\mathbf{M}',
+          r'{}^A\mathbf{C}^N', r'{}^D\mathbf{C}^A', r'\hat{a}_x\times\hat{a}_y',
           *(rf'\hat{{e}}_{axis}' for axis in 'xyz'), 'E', *(rf'\mathbf{{C}}_{axis}' for axis in 'xyz'),
-          *(rf'{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}' for frames in ('BN', 'CN', 'DN', 'BA', 'CB', 'DC')))
+          *(rf'{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}' for frames in ('NN', 'BN', 'CN', 'DN', 'BA', 'CB', 'DC')))
 
 
 @cache
