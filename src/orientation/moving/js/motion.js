@@ -1,0 +1,336 @@
+import { AXES, IDENTITY, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromBodyFixed, dcmFromQuaternion, dot, gimbalLockMargin,
+  length, multiply, nearestDcm, scale, times, transpose, unit } from './mathematics.js';
+import { Sheet, button, change, choice, degrees, element, follow, liveText, onceAFrame, open, player, put, slider,
+  stage } from './shared.js';
+
+// As in motion.py.
+const MOMENTS = { racket: [1.2, 16, 17], book: [0.8424, 1.7748, 2.5524] };
+const DESCRIPTIONS = { matrix: 'Direction cosine matrix', quaternion: 'Quaternion', angles: 'Euler angles' };
+const COLOURS = { matrix: 'A', quaternion: 'D', angles: 'C' };
+const SPIN = 4, SECONDS = 20, FINER = 10, LARGEST = 1e6, SAMPLE = 0.1;
+const SIZE = 118, LONGEST = 1.25, LEFT = -128, RIGHT = 168;
+const FAULT = [24, 124, -16, 2], ERROR = [156, 256, -12, 1], MARGIN = [288, 324, 0, 90];
+
+// ---- the integration -----------------------------------------------------------------------------------
+
+// A state is one list: the angular velocity along A, a quaternion, and then, but not in the reference, the
+// nine entries of a matrix row by row and three Euler angles in the sequence zxy.
+export const angularAcceleration = ([x, y, z], [a, b, c]) => [
+  -(y * (c * z) - z * (b * y)) / a, -(z * (a * x) - x * (c * z)) / b, -(x * (b * y) - y * (a * x)) / c];
+
+export const quaternionRate = ([a, b, c, d], [x, y, z]) => [(-b * x - c * y - d * z) / 2, (a * x + c * z - d * y) / 2,
+  (a * y + d * x - b * z) / 2, (a * z + b * y - c * x) / 2];
+
+export const dcmRate = ([xx, xy, xz, yx, yy, yz, zx, zy, zz], [x, y, z]) => [
+  z * yx - y * zx, z * yy - y * zy, z * yz - y * zz, x * zx - z * xx, x * zy - z * xy, x * zz - z * xz,
+  y * xx - x * yx, y * xy - x * yy, y * xz - x * yz];
+
+// The inverse of the angular velocity matrix for zxy, times the angular velocity.
+export function angleRates([, theta, phi], [x, y, z]) {
+  const sine = Math.sin(phi), cosine = Math.cos(phi), psiRate = (cosine * z - sine * x) / Math.cos(theta);
+  return [psiRate, cosine * x + sine * z, y - Math.sin(theta) * psiRate];
+}
+
+function rates(state, moments) {
+  const omega = state.slice(0, 3), changes = [...angularAcceleration(omega, moments), ...quaternionRate(state.slice(3, 7), omega)];
+  return state.length < 8 ? changes : [...changes, ...dcmRate(state.slice(7, 16), omega), ...angleRates(state.slice(16), omega)];
+}
+
+export function stepped(state, step, method, moments) {
+  const beyond = (far, slopes) => state.map((value, k) => value + far * slopes[k]);
+  const first = rates(state, moments);
+  if (method === 'Euler') return beyond(step, first);
+  const second = rates(beyond(step / 2, first), moments), third = rates(beyond(step / 2, second), moments);
+  const fourth = rates(beyond(step, third), moments);
+  return beyond(step / 6, first.map((a, k) => a + 2 * second[k] + 2 * third[k] + fourth[k]));
+}
+
+const quaternionOf = (state) => state.slice(3, 7);
+const withUnitQuaternion = (state) => [...state.slice(0, 3), ...unit(quaternionOf(state)), ...state.slice(7)];
+const rowsOf = (list) => [list.slice(0, 3), list.slice(3, 6), list.slice(6, 9)];
+
+// The matrix that each description stands for; of a quaternion it is |q|^2 times an orthogonal one.
+const MATRICES = { matrix: (state) => rowsOf(state.slice(7, 16)), quaternion: (state) => dcmFromQuaternion(quaternionOf(state)),
+  angles: (state) => dcmFromBodyFixed(state.slice(16), 'zxy') };
+
+export const fault = (matrix) => Math.max(...multiply(matrix, transpose(matrix)).flatMap(
+  (row, i) => row.map((entry, j) => Math.abs(entry - (i === j)))));
+
+export function error(matrix, truth) {
+  const { dcm } = nearestDcm(multiply(matrix, transpose(truth)));
+  return dcm ? axisAngleFromDcm(dcm).angle : NaN;
+}
+
+// A run is computed step by step as far as it is asked for, and keeps what it has computed.
+export class Run {
+  constructor({ body, axis, disturbance, method, step, restored }) {
+    Object.assign(this, { step, method, restored, moments: MOMENTS[body], axis: AXES.indexOf(axis) });
+    const omega = AXES.map((other) => (other === axis ? SPIN : disturbance));
+    this.momentum = unit(omega.map((entry, k) => entry * this.moments[k]));
+    this.states = [[...omega, 1, 0, 0, 0, ...IDENTITY.flat(), 0, 0, 0]];
+    this.references = [this.states[0].slice(0, 7)];
+    this.flips = [];   // the steps after which the spin axis has turned over
+    this.every = Math.max(1, Math.round(SAMPLE / step));
+    this.curves = new Map();   // path data, longer with every sample
+    this.margin = 90;
+    this.side = 1;
+    this.sample();
+  }
+
+  get last() { return this.states.length - 1; }
+
+  next() {
+    const state = stepped(this.states[this.last], this.step, this.method, this.moments);
+    if (!state.slice(0, 16).every((entry) => Math.abs(entry) < LARGEST) || !state.every(Number.isFinite)) {
+      this.ended = true;
+      return;
+    }
+    if (this.restored) {
+      state.splice(0, 7, ...withUnitQuaternion(state.slice(0, 7)));
+      state.splice(7, 9, ...nearestDcm(MATRICES.matrix(state)).dcm.flat());
+    }
+    let reference = this.references[this.last];
+    for (let k = 0; k < FINER; k += 1) reference = withUnitQuaternion(stepped(reference, this.step / FINER, 'Runge-Kutta', this.moments));
+    this.states.push(state);
+    this.references.push(reference);
+    const side = Math.sign(dot(this.truth(this.last)[this.axis], this.momentum));
+    if (side !== this.side) this.flips.push(this.last);
+    this.side = side;
+    this.sample();
+  }
+
+  truth(k) { return dcmFromQuaternion(quaternionOf(this.references[k])); }
+
+  // Margin of the reference to lock, in degrees.
+  marginAt(k) { return degrees(gimbalLockMargin(bodyFixedFromDcm(this.truth(k), 'zxy'), 'zxy')); }
+
+  faultAt(k, name) { return fault(MATRICES[name](this.states[k])); }
+
+  errorAt(k, name) { return error(MATRICES[name](this.states[k]), this.truth(k)); }
+
+  sample() {
+    const k = this.last;
+    this.margin = Math.min(this.margin, this.marginAt(k));
+    if (k % this.every) return;
+    const log = (value) => Math.log10(Math.max(value, 1e-30));
+    for (const name of Object.keys(DESCRIPTIONS)) {
+      this.extend(`fault ${name}`, FAULT, log(this.faultAt(k, name)));
+      this.extend(`error ${name}`, ERROR, log(this.errorAt(k, name)));
+    }
+    this.extend('margin', MARGIN, this.margin);
+    this.margin = 90;
+  }
+
+  extend(name, part, value) {
+    const data = this.curves.get(name) ?? '';
+    this.curves.set(name, `${data}${data ? 'L' : 'M'}${across(this.step * this.last).toFixed(1)} ${down(part, value).toFixed(1)}`);
+  }
+}
+
+const across = (time) => LEFT + (RIGHT - LEFT) * time / SECONDS;
+const down = ([top, bottom, least, most], value) => bottom - (bottom - top) * (Math.max(least, Math.min(most, value)) - least) / (most - least);
+
+// ---- the bodies, along A -------------------------------------------------------------------------------
+
+const HEAD = Array.from({ length: 29 }, (_, k) => [0.45 + 0.47 * Math.cos(Math.PI * k / 14), 0.36 * Math.sin(Math.PI * k / 14), 0]);
+const STRINGS = [...[0.12, 0.285, 0.45, 0.615, 0.78].flatMap((x) => [-1, 1].map((side) => [x, side * 0.36 * Math.sqrt(1 - ((x - 0.45) / 0.47) ** 2), 0])),
+  ...[-0.2, 0, 0.2].flatMap((y) => [-1, 1].map((side) => [0.45 + side * 0.47 * Math.sqrt(1 - (y / 0.36) ** 2), y, 0]))];
+const THROAT = [[0.065, 0.206, 0], [-0.24, 0, 0], [0.065, -0.206, 0]], HANDLE = [[-0.24, 0, 0], [-0.85, 0, 0]];
+const EDGES = [1.32, 0.9, 0.18];
+const COVER = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]].map(([x, y]) => [x * EDGES[0] / 2, y * EDGES[1] / 2, 0]);
+const OUTLINES = { racket: [HEAD, THROAT, HANDLE], book: [COVER] };
+
+// Components along N of points given along A: the rows of the matrix are A's unit vectors, skewed or not.
+const placed = (points, matrix) => { const columns = transpose(matrix); return points.map((point) => times(columns, point)); };
+
+function drawRacket(sheet, matrix) {
+  const near = dot(matrix[0], sheet.view[2]) > 0;
+  sheet.layer = near ? 2 : 4;
+  sheet.line(placed(THROAT, matrix), 'A', 'thick');
+  sheet.line(placed(HANDLE, matrix), 'A', 'tube');
+  sheet.layer = 3;
+  const head = placed(HEAD, matrix).map((point) => sheet.onSheet(point));
+  sheet.path(`M${'L'.repeat(27)}Z`, head.slice(1), `fill-${dot(matrix[2], sheet.view[2]) > 0 ? 8 : 38} bare A`, 0);
+  sheet.path('ML'.repeat(STRINGS.length / 2), placed(STRINGS, matrix).map((point) => sheet.onSheet(point)), 'faint A', 1);
+  sheet.path(`M${'L'.repeat(28)}`, head, 'thick A', 2);
+}
+
+function drawBook(sheet, matrix) {
+  const half = matrix.map((row, k) => scale(EDGES[k] / 2, row));
+  sheet.layer = 3;
+  [26, 26, 8].forEach((fill, k) => {
+    const u = half[(k + 1) % 3], v = half[(k + 2) % 3];
+    for (const side of [-1, 1]) {
+      // Cross products of the edges: the faces of a skewed box do not look along the rows.
+      if (side * dot(cross(u, v), sheet.view[2]) <= 0) continue;
+      sheet.area([add(u, v), add(v, scale(-1, u)), scale(-1, add(u, v)), add(u, scale(-1, v))].map((p) => add(p, scale(side, half[k]))), 'A',
+        k === 2 && side < 0 ? 38 : fill);
+    }
+  });
+}
+
+// ---- words ---------------------------------------------------------------------------------------------
+
+// '0.0023', '4.1 × 10⁻⁷': two digits.
+function power(value) {
+  if (!(value >= 1e-15)) return Number.isNaN(value) ? '–' : 'less than 10⁻¹⁵';
+  if (value >= 0.001 && value < 1000) return String(Number(value.toPrecision(2)));
+  const [mantissa, exponent] = value.toExponential(1).split('e');
+  return `${mantissa} × 10${[...exponent.replace('+', '')].map((sign) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(sign)]).join('')}`;
+}
+
+const often = (count) => ['has not flipped yet', 'has flipped once', 'has flipped twice'][count] ?? `has flipped ${count} times`;
+
+// ---- the figure ----------------------------------------------------------------------------------------
+
+const SETTINGS = ['body', 'axis', 'disturbance', 'method', 'step', 'restored'];
+let figures = 0;
+
+export function render({ model, el }) {
+  const number = figures += 1;
+  let run, made = '';
+
+  const sheet = new Sheet({ bounds: [-180, -150, 180, 150], size: SIZE, changed: () => redraw(),
+    name: 'The tumbling body with its triad A, drawn from the computed numbers. Dashed: where it really is.' });
+  const plot = new Sheet({ name: '', bounds: [-180, 0, 180, 356], grab(part, at) {
+    const scrub = (to) => { clock.pause(); clock.set(Math.max(0, Math.min(SECONDS, SECONDS * (to[0] - LEFT) / (RIGHT - LEFT)))); };
+    scrub(at);
+    return scrub;
+  } });
+  // The time slider does by keys what dragging in the plot does.
+  plot.svg.removeAttribute('tabindex');
+  plot.svg.removeAttribute('aria-roledescription');
+  put(plot.svg, 'role', 'img');
+  put(plot.svg, 'class', 'sheet plot');
+  put(plot.svg, 'aria-label', 'Plots over time of how far each description is from orthogonal, of its error against the reference, '
+    + 'both on logarithmic scales, and of the margin to gimbal lock. The table gives the values at the chosen time.');
+  const redraw = onceAFrame(draw);
+
+  const clock = player({ name: 'Time', seconds: SECONDS, show: (time) => change(model, { time }) });
+  const reset = button('Reset', () => { clock.pause(); made = ''; clock.set(0); redraw(); });
+  const body = choice({ name: 'Body', options: [['racket', 'tennis racket'], 'book'], change: (value) => change(model, { body: value }) });
+  const axis = choice({ name: 'Spin about', options: AXES.map((name, k) => [name, `${name}, ${['smallest', 'middle', 'largest'][k]} moment of inertia`]),
+    change: (value) => change(model, { axis: value }) });
+  const method = choice({ name: 'Method', options: [['Euler', 'Euler’s'], ['Runge-Kutta', 'Runge–Kutta, fourth order']],
+    change: (value) => change(model, { method: value }) });
+  const step = slider({ symbol: '', name: 'Step', unit: 'milliseconds', sign: ' ms', factor: 0.001, min: 5, max: 100, step: 5, more: () => '',
+    change: (value) => change(model, { step: value }) });
+  const disturbance = slider({ symbol: '', name: 'Disturbance', unit: 'radians per second', sign: ' rad/s', factor: 1, min: 0, max: 0.5, step: 0.01,
+    more: () => '', change: (value) => change(model, { disturbance: value }) });
+  const restored = element('input', { type: 'checkbox', change: () => change(model, { restored: restored.checked }) });
+  const named = (name, control) => element('div', { class: 'named' }, element('span', { 'aria-hidden': 'true' }, name), control.element);
+  const rows = Object.entries(DESCRIPTIONS).map(([name, title]) => {
+    const pick = element('input', { type: 'radio', name: `description-${number}`, value: name,
+      change: () => change(model, { description: name }) });
+    const [faulty, wrong] = [element('td'), element('td')];
+    return { name, pick, faulty, wrong, element: element('tr', {}, element('th', { scope: 'row' }, element('label', {}, pick,
+      element('svg', { class: 'swatch', viewBox: '0 0 34 10', 'aria-hidden': 'true' }, element('path', { class: `axis ${COLOURS[name]}`, d: 'M2 5H32' })),
+      element('span', {}, title))), faulty, wrong) };
+  });
+  const heads = ['Drawn', 'not orthogonal by', 'error (rad)'].map((text) => element('th', { scope: 'col' }, text));
+  const text = liveText();
+
+  open(el, stage(sheet, text),
+    element('div', { class: 'readouts' }, plot.svg),
+    element('div', { class: 'controls' },
+      element('div', { class: 'clock' }, clock.element, reset),
+      element('table', { class: 'runs' }, element('thead', {}, element('tr', {}, ...heads)), element('tbody', {}, ...rows.map((row) => row.element))),
+      element('div', { class: 'pairs' },
+        element('label', { class: 'choice' }, restored, element('span', {}, 'Restore matrix and quaternion after every step')),
+        method.element, named('Step', step), named('Disturbance', disturbance), body.element, axis.element)));
+
+  function draw() {
+    const settings = Object.fromEntries(SETTINGS.map((name) => [name, model.get(name)])), time = model.get('time');
+    const name = model.get('description');
+    if (made !== JSON.stringify(settings)) {
+      run = new Run(settings);
+      made = JSON.stringify(settings);
+    }
+    const wanted = Math.floor(time / run.step + 1e-9), until = performance.now() + 5;
+    while (run.last < wanted && !run.ended && performance.now() < until) run.next();
+    // The rest is computed in the next frames, and drawn as it grows.
+    if (run.last < wanted && !run.ended) redraw();
+    const k = Math.min(wanted, run.last);
+
+    if (clock.time !== time) clock.set(time);
+    body.show(settings.body);
+    axis.show(settings.axis);
+    method.show(settings.method);
+    step.show(settings.step);
+    disturbance.show(settings.disturbance);
+    restored.checked = settings.restored;
+    const values = Object.fromEntries(rows.map((row) => {
+      const value = [run.faultAt(k, row.name), run.errorAt(k, row.name)];
+      row.pick.checked = row.name === name;
+      [row.faulty, row.wrong].forEach((cell, i) => { if (cell.textContent !== power(value[i])) cell.textContent = power(value[i]); });
+      return [row.name, value];
+    }));
+    const matrix = MATRICES[name](run.states[k]);
+    sheet.draw(() => picture(settings.body, matrix, run.truth(k)));
+    plot.draw(() => curves(name, k));
+    text.say(told(name, k, settings, values[name], matrix));
+  }
+
+  function told(name, k, { body: what, restored: valid, method: how }, [faulty, wrong], matrix) {
+    const now = (run.step * k).toFixed(1), count = run.flips.filter((flip) => flip <= k).length;
+    const begin = `After ${now} s the ${what} ${often(count)}. `;
+    if (run.ended && k === run.last) {
+      return `${begin}Here the run ends: the computed numbers have passed a million. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
+    }
+    if (name === 'angles') {
+      return `${begin}The Euler angles always give a valid orientation. It is wrong by ${power(wrong)} rad, and ${Math.round(run.marginAt(k))}° from gimbal lock.`;
+    }
+    const title = name === 'matrix' ? 'The matrix' : 'The matrix of the quaternion';
+    if (valid) return `${begin}${title} is restored after every step and stays orthogonal, but the orientation is wrong by ${power(wrong)} rad.`;
+    const lengths = matrix.map(length), worst = lengths.map((far) => Math.abs(Math.log(far))), far = worst.indexOf(Math.max(...worst));
+    const seen = worst[far] > 0.02 ? `: its unit vector a ${AXES[far]} is ${lengths[far].toPrecision(3)} long` : '';
+    return `${begin}${title}, not restored, is not orthogonal by ${power(faulty)}${seen}. The orientation is wrong by ${power(wrong)} rad.`;
+  }
+
+  function picture(what, matrix, truth) {
+    sheet.size = SIZE;
+    sheet.triad('N', IDENTITY, { origin: times(transpose(sheet.view), [-136 / SIZE, -108 / SIZE, 0]), reach: 0.28 });
+    // A body that has grown out of the sheet is drawn smaller, and with it what it really is.
+    sheet.size = SIZE * Math.min(1, LONGEST / Math.max(...matrix.map(length)));
+    sheet.layer = 1;
+    sheet.arrow(scale(1.4, run.momentum), { colour: 'accent', label: '$\\mathbf{H}$' });
+    (what === 'racket' ? drawRacket : drawBook)(sheet, matrix);
+    matrix.forEach((row, i) => {
+      sheet.layer = i === 2 && dot(row, sheet.view[2]) <= 0 ? 1.5 : 5;
+      sheet.arrow(row, { colour: 'A', label: `$\\hat{a}_${AXES[i]}$` });
+    });
+    sheet.layer = 6;
+    for (const outline of OUTLINES[what]) sheet.line(placed(outline, truth), 'muted', 'guide');
+  }
+
+  function curves(drawn, k) {
+    const parts = [[FAULT, '\\mathrm{not\\ orthogonal\\ by}', { '10^{-15}': -15, '10^{-10}': -10, '10^{-5}': -5, 1: 0 }],
+      [ERROR, '\\mathrm{error\\ (rad)}', { '10^{-10}': -10, '10^{-5}': -5, 1: 0 }],
+      [MARGIN, '\\mathrm{margin\\ to\\ gimbal\\ lock\\ (degrees)}', { 0: 0, 90: 90 }]];
+    const now = across(run.step * k);
+    for (const [part, title, marks] of parts) {
+      const [top, bottom] = part;
+      plot.text(title, [(LEFT + RIGHT) / 2, top - 13], 'ink', 16);
+      const lines = [0, 5, 10, 15, 20].map((second) => [[across(second), top], [across(second), bottom]]);
+      for (const [words, value] of Object.entries(marks)) {
+        lines.push([[LEFT, down(part, value)], [RIGHT, down(part, value)]]);
+        plot.text(words, [LEFT - 26, down(part, value)], 'muted', 14);
+      }
+      plot.path('ML'.repeat(lines.length), lines.flat(), 'faint muted');
+      plot.path('ML', [[now, top], [now, bottom]], 'accent');
+    }
+    [0, 5, 10, 15, 20].forEach((second) => plot.text(String(second), [across(second), MARGIN[1] + 13], 'muted', 14));
+    plot.text('t\\ \\mathrm{(s)}', [across(17.5), MARGIN[1] + 15], 'ink', 16);
+    for (const [name, data] of run.curves) {
+      const colour = COLOURS[name.split(' ')[1]];
+      plot.marks.push({ kind: colour ? `axis ${colour}` : 'ink', data, depth: 1 });
+    }
+    for (const [part, value] of [[FAULT, run.faultAt(k, drawn)], [ERROR, run.errorAt(k, drawn)]]) {
+      const place = [now, down(part, Math.log10(Math.max(value, 1e-30)))];
+      plot.ellipse(place, [4.5, 0], [0, 4.5], `head ${COLOURS[drawn]}`, 2);
+    }
+  }
+
+  draw();
+  return follow(model, [...SETTINGS, 'description', 'time'], redraw);
+}
