@@ -4,8 +4,10 @@
 """
 from .figure import MovingFigure
 from .gimbal import GimbalFigure
+from .motion import MotionFigure
+from .quaternion import QuaternionFigure
 from .successive import SuccessiveFigure
 from .nine_numbers import NineNumbersFigure
 from .triad import TriadFigure
 
-__all__ = ['GimbalFigure', 'MovingFigure', 'NineNumbersFigure', 'SuccessiveFigure', 'TriadFigure']
+__all__ = ['GimbalFigure', 'MotionFigure', 'MovingFigure', 'NineNumbersFigure', 'QuaternionFigure', 'SuccessiveFigure', 'TriadFigure']

@@ -20,8 +20,12 @@ COMMENT = re.compile(r'^\s*//.*\n|^ +', re.MULTILINE)
 LABELS = (*(rf'\hat{{{frame}}}_{axis}' for frame in 'nabcd' for axis in 'xyz'), r'\hat{e}', *'NABCDtxyz',
           r'\psi', r'\theta', r'\theta/2', r'\varphi', 'q_0', 'q_i', 'q_j', 'q_k', 'e_x', 'e_y', 'e_z',
           r'{}^A\mathbf{C}^N', r'{}^D\mathbf{C}^A', r'\hat{a}_x\times\hat{a}_y',
-          *(rf'\hat{{e}}_{axis}' for axis in 'xyz'), 'E', *(rf'\mathbf{{C}}_{axis}' for axis in 'xyz'),
-          *(rf'{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}' for frames in ('NN', 'BN', 'CN', 'DN', 'BA', 'CB', 'DC')))
+          *(rf'\hat{{e}}_{axis}' for axis in 'xyz'), 'E', 'q', '-q', '0', r'4\,\mathrm{s}',
+          *(rf'{top}^\circ/\mathrm{{s}}' for top in (30, 60, 90, 120, 180, 360, 720)), *(rf'\mathbf{{C}}_{axis}' for axis in 'xyz'),
+          *(rf'{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}' for frames in ('NN', 'BN', 'CN', 'DN', 'BA', 'CB', 'DC')),
+          # The axes of the plots of motion.
+          r'\mathbf{H}', r'\mathrm{not\ orthogonal\ by}', r'\mathrm{error\ (rad)}', r'\mathrm{margin\ to\ gimbal\ lock\ (degrees)}',
+          r't\ \mathrm{(s)}', '10^{-15}', '10^{-10}', '10^{-5}', '0', '1', '5', '10', '15', '20', '90')
 
 
 @cache

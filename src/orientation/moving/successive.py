@@ -78,7 +78,7 @@ class SuccessiveFigure(MovingFigure):
 
     kind = 'successive'
     sheet = (-180, -142, 180, 222)
-    turns = Turns((('z', math.radians(30)), ('x', math.radians(40)), ('y', math.radians(30)))).tag(sync=True, state=True)
+    turns = Turns((('z', math.radians(50)), ('x', math.radians(30)), ('y', math.radians(30)))).tag(sync=True, state=True)
     fixed = traitlets.Enum(('body', 'space'), 'body').tag(sync=True, state=True)
     compare = traitlets.Enum(COMPARISONS, 'nothing').tag(sync=True, state=True)
     share = Numbers(1.0, largest=1.0).tag(sync=True, state=True)

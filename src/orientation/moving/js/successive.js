@@ -37,16 +37,16 @@ function compared(turns, fixed, compare) {
 
 export function render({ model, el }) {
   let lit = null;
-  const state = () => ({ turns: model.get('turns'), fixed: model.get('fixed'), compare: model.get('compare'), share: model.get('share') });
+  const state = () => ({ turns: model.get('turns'), kind: model.get('fixed'), compare: model.get('compare'), share: model.get('share') });
   const setTurn = (k, turn) => change(model, { turns: state().turns.map((old, n) => (n === k ? turn : old)) });
 
   const sheet = new Sheet({ bounds: [-180, -142, 180, 222], size: SIZE, changed: () => redraw(),
     name: 'The frames of the chain from one origin, and below them each frame by itself in order.',
     grab(part, at) {
       if (!part) return null;
-      const { turns, fixed, share } = state(), now = partly(turns, share), k = now.length - 1, [axis, angle] = turns[k];
-      const frames = framesOf(now, fixed);
-      const follower = followTurn(sheet, { axis: axisOf(frames, now, fixed, k), arm: frames[k][part], angle, at });
+      const { turns, kind, share } = state(), now = partly(turns, share), k = now.length - 1, [axis, angle] = turns[k];
+      const frames = framesOf(now, kind);
+      const follower = followTurn(sheet, { axis: axisOf(frames, now, kind, k), arm: frames[k][part], angle, at });
       return (to) => setTurn(k, [axis, wrapped(follower(to))]);
     } });
   const redraw = onceAFrame(draw);
@@ -73,7 +73,7 @@ export function render({ model, el }) {
     change(model, { turns, share: 1, compare: PAIRS.indexOf(compare) < turns.length - 1 ? compare : NOTHING });
   });
   const about = choice({ name: 'Turns about', options: [['body', 'the frame’s axes (body fixed)'], ['space', 'N’s axes (space fixed)']],
-    change: (fixed) => change(model, { fixed }) });
+    change: (value) => change(model, { fixed: value }) });
   const compare = choice({ name: 'Compare with', options: [NOTHING, ...PAIRS.map((pair) => [pair, `turns ${pair}`]), [OTHER, '']],
     change: (value) => change(model, { compare: value }) });
   const options = [...compare.element.querySelectorAll('option')];
@@ -100,13 +100,13 @@ export function render({ model, el }) {
   const heads = [...result.element.querySelectorAll('.row > .head-of-numbers:first-child')].slice(-3);
 
   function draw() {
-    const { turns, fixed, share, compare: comparison } = state(), now = partly(turns, share);
-    const dcm = framesOf(now, fixed).at(-1), end = LETTERS[now.length], other = compared(turns, fixed, comparison);
+    const { turns, kind, share, compare: comparison } = state(), now = partly(turns, share);
+    const dcm = framesOf(now, kind).at(-1), end = LETTERS[now.length], other = compared(turns, kind, comparison);
     const otherDcm = other && framesOf(partly(other.turns, share), other.fixed).at(-1);
-    about.show(fixed);
+    about.show(kind);
     compare.show(comparison);
     PAIRS.forEach((_, k) => { options[k + 1].hidden = options[k + 1].disabled = k > turns.length - 2; });
-    say(options.at(-1), fixed === 'body' ? 'the same turns, space fixed' : 'the same turns, body fixed');
+    say(options.at(-1), kind === 'body' ? 'the same turns, space fixed' : 'the same turns, body fixed');
     rows.forEach((row, k) => {
       row.element.hidden = k >= turns.length;
       if (k >= turns.length) return;
@@ -117,13 +117,13 @@ export function render({ model, el }) {
     more.disabled = turns.length === 4;
     fewer.disabled = turns.length === 1;
     if (Math.abs(chain.time - share * SECONDS) > 1e-6) chain.set(share * SECONDS);
-    factors.forEach((one, k) => one.show(now[k] ?? turns[k], k < now.length, fixed, turns.length));
-    set(title, `${dcmName(end, 'N')} as a product, newest turn on the ${fixed === 'body' ? 'left' : 'right'}`);
+    factors.forEach((one, k) => one.show(now[k] ?? turns[k], k < now.length, kind, turns.length));
+    set(title, `${dcmName(end, 'N')} as a product, newest turn on the ${kind === 'body' ? 'left' : 'right'}`);
     set(ends, `Multiplied out`);
     heads.forEach((head, k) => set(head, hat(end, AXES[k])));
     result.show(dcm.map((row) => row.map((entry) => fixed(entry))));
-    sheet.draw(() => picture(sheet, { turns, fixed, share, other, lit }));
-    text.say(sentence(end, fixed, dcm, comparison, otherDcm, lit));
+    sheet.draw(() => picture(sheet, { turns, kind, share, other, lit }));
+    text.say(sentence(end, kind, dcm, comparison, otherDcm, lit));
   }
 
   draw();
@@ -185,7 +185,7 @@ function sentence(end, kind, dcm, compare, otherDcm, lit) {
 // The direction that turn k of a chain is about, along N.
 const axisOf = (frames, turns, kind, k) => (kind === 'body' ? frames[k] : IDENTITY)[AXES.indexOf(turns[k][0])];
 
-function picture(sheet, { turns, fixed: kind, share, other, lit }) {
+function picture(sheet, { turns, kind, share, other, lit }) {
   const now = partly(turns, share), frames = framesOf(now, kind), last = now.length, end = frames.at(-1);
   sheet.triad('N', IDENTITY, { reach: REACH });
   sheet.faded = Boolean(lit || other);

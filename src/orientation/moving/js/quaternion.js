@@ -1,0 +1,301 @@
+import { AXES, IDENTITY, add, axisAngleFromDcm, conjugate, cross, dcmFromAxisAngle, dcmFromBodyFixed, dcmFromQuaternion, dot,
+  length, multiply, multiplyQuaternions, nearestDcm, quaternionFromAxisAngle, quaternionFromDcm, scale, slerp, subtract,
+  times, transpose, unit } from './mathematics.js';
+import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, glide, group, liveText,
+  numberField, numberTable, onceAFrame, open, plain, player, put, radians, slider, stage, words } from './shared.js';
+
+// As in quaternion.py: pixels, places on the sheet, seconds.
+const SIZE = 96, KNOB = 1.32, MIDDLE = [142, 130], RADIUS = 70, SECONDS = 4, BALL = 104, SAMPLES = 60;
+const PLOT = { left: -120, right: 150, top: 144, bottom: 196 }, TOPS = [30, 60, 90, 120, 180, 360, 720];
+const WAYS = ['C', 'D', 'E'], SEQUENCE = 'zxy', FULL = 4 * Math.PI;
+const number = (value, digits = 3) => fixed(value, digits).trim();
+const inDegrees = (angle) => `${number(degrees(angle), 1)}°`;
+const between = (first, second) => axisAngleFromDcm(multiply(second, transpose(first))).angle;
+
+export function render({ model, el }) {
+  const double = doubleView(model), way = wayView(model);
+  const views = { double, way };
+  const switches = [['double', '$q$ and $-q$'], ['way', 'From $A$ to $B$']].map(([name, text]) => button(text, () => change(model, { view: name })));
+  const root = open(el, element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches)), ...double.parts, ...way.parts);
+  root.classList.add('two-views');
+
+  function draw() {
+    const shown = model.get('view');
+    Object.keys(views).forEach((name, k) => {
+      put(switches[k], 'aria-pressed', String(name === shown));
+      for (const part of views[name].parts) part.hidden = name !== shown;
+    });
+    views[shown].draw();
+  }
+  const redraw = onceAFrame(draw);
+  double.redraw = way.redraw = redraw;
+  draw();
+  return follow(model, ['view', 'axis', 'angle', 'first', 'second', 'unit_vector', 'share'], redraw);
+}
+
+const readout = (title, ...parts) => element('div', { class: 'readout' }, element('div', { class: 'title' }, element('span', {}, title)), ...parts);
+
+// ---- q and -q ------------------------------------------------------------------------------------------
+
+function doubleView(model) {
+  const self = { redraw() {} };
+  let lit = null, typed = [0, 0, 0], stop = () => {};
+  const turnTo = (angle) => {
+    stop();
+    change(model, { angle: Math.min(FULL, Math.max(0, angle)) });
+  };
+  const pointTo = (axis) => change(model, { axis });
+  const sheet = new Sheet({ bounds: [-118, -132, 242, 232], size: SIZE, changed: () => self.redraw(),
+    name: 'A frame A that turns in N about the unit vector e, and beside it the circle of half the angle with q and minus q.',
+    grab(part, at) {
+      const axis = model.get('axis'), angle = model.get('angle');
+      if (part === 'axis') {
+        const direction = followSphere(sheet, { vector: scale(KNOB, axis), at });
+        return (to) => pointTo(direction(to));
+      }
+      if (part === 'q' || part === '-q') {
+        let now = angle, before = bearing(at);
+        return (to) => {
+          const next = bearing(to), step = next - before;
+          before = next;
+          now += 2 * (step - 2 * Math.PI * Math.round(step / (2 * Math.PI)));
+          turnTo(radians(Math.round(degrees(now))));
+        };
+      }
+      if (!part) return null;
+      const follower = followTurn(sheet, { axis, arm: IDENTITY[part], angle, at });
+      return (to) => turnTo(follower(to));
+    } });
+  const bearing = (at) => Math.atan2(MIDDLE[1] - at[1], at[0] - MIDDLE[0]);
+
+  const angle = slider({ symbol: '$\\theta$', name: 'theta', min: 0, max: 720, change: turnTo });
+  const once = button('Turn once round', () => {
+    const now = model.get('angle'), from = now > FULL / 2 + 1e-9 ? 0 : now;
+    stop();
+    stop = glide((part) => change(model, { angle: Math.min(FULL, from + part * 2 * Math.PI) }), 3);
+  });
+  const back = button('Back to 0°', () => turnTo(0));
+  const fields = AXES.map((axis, k) => numberField({ name: `${axis} component of the axis`, change(value) {
+    typed[k] = value;
+    if (length(typed) > 0) pointTo(unit(typed));
+    else text.say('A zero vector points nowhere: at least one component of the axis must differ from zero.');
+  } }));
+  const presets = IDENTITY.map((axis, k) => button(`$\\hat{n}_${AXES[k]}$`, () => pointTo(axis), { 'aria-label': `axis n ${AXES[k]}` }));
+  const light = (i, j) => {
+    lit = i === undefined ? null : [i, j];
+    self.redraw();
+  };
+  const quaternions = numberTable({ name: 'q and minus q, scalar first', rows: ['$q$', '$-q$'], columns: ['$q_0$', '$q_i$', '$q_j$', '$q_k$'],
+    names: ['q', 'minus q'].map((name) => ['0', 'i', 'j', 'k'].map((part) => `${name}, component ${part}`)), light });
+  const matrix = numberTable({ name: 'Direction cosine matrix of A with respect to N', kind: 'bracket',
+    rows: AXES.map((axis) => `$\\hat{a}_${axis}$`), columns: AXES.map((axis) => `$\\hat{n}_${axis}$`),
+    names: AXES.map((i) => AXES.map((j) => `a ${i} dot n ${j}`)), light: () => {} });
+  const text = liveText();
+  self.parts = [stage(sheet, text),
+    element('div', { class: 'controls' }, angle.element, element('div', { class: 'row-of-controls' }, once, back),
+      group('Axis', 'row-of-controls', element('span', { class: 'symbol', 'aria-hidden': 'true' }, '$\\hat{e}$'),
+        ...fields.map((field) => field.element), ...presets)),
+    element('div', { class: 'readouts' }, readout('Two quaternions of one orientation', quaternions.element),
+      readout('${}^A\\mathbf{C}^N$, from either of them', matrix.element))];
+
+  self.draw = () => {
+    const axis = model.get('axis'), theta = model.get('angle'), q = quaternionFromAxisAngle(axis, theta), dcm = dcmFromQuaternion(q);
+    if (length(subtract(unit(typed), axis)) > 1e-9) typed = [...axis];
+    fields.forEach((field, k) => field.show(typed[k]));
+    angle.show(theta);
+    quaternions.show([q, scale(-1, q)].map((one) => one.map((entry) => fixed(entry))));
+    matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
+    sheet.draw(() => doublePicture(sheet, axis, theta, dcm, lit));
+    text.say(lit ? componentText(q, axis, theta, lit) : doubleText(theta));
+  };
+  return self;
+}
+
+function doubleText(theta) {
+  const turns = theta / (2 * Math.PI), whole = Math.round(turns);
+  const half = `$\\theta$ = ${plain(degrees(theta), 1)}°, half of it ${plain(degrees(theta / 2), 1)}°.`;
+  if (Math.abs(turns - whole) > 1e-9) return `${half} $q$ and $-q$ are opposite points of the circle, and one and the same orientation.`;
+  return [`${half} $A$ is where $N$ is, and $q$ is 1.`,
+    `${half} After one full turn $A$ is back, but $q$ has come only half round: it is −1.`,
+    `${half} After two full turns $q$ is back at 1 as well.`][whole];
+}
+
+function componentText(q, axis, theta, [i, j]) {
+  const sign = i ? '−' : '', value = number(i ? -q[j] : q[j]), half = inDegrees(theta / 2);
+  return j === 0 ? `${sign}$q_0$ = ${sign}cos $\\theta/2$ = ${sign}cos ${half} = ${value}: how far the point lies to the right.`
+    : `${sign}$q_${'0ijk'[j]}$ = ${sign}sin $\\theta/2$ · $e_${AXES[j - 1]}$ = ${value}: how far up the point lies, sin ${half} = `
+      + `${number(Math.sin(theta / 2))}, times the component of $\\hat{e}$.`;
+}
+
+// A point of N that is seen at a place of the sheet.
+const placed = (sheet, [x, y]) => times(transpose(sheet.view), [x / sheet.size, -y / sheet.size, 0]);
+
+function doublePicture(sheet, axis, theta, dcm, lit) {
+  const knob = scale(KNOB, axis), far = axis.map(Math.abs), k = far.indexOf(Math.min(...far));
+  const arm = subtract(IDENTITY[k], scale(dot(IDENTITY[k], axis), axis));
+  sheet.line([scale(-0.6, axis), knob], 'accent', 'guide');
+  sheet.triad('N', IDENTITY, { reach: 1.25 });
+  sheet.triad('A', dcm);
+  sheet.arrow(axis, { colour: 'accent' });
+  sheet.dot(knob, 'accent', 5);
+  sheet.label(knob, '$\\hat{e}$', 'accent', [15, -9]);
+  // The angle, on its second turn outside the first.
+  const rest = theta - 2 * Math.PI;
+  if (rest > 1e-9) sheet.turn(axis, 2 * Math.PI, arm, { radius: 0.5, colour: 'accent', head: false });
+  if (theta > 0) sheet.turn(axis, rest > 1e-9 ? rest : theta, arm, { radius: rest > 1e-9 ? 0.6 : 0.5, label: '$\\theta$', colour: 'accent', kind: 'thick' });
+  sheet.grip(knob, 'axis');
+  dcm.forEach((row, n) => sheet.grip(row, String(n)));
+  circle(sheet, theta / 2, lit);
+}
+
+function circle(sheet, half, lit) {
+  const at = (radius, angle) => placed(sheet, [MIDDLE[0] + radius * Math.cos(angle), MIDDLE[1] - radius * Math.sin(angle)]);
+  const middle = at(0, 0), round = (radius, to) => Array.from({ length: 49 }, (_, k) => at(radius, k / 48 * to));
+  sheet.layer = 1;
+  sheet.line([at(-RADIUS - 12, 0), at(RADIUS + 12, 0)], 'muted', 'faint');
+  sheet.line([at(-RADIUS - 12, Math.PI / 2), at(RADIUS + 12, Math.PI / 2)], 'muted', 'faint');
+  sheet.line(round(RADIUS, 2 * Math.PI), 'muted');
+  sheet.label(at(RADIUS + 12, 0), '$q_0$', 'ink', [3, 13], 16);
+  sheet.label(at(RADIUS + 12, Math.PI / 2), '$\\hat{e}$', 'accent', [12, 2], 16);
+  sheet.layer = 2;
+  if (half > 1e-9) {
+    sheet.line(round(RADIUS, half), 'accent', 'thick');
+    sheet.line(round(22, half), 'accent');
+    sheet.label(at(40, half / 2), '$\\theta/2$', 'accent', [0, 0], 16);
+  }
+  const [q, opposite] = [0, Math.PI].map((turn) => at(RADIUS, half + turn));
+  if (lit) {
+    const [i, j] = lit, tip = i ? opposite : q, [x, y] = sheet.onSheet(tip);
+    const foot = placed(sheet, j ? [MIDDLE[0], y] : [x, MIDDLE[1]]);
+    sheet.line([tip, foot], 'ink', 'guide');
+    sheet.line([middle, foot], 'ink', 'shadow');
+  }
+  sheet.arrow(q, { start: middle, colour: 'accent', label: '$q$' });
+  sheet.arrow(opposite, { start: middle, colour: 'muted', label: '$-q$' });
+  sheet.grip(q, 'q');
+  sheet.grip(opposite, '-q');
+}
+
+// ---- from one orientation to another -------------------------------------------------------------------
+
+// The three ways, as functions of the share of the way; null where there is none.
+function waysBetween(first, second) {
+  const [from, to] = [first, second].map((angles) => dcmFromBodyFixed(angles, SEQUENCE));
+  const [q, p] = [from, to].map(quaternionFromDcm), product = dot(q, p), near = scale(product < 0 ? -1 : 1, p);
+  const raw = (share) => from.map((row, k) => add(scale(1 - share, row), scale(share, to[k])));
+  return { from, to, raw, dcms: [
+    // Half a turn apart both ways round are equally long.
+    (share) => (Math.abs(product) > 1e-12 ? dcmFromQuaternion(slerp(q, near, share)) : null),
+    (share) => dcmFromBodyFixed(add(scale(1 - share, first), scale(share, second)), SEQUENCE),
+    (share) => nearestDcm(raw(share)).dcm] };
+}
+
+// Radians per second, from orientations a little before and after.
+function speedAt(way, share) {
+  const before = way(Math.max(0, share - 1e-4)), after = way(Math.min(1, share + 1e-4));
+  const passed = SECONDS * (Math.min(1, share + 1e-4) - Math.max(0, share - 1e-4));
+  return before && after ? between(before, after) / passed : NaN;
+}
+
+function wayView(model) {
+  const self = { redraw() {} };
+  const sheet = new Sheet({ bounds: [-180, -142, 180, 222], size: BALL, changed: () => self.redraw(),
+    name: 'The sphere that the tip of a unit vector moves on, its three ways from A to B, and below it their speeds.' });
+  let edited = 'second', kept = {};
+  const ends = choice({ name: 'Set the angles z-x-y of', options: [['first', 'A, the start'], ['second', 'B, the end']], change(value) {
+    edited = value;
+    self.redraw();
+  } });
+  const angles = ['psi', 'theta', 'phi'].map((name, k) => slider({ symbol: `$\\${name === 'phi' ? 'varphi' : name}$`, name,
+    change: (value) => change(model, { [edited]: model.get(edited).map((old, n) => (n === k ? value : old)) }) }));
+  const tip = choice({ name: 'Follow the unit vector', options: AXES, change: (value) => change(model, { unit_vector: value }) });
+  const way = player({ name: 'Time on the way', seconds: SECONDS, show: (time) => change(model, { share: time / SECONDS }) });
+  const table = numberTable({ name: 'The three ways', kind: 'ways', rows: ['$C$ slerp', '$D$ Euler angles', '$E$ matrix entries'],
+    columns: ['turned by', 'speed'], names: ['C, slerp', 'D, Euler angles', 'E, matrix entries'].map((name) => ['turned from A by', 'speed'].map(
+      (what) => `${name}, ${what}`)), light: () => {} });
+  const lengths = numberTable({ name: 'Lengths of the rows of the blended matrix', columns: AXES.map((axis) => `row ${axis}`),
+    names: [AXES.map((axis) => `length of row ${axis}`)], light: () => {} });
+  const text = liveText();
+  self.parts = [stage(sheet, text),
+    element('div', { class: 'controls' }, way.element, element('div', { class: 'row-of-controls' }, tip.element, ends.element),
+      ...angles.map((angle) => angle.element)),
+    element('div', { class: 'readouts' }, readout('Now', table.element),
+      readout('Blended entries before they are repaired: lengths', lengths.element))];
+  [...table.element.querySelectorAll('.row > .head-of-numbers:first-child')].slice(1).forEach((head, k) => head.classList.add(WAYS[k]));
+
+  self.draw = () => {
+    const share = model.get('share'), first = model.get('first'), second = model.get('second'), k = AXES.indexOf(model.get('unit_vector'));
+    const key = JSON.stringify([first, second]);
+    if (kept.key !== key) kept = { key, ...sampled(waysBetween(first, second)) };
+    ends.show(edited);
+    angles.forEach((angle, n) => angle.show(model.get(edited)[n]));
+    tip.show(AXES[k]);
+    if (Math.abs(way.time - share * SECONDS) > 1e-6) way.set(share * SECONDS);
+    const now = kept.dcms.map((at) => at(share)), speeds = kept.dcms.map((at) => speedAt(at, share)), raw = kept.raw(share);
+    table.show(now.map((dcm, n) => (dcm ? [`${fixed(degrees(between(kept.from, dcm)), 1)}°`,
+      Number.isNaN(speeds[n]) ? '–' : `${fixed(degrees(speeds[n]), 1)} °/s`] : ['–', '–'])));
+    const sizes = raw.map(length);
+    lengths.show([sizes.map((size) => fixed(size))]);
+    sheet.draw(() => wayPicture(sheet, kept, now, raw[k], k, share));
+    text.say(wayText(kept, now, sizes));
+  };
+  return self;
+}
+
+// What is drawn of the ways: orientations at even times and the speeds between them.
+function sampled(ways) {
+  const tracks = ways.dcms.map((at) => Array.from({ length: SAMPLES + 1 }, (_, k) => at(k / SAMPLES)));
+  const speeds = tracks.map((track) => track.slice(1).map((dcm, k) => (dcm && track[k] ? between(track[k], dcm) * SAMPLES / SECONDS : NaN)));
+  return { ...ways, tracks, speeds, angle: between(ways.from, ways.to) };
+}
+
+function wayText({ angle, speeds }, [slerped, , repaired], sizes) {
+  if (!slerped) return '$A$ and $B$ are half a turn apart: both ways round are equally long, and slerp has no shorter one to take.';
+  if (!repaired) return 'The blended entries are as near to one orientation as to another: no matrix is the nearest to them.';
+  const euler = degrees(Math.min(...speeds[1])), fast = degrees(Math.max(...speeds[1])), short = Math.min(...sizes);
+  const way = speeds[1].reduce((sum, speed) => sum + speed, 0) * SECONDS / SAMPLES;
+  return `Slerp turns through ${inDegrees(angle)} at ${number(degrees(angle) / SECONDS, 1)} °/s. Euler angles turn through ${inDegrees(way)} in all, `
+    + `at ${number(euler, 1)} to ${number(fast, 1)} °/s. ${short < 0.9995 ? `The blended rows are too short now, the shortest ${number(short)}.` : ''}`;
+}
+
+function wayPicture(sheet, { from, to, tracks, speeds }, now, raw, k, share) {
+  const hat = (letter) => `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$`;
+  sheet.circle(sheet.view[2], { colour: 'muted', kind: 'faint' });
+  sheet.circle([0, 0, 1], { half: 'front', colour: 'muted', kind: 'faint' });
+  sheet.circle([0, 0, 1], { half: 'back', colour: 'muted', kind: 'guide faint' });
+  sheet.line([from[k], to[k]], 'E', 'guide');
+  tracks.forEach((track, n) => {
+    const tips = track.filter(Boolean).map((dcm) => dcm[k]);
+    if (tips.length > 1) sheet.line(tips, WAYS[n], 'axis trace');
+  });
+  sheet.arrow(from[k], { colour: 'A', label: hat('A') });
+  sheet.arrow(to[k], { colour: 'B', label: hat('B') });
+  sheet.layer = 1;
+  if (length(subtract(raw, scale(1 / (length(raw) || 1), raw))) > 1e-6) sheet.line([[0, 0, 0], raw], 'E');
+  sheet.dot(raw, 'E', 4);
+  const moving = share > 1e-9 && share < 1 - 1e-9;
+  now.forEach((dcm, n) => {
+    if (!dcm) return;
+    if (moving) sheet.arrow(dcm[k], { colour: WAYS[n], label: hat(WAYS[n]) });
+    else sheet.dot(dcm[k], WAYS[n], 5);
+  });
+  plot(sheet, speeds, share);
+}
+
+function plot(sheet, speeds, share) {
+  const { left, right, top, bottom } = PLOT, fast = degrees(Math.max(...speeds.slice(0, 2).flat().filter((speed) => speed >= 0)));
+  const highest = TOPS.find((one) => one >= fast) ?? TOPS.at(-1);
+  const at = (part, speed) => placed(sheet, [left + part * (right - left), bottom - Math.min(1.15, degrees(speed) / highest) * (bottom - top)]);
+  const tick = radians(highest);
+  sheet.line([at(0, 0), at(1, 0)], 'muted');
+  sheet.line([at(0, 0), at(0, tick)], 'muted');
+  sheet.line([at(0, tick), at(1, tick)], 'muted', 'faint');
+  sheet.label(at(0, tick), `$${highest}^\\circ/\\mathrm{s}$`, 'ink', [-30, 0], 14);
+  sheet.label(at(0, 0), '$0$', 'ink', [-11, 0], 14);
+  sheet.label(at(1, 0), `$${SECONDS}\\,\\mathrm{s}$`, 'ink', [0, 14], 14);
+  sheet.line([at(share, 0), at(share, tick)], 'ink', 'guide');
+  speeds.forEach((track, n) => {
+    const points = track.flatMap((speed, k) => (Number.isNaN(speed) ? [] : [at((k + 0.5) / SAMPLES, speed)]));
+    if (points.length > 1) sheet.line(points, WAYS[n], 'axis thin');
+  });
+}
