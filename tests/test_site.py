@@ -64,7 +64,7 @@ class Visit:
         self.page.on("requestfinished", self.note_size)
         self.page.goto(site + name)
         self.page.wait_for_load_state("networkidle")
-        self.page.wait_for_function("!document.documentElement.classList.contains('fonts-loading')")
+        self.page.wait_for_function("!document.documentElement.classList.contains('settling')")
 
     def note_request(self, request):
         if not request.url.startswith((self.site, "data:", "blob:")):
