@@ -5,7 +5,7 @@ import { Sheet, button, change, choice, degrees, element, fixed, follow, followT
 
 // Radii of the rings of B and C, half the camera, where the axes end; as in gimbal.py.
 const OUTER = 1.05, INNER = 0.76, CAMERA = [0.62, 0.44, 0.46], END = 1.42, SIZE = 98;
-const BOUNDS = [-180, -185, 200, 185], INSET = [1.36, 1.24];   // the triads of A and D, right and up
+const BOUNDS = [-180, -185, 200, 185], INSET = [1.36, 1.08];   // the triads of A and D, right and up
 const SYMBOLS = ['$\\psi$', '$\\theta$', '$\\varphi$'], NAMES = ['psi', 'theta', 'phi'];
 const CLOSE = radians(10), LOCKED = radians(0.5);
 
@@ -174,11 +174,8 @@ function picture(sheet, gimbal, angles, close, lit) {
   if (close) sheet.line([scale(-END, axes[0]), scale(END, axes[0])], 'accent', 'guide');
 
   sheet.label(scale(1.62, down), '$A$', 'A', [24, 4]);
-  for (const [letter, point] of [['B', scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]])))],
-    ['C', scale(INNER, add(scale(0.71, C[at[1]]), scale(-0.71, C[at[2]])))]]) {
-    const place = sheet.onSheet(point);
-    sheet.label(point, `$${letter}$`, letter, scale(20 / (Math.hypot(...place) || 1), place));
-  }
+  sheet.labelBeyond(scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]]))), '$B$', 'B', 20);
+  sheet.labelBeyond(scale(INNER, add(scale(0.71, C[at[1]]), scale(-0.71, C[at[2]]))), '$C$', 'C', 20);
 
   // The triads of A and D, which the matrix compares.
   const corner = add(scale(INSET[0], sheet.view[0]), scale(INSET[1], sheet.view[1]));

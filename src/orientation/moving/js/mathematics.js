@@ -74,15 +74,16 @@ export function checkDcm(matrix) {
     return `dcm is orthogonal but left-handed: its determinant is ${general(turned)}, not +1. One row or column `
       + 'has the wrong sign, or two have changed places';
   }
-  const what = p === q ? `row ${AXES[p]} has length ${general(Math.sqrt(product), 10)}, not 1`
+  const what = p === q ? `row ${AXES[p]} has length ${general(Math.sqrt(product), 12)}, not 1`
     : `rows ${AXES[p]} and ${AXES[q]} have dot product ${general(product)}, not 0`;
   const squares = [0, 3, 5].map((k) => products[k][2]), most = Math.max(...squares);
-  const scaled = most - Math.min(...squares) <= 1e-6 * most
+  // A scale closer to 1 than that cannot be told from rounding.
+  const scaled = worst > 1e-5 && most - Math.min(...squares) <= 1e-6 * most
     && [1, 2, 4].every((k) => Math.abs(products[k][2]) <= 1e-6 * most);
   let cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad';
   if (matrix.flat().every((entry) => entry === 0)) cause = 'Every entry is zero';
   else if (scaled) {
-    cause = `The whole matrix is ${general(Math.sqrt(squares[0]))} times an orthogonal one, as from a quaternion `
+    cause = `The whole matrix is ${general(Math.sqrt(squares[0]), 8)} times an orthogonal one, as from a quaternion `
       + 'that is not of unit length';
   } else if (worst < 0.1) {
     cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix';
@@ -151,7 +152,8 @@ export function bodyFixedFromDcm(c, sequence) {
   const sine = Math.sin(psi), cosine = Math.cos(psi);
   const jj = c[j][j] * cosine + c[j][k] * sine;
   const [theta, phi] = proper
-    ? [Math.atan2(c[i][j] * sine - c[i][k] * cosine, c[i][i]),
+    // The sine has the sign of the order, and the size alone keeps the middle angle in [0, pi].
+    ? [sign * Math.atan2(Math.abs(c[i][j] * sine - c[i][k] * cosine), c[i][i]),
       Math.atan2(-c[k][j] * cosine - c[k][k] * sine, jj)]
     : [Math.atan2(c[k][i], c[k][k] * cosine - c[k][j] * sine),
       Math.atan2(c[i][j] * cosine + c[i][k] * sine, jj)];

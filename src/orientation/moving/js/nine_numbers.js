@@ -1,35 +1,37 @@
-import { AXES, IDENTITY, add, checkDcm, conditions, determinant, general, length, nearestDcm, scale, subtract,
-  transpose } from './mathematics.js';
-import { Sheet, button, change, element, fixed, follow, glide, group, hats, liveText, numberField, onceAFrame, open, put, readout,
+import { AXES, IDENTITY, add, checkDcm, conditions, cross, determinant, length, nearestDcm, scale, subtract, unit } from './mathematics.js';
+import { Sheet, button, change, element, fixed, follow, glide, grid, group, hats, liveText, numberField, onceAFrame, open, put, readout,
   stage } from './shared.js';
 
-const REACH = 1.25, SIZE = 104;   // as in nine_numbers.py
+const REACH = 1.2, SIZE = 116;   // as in nine_numbers.py
 const A = hats('a'), N = hats('n');
-// What readers meet: a good matrix, the same with two decimals, and the four ways to go wrong.
+const GOOD = [[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0.36, -0.48, 0.8]];
+// What readers meet: a matrix that is valid to the last digit, and four that are not.
 const EXAMPLES = [
-  ['Good', [[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0.36, -0.48, 0.8]]],
-  ['Rounded', [[0.9, 0.4, 0.1], [-0.4, 0.8, 0.4], [0.1, -0.4, 0.9]]],
-  ['Measured', [[0.83, 0.57, -0.06], [-0.49, 0.71, 0.62], [0.31, -0.5, 0.74]]],
-  ['Scaled', [[0.96, 0.72, 0], [-0.576, 0.768, 0.72], [0.432, -0.576, 0.96]]],
-  ['Left-handed', [[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [-0.36, 0.48, -0.8]]],
+  ['Valid', GOOD],
+  ['One decimal', [[0.8, 0.6, 0], [-0.5, 0.6, 0.6], [0.4, -0.5, 0.8]]],
+  ['Measured', [[0.98, 0.43, -0.2], [-0.31, 0.8, 0.7], [0.08, -0.4, 0.74]]],
+  ['1.2 times', GOOD.map((row) => row.map((entry) => Math.round(1200 * entry) / 1000))],
+  ['Left-handed', [...GOOD.slice(0, 2), [-0.36, 0.48, -0.8]]],
 ];
+const PAIRS = [[0, 1], [1, 2], [2, 0]];
+const SMALL = 1e-9;
 
 export function render({ model, el }) {
   let stop = () => {};
-  const put_ = (matrix) => change(model, { matrix });
+  const setMatrix = (matrix) => change(model, { matrix });
+  const copy = () => model.get('matrix').map((row) => [...row]);
   const sheet = new Sheet({ bounds: [-180, -165, 180, 165], size: SIZE, camera: [40, 24], changed: () => redraw(),
     name: 'The rows of the matrix as arrows in the frame N, and the nearest triad of unit vectors.',
     grab(part, at) {
       if (!part) return null;
       stop();
-      const row = Number(part), from = model.get('matrix')[row], back = transpose(sheet.view);
+      const row = Number(part), from = copy()[row];
       // The tip moves in a plane parallel to the sheet.
       return (to) => {
-        const [right, down] = subtract(to, at).map((pixels) => pixels / SIZE);
-        const moved = add(from, scale(right, transpose(back)[0]), scale(-down, transpose(back)[1]));
-        const matrix = model.get('matrix').map((entries) => [...entries]);
+        const [right, down] = subtract(to, at), matrix = copy();
+        const moved = add(from, scale(right / SIZE, sheet.view[0]), scale(-down / SIZE, sheet.view[1]));
         matrix[row] = moved.map((entry) => Math.round(100 * entry) / 100 + 0);
-        put_(matrix);
+        setMatrix(matrix);
       };
     } });
   const redraw = onceAFrame(draw);
@@ -37,46 +39,48 @@ export function render({ model, el }) {
   const fields = AXES.map((i, row) => AXES.map((j, column) => numberField({ name: `row ${i}, column ${j}`, step: 0.05, digits: 4, min: -10, max: 10,
     change(value) {
       stop();
-      const matrix = model.get('matrix').map((entries) => [...entries]);
+      const matrix = copy();
       matrix[row][column] = value;
-      put_(matrix);
+      setMatrix(matrix);
     } })));
-  const head = (text) => element('span', { class: 'head-of-numbers', 'aria-hidden': 'true' }, text);
-  const grid = (name, rows) => group(name, 'numbers bracket', element('div', { class: 'row' }, head(''), ...N.map(head)),
-    ...rows.map((row, k) => element('div', { class: 'row' }, head(A[k]), ...row)));
   const entries = AXES.map(() => AXES.map(() => element('span', { class: 'number' })));
-  const facts = [...AXES.map((_, k) => `length of ${A[k]}`), ...[[0, 1], [1, 2], [2, 0]].map(([i, j]) => `${A[i]} · ${A[j]}`), 'right-handed'];
-  const checks = facts.map((fact) => ({ value: element('td'), verdict: element('td'), fact }));
-  const nearest = button('Take the nearest', () => {
-    const from = model.get('matrix'), { dcm } = nearestDcm(from);
-    stop();
-    stop = glide((part) => put_(part === 1 ? dcm : from.map((row, k) => add(scale(1 - part, row), scale(part, dcm[k])))));
+  const facts = [...A.map((row) => `|${row}|`), 'determinant', ...PAIRS.map(([i, j]) => `${A[i]} · ${A[j]}`)];
+  const checks = facts.map((fact) => {
+    const value = element('span', { class: 'value' }), verdict = element('span', { class: 'verdict' });
+    return { value, verdict, line: element('li', {}, element('span', { class: 'fact' }, fact), value, verdict) };
   });
-  const text = liveText();
-  const apart = element('span', { class: 'value' });
+  const take = button('Take the nearest', () => {
+    const from = copy(), { dcm } = nearestDcm(from);
+    stop();
+    stop = glide((part) => setMatrix(part === 1 ? dcm : from.map((row, k) => add(scale(1 - part, row), scale(part, dcm[k])))));
+  });
+  const examples = EXAMPLES.map(([name, matrix]) => button(name, () => {
+    stop();
+    setMatrix(matrix);
+  }));
+  const apart = element('span', { class: 'value' }), text = liveText();
   open(el, stage(sheet, text), element('div', { class: 'readouts' },
-    readout(['Nine numbers'], grid('Nine numbers', fields.map((row) => row.map((field) => field.element)))),
-    group('Examples', 'row-of-controls', ...EXAMPLES.map(([name, matrix]) => button(name, () => { stop(); put_(matrix); }))),
-    readout(['Nearest direction cosine matrix', nearest], grid('Nearest direction cosine matrix', entries), apart)),
-  element('table', { class: 'checks across' }, element('tbody', {}, ...checks.map(({ fact, value, verdict }) => element('tr', {},
-    element('th', { scope: 'row' }, fact), value, verdict)))));
+    readout(['Nine numbers'], grid({ name: 'Nine numbers', rows: A, columns: N, kind: 'bracket entries', cells: fields.map((row) => row.map((field) => field.element)) })),
+    group('Examples', 'row-of-controls', ...examples),
+    readout(['Nearest valid matrix, drawn dotted'], grid({ name: 'Nearest direction cosine matrix', rows: A, columns: N, kind: 'bracket',
+      cells: entries }), element('div', { class: 'row-of-controls' }, take, apart))),
+  element('ul', { class: 'checks', 'aria-label': 'Conditions' }, ...checks.map(({ line }) => line)));
 
   function draw() {
-    const matrix = model.get('matrix'), near = nearestDcm(matrix), turned = determinant(matrix);
+    const matrix = model.get('matrix'), near = nearestDcm(matrix), turned = determinant(matrix), fault = checkDcm(matrix);
     fields.forEach((row, i) => row.forEach((field, j) => field.show(matrix[i][j])));
-    entries.forEach((row, i) => row.forEach((entry, j) => { entry.textContent = near.dcm ? fixed(near.dcm[i][j], 4) : '?'; }));
-    nearest.disabled = !near.dcm || near.distance < 1e-9;
-    apart.textContent = near.dcm ? `Distance from the nine numbers: ${near.distance.toFixed(4)}` : 'Several are equally near.';
-    const all = conditions(matrix).map(({ value, wanted, fault }) => ({ value: fixed(value, 4), good: Math.abs(fault) <= 1e-9, wanted }));
-    all.push({ value: `det ${fixed(turned, 4)}`, good: turned > 0, wanted: '+' });
-    checks.forEach(({ value, verdict }, k) => {
-      value.textContent = all[k].value;
-      verdict.textContent = all[k].good ? '✓' : `✗ not ${all[k].wanted}`;
-      put(verdict, 'class', all[k].good ? 'good' : 'bad');
+    entries.forEach((row, i) => row.forEach((entry, j) => { entry.textContent = near.dcm ? fixed(near.dcm[i][j], 4) : '\u2013'; }));
+    take.disabled = !near.dcm || near.distance < SMALL;
+    apart.textContent = near.dcm ? `Distance ${near.distance.toFixed(4)}` : 'Several are equally near.';
+    const found = conditions(matrix).map(({ value, wanted, fault: excess }) => [value, wanted, Math.abs(excess) <= SMALL]);
+    found.splice(3, 0, [turned, turned > 0 ? 1 : '+1', Math.abs(turned - 1) <= 2 * SMALL]);
+    found.forEach(([value, wanted, holds], k) => {
+      checks[k].value.textContent = fixed(value, 4);
+      checks[k].verdict.textContent = holds ? '\u2713 holds' : `\u2717 not ${wanted}`;
+      put(checks[k].line, 'class', holds ? '' : 'fails');
     });
     sheet.draw(() => picture(sheet, matrix, near.dcm));
-    const fault = checkDcm(matrix);
-    text.say(fault ? `check_dcm says: ${fault}.` : 'check_dcm has nothing to say: a direction cosine matrix.');
+    text.say(fault ? `${fault}.` : 'A direction cosine matrix: rows of length 1, at right angles, right-handed.');
   }
 
   draw();
@@ -89,4 +93,30 @@ export function render({ model, el }) {
 
 function picture(sheet, matrix, dcm) {
   sheet.triad('N', IDENTITY, { reach: REACH });
+  sheet.layer = -1;
+  dcm?.forEach((row, k) => {
+    sheet.arrow(row, { colour: 'D' });
+    sheet.line([row, matrix[k]], 'D', 'guide');
+  });
+  sheet.layer = 0;
+  matrix.forEach((row, k) => {
+    sheet.arrow(row, { colour: 'A' });
+    sheet.labelBeyond(length(row) < 1 ? unit(row) : row, A[k], 'A');
+  });
+  sheet.layer = 1;
+  conditions(matrix).forEach(({ rows: [i, j], fault }) => {
+    const fails = Math.abs(fault) > SMALL, [u, v] = [matrix[i], matrix[j]].map(unit);
+    if (i !== j) {
+      // The corner between two rows: a square, or what has become of it.
+      sheet.line([u, add(u, v), v].map((p) => scale(0.2, p)), fails ? 'B' : 'muted', fails ? 'thick' : '');
+    } else if (fails) {
+      // Where the tip should be, and what is missing or too much.
+      sheet.line([matrix[i], u], 'B', 'thick');
+      sheet.ring(u, 'B', 5);
+    }
+  });
+  // Where the third row of a right-handed matrix would point.
+  const third = cross(matrix[0], matrix[1]);
+  if (determinant(matrix) < 0) sheet.arrow(third, { colour: 'B', label: '$\\hat{a}_x\\times\\hat{a}_y$' });
+  matrix.forEach((row, k) => sheet.grip(row, String(k)));
 }

@@ -213,8 +213,17 @@ export class Sheet {
     this.ellipse(this.onSheet(point), [radius, 0], [0, radius], `head ${colour}`, this.depthOf([point]));
   }
 
+  ring(point, colour = 'ink', radius = 5) {
+    this.ellipse(this.onSheet(point), [radius, 0], [0, radius], `paper ${colour}`, this.depthOf([point]) + 1e-6);
+  }
+
   label(point, text, colour = 'ink', shift = [0, 0], size = 20) {
     this.text(text, add(this.onSheet(point), shift), colour, size);
+  }
+
+  // A label beyond a point as seen from the origin.
+  labelBeyond(point, text, colour = 'ink', pixels = 17) {
+    this.label(point, text, colour, scale(pixels, unit(this.onSheet(point))));
   }
 
   text(text, place, colour, size = 20) {
@@ -450,6 +459,14 @@ export function choice({ name, options, change, hidden = false }) {
     show: (value) => { list.value = value; } };
 }
 
+// Rows of cells with what stands before and above them; `kind` 'bracket' sets them as a matrix.
+export function grid({ name, rows, columns, cells, kind = '' }) {
+  const head = (text, side) => element('span', { class: `head-of-${side}`, 'aria-hidden': 'true' }, text);
+  return group(name, `numbers ${kind}`,
+    ...(columns ? [element('div', { class: 'row' }, ...(rows ? [head('', 'row')] : []), ...columns.map((text) => head(text, 'column')))] : []),
+    ...cells.map((row, i) => element('div', { class: 'row' }, ...(rows ? [head(rows[i], 'row')] : []), ...row)));
+}
+
 // Numbers that say what they mean: one stop of the Tab key, arrow keys inside. `names` are the spoken names,
 // row by row; `rows` and `columns` what stands before and above them; `light(row, column)` is called when a
 // number is touched or focused, and `light()` afterwards.
@@ -472,10 +489,7 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
     const focused = cells.flat().find((cell) => cell.matches(':focus'));
     light(...(focused ? focused.dataset.at.split(',').map(Number) : []));
   };
-  const head = (text) => element('span', { class: 'head-of-numbers', 'aria-hidden': 'true' }, text);
-  const box = group(name, `numbers ${kind}`,
-    ...(columns ? [element('div', { class: 'row' }, ...(rows ? [head('')] : []), ...columns.map(head))] : []),
-    ...cells.map((row, i) => element('div', { class: 'row' }, ...(rows ? [head(rows[i])] : []), ...row)));
+  const box = grid({ name, rows, columns, cells, kind });
   box.addEventListener('keydown', (event) => {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
     if (event.key === 'Escape') event.target.blur();
