@@ -74,6 +74,42 @@ def test_any_one_wrong_entry_is_found(row, column, change):
             check_dcm(dcm)
 
 
+def test_triads_that_are_skewed_or_shrunk_in_one_plane_are_found():
+    # The third row is the cross product of the first two, so only these two can tell.
+    for first, second, third in random_dcms(20, 9):
+        for x, y in ((0.9 * first, second), (1.1 * first, second), (first, 0.9 * second), (first, 1.1 * second),
+                     (first, np.cos(0.1) * second + np.sin(0.1) * first),
+                     (first, np.cos(0.1) * second - np.sin(0.1) * first)):
+            with pytest.raises(ValueError, match='dcm is not orthogonal: row'):
+                check_dcm([x, y, np.cross(x, y)])
+
+
+@pytest.mark.parametrize('factor, said', [
+    (3, 'row x has length 3, not 1. The whole matrix is 3 times an orthogonal one'),
+    (1.001, 'row x has length 1.001, not 1. The whole matrix is 1.001 times an orthogonal one'),
+    (0.999, 'row . has length 0.999, not 1. The whole matrix is 0.999 times an orthogonal one'),
+    (1 + 1e-7, 'row x has length 1.0000001, not 1. Were its entries rounded'),
+    (1 - 1e-9, 'row . has length 0.999999999, not 1. Were its entries rounded'),
+    (np.array([[1.02], [1], [1]]), 'row x has length 1.02, not 1. Were its entries rounded'),
+    (np.array([[1], [0.98], [1]]), 'row y has length 0.98, not 1. Were its entries rounded'),
+    (np.array([[1], [1], [1.2]]), 'row z has length 1.2, not 1. An entry or a sign is wrong'),
+    (np.array([[1], [0.8], [1]]), 'row y has length 0.8, not 1. An entry or a sign is wrong'),
+])
+def test_likely_causes(factor, said):
+    for dcm in (np.eye(3), random_dcms(1, 10)[0]):
+        with pytest.raises(ValueError, match=said):
+            check_dcm(factor * dcm)
+
+
+def test_rows_that_are_not_perpendicular_are_named_with_their_dot_product():
+    for share, said in ((0.02, 'Were its entries rounded'), (-0.02, 'Were its entries rounded'),
+                        (0.3, 'An entry or a sign is wrong'), (-0.3, 'An entry or a sign is wrong')):
+        rows = np.eye(3)
+        rows[2] = (0, share, np.sqrt(1 - share**2))
+        with pytest.raises(ValueError, match=f'rows y and z have dot product {share}, not 0. {said}'):
+            check_dcm(rows)
+
+
 def test_every_kind_of_reflection_is_found():
     for dcm in random_dcms(20, 3):
         for mirror in (dcm * [1, 1, -1], dcm * [[-1], [1], [1]], -dcm, dcm[[1, 0, 2]], dcm[:, [0, 2, 1]]):
@@ -92,12 +128,12 @@ def test_check_repairs_and_returns_nothing():
 
 def test_nearest_is_nearer_than_any_other():
     source = np.random.default_rng(5)
-    measured = random_dcms(200, 6) + source.normal(scale=0.1, size=(200, 3, 3))
+    measured = random_dcms(50, 6) + source.normal(scale=0.1, size=(50, 3, 3))
     nearest, distance = nearest_dcm(measured)
     check_dcm(nearest)
     np.testing.assert_allclose(distance, np.sqrt(((nearest - measured)**2).sum(axis=(1, 2))), rtol=1e-12)
     for size in (1e-3, 1e-2, 0.3, 3):
-        axes = source.normal(size=(200, 3))
+        axes = source.normal(size=(50, 3))
         for sign in (1, -1):
             others = np.array([unit_vectors_after_turn(axis, sign * size, one.T).T
                                for axis, one in zip(axes, nearest)])

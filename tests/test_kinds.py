@@ -357,6 +357,8 @@ def test_symbolic_matrices_that_are_no_orientation():
         check_dcm(-composed(SYMBOLS, 'zxy'))
     with pytest.raises(ValueError, match='is not real: an entry has an imaginary part of 1'):
         check_dcm(composed(SYMBOLS, 'zxy') + sm.I * sm.ones(3))
+    with pytest.raises(ValueError, match='is not real: an entry has an imaginary part of 1'):
+        check_dcm(sm.eye(3) - sm.I * sm.ones(3))
     with pytest.raises(ValueError, match='^dcm is not orthogonal: row x has length 2'):
         check_dcm(2 * sm.eye(3))
 
