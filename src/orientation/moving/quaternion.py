@@ -57,11 +57,11 @@ class QuaternionFigure(MovingFigure):
     kind = 'quaternion'
     view = traitlets.Enum(('double', 'way'), 'double').tag(sync=True, state=True)
     axis = Direction((-1, 2, 4)).tag(sync=True, state=True)
-    angle = Numbers(math.radians(110), largest=FULL).tag(sync=True, state=True)
-    first = Numbers(np.radians((-60, -20, 10)), (3,), largest=math.pi).tag(sync=True, state=True)
-    second = Numbers(np.radians((100, 50, 70)), (3,), largest=math.pi).tag(sync=True, state=True)
+    angle = Numbers(math.radians(60), largest=FULL).tag(sync=True, state=True)
+    first = Numbers(np.radians((-70, -30, 70)), (3,), largest=math.pi).tag(sync=True, state=True)
+    second = Numbers(np.radians((90, 80, -120)), (3,), largest=math.pi).tag(sync=True, state=True)
     unit_vector = traitlets.Enum(('x', 'y', 'z'), 'y').tag(sync=True, state=True)
-    share = Numbers(0.5, largest=1.0).tag(sync=True, state=True)
+    share = Numbers(0.3, largest=1.0).tag(sync=True, state=True)
 
     @traitlets.validate('angle', 'share')
     def _not_negative(self, proposal):
@@ -127,7 +127,7 @@ class QuaternionFigure(MovingFigure):
             f'same orientation.', scale=SIZE)
         drawing.line([-0.6 * axis, KNOB * axis], 'accent', 'guide')
         drawing.triad('N', 1.25 * np.eye(3)).triad('A', self.dcm).arrow(axis, colour='accent')
-        drawing.dot(KNOB * axis, 'accent', 5).label(KNOB * axis, r'$\hat{e}$', 'accent', (15, -9))
+        drawing.dot(KNOB * axis, 'accent', 5).label(KNOB * axis, r'$\hat{e}$', 'accent', (17, 2))
         start = np.eye(3)[np.argmin(np.abs(axis))]
         start = start - start @ axis * axis
         rest = self.angle - 2 * math.pi
@@ -166,17 +166,20 @@ class QuaternionFigure(MovingFigure):
         drawing = Drawing(
             f'A sphere with three ways of the tip of a unit vector {self.unit_vector} from the orientation of A to that of '
             f'B, a turn of {math.degrees(_angle(first, second)):.0f} degrees: of C by slerp, an even turn about one axis; '
-            f'of D by interpolated Euler angles z-x-y; of E by the matrix nearest to interpolated entries. A '
+            f'of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by the matrix nearest to interpolated entries. A '
             f'straight dashed line inside the sphere shows where the blended entries lead before they are repaired. '
             f'Shown after {self.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D and E are {now[0]}, {now[1]} and {now[2]} '
             f'degrees per second, and the blended rows have the lengths '
             f'{", ".join(f"{length:.2f}" for length in lengths)}. Below, the three speeds over time.', scale=BALL)
         drawing.circle(drawing.view[2], kind='faint').circle((0, 0, 1), kind='faint')
         drawing.line([first[k], second[k]], 'E', 'guide')
-        for letter, track in zip('CDE', tracks):
-            tips = [dcm[k] for dcm in track if dcm is not None]
-            if len(tips) > 1:
-                drawing.line(tips, letter, 'axis trace')
+        for letter, track in zip('CD', tracks):
+            if track[0] is not None:
+                drawing.line([dcm[k] for dcm in track], letter, 'axis')
+        # E goes the same way round as C, at another pace: dots a fifth of a second apart.
+        for dcm in tracks[2][::3]:
+            if dcm is not None:
+                drawing.dot(dcm[k], 'E', 3)
         letters = {letter: rf'$\hat{{{letter.lower()}}}_{self.unit_vector}$' for letter in 'ABCDE'}
         drawing.arrow(first[k], colour='A', label=letters['A']).arrow(second[k], colour='B', label=letters['B'])
         raw = self.blend(self.share)[k]
@@ -205,7 +208,7 @@ class QuaternionFigure(MovingFigure):
         for letter, track in zip('CDE', speeds):
             points = [at((n + 0.5) / SAMPLES, math.degrees(speed)) for n, speed in enumerate(track) if math.isfinite(speed)]
             if len(points) > 1:
-                drawing.line(points, letter, 'axis thin')
+                drawing.line(points, letter, 'axis')
         return drawing
 
 

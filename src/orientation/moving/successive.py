@@ -137,7 +137,7 @@ class SuccessiveFigure(MovingFigure):
             drawing.triad(LETTERS[k], frames[k], length=BEFORE, labels=('', '', ''))
         if last and not second:
             axis = (frames[last - 1] if self.fixed == 'body' else np.eye(3))['xyz'.index(now[-1][0])]
-            drawing.line([-axis, REACH * axis], 'accent', 'guide')
+            drawing.line([-0.35 * axis, REACH * axis], 'accent', 'guide')
             _around(drawing, axis, now[-1][1], frames[last - 1])
         if last:
             drawing.triad(LETTERS[last], frames[-1])

@@ -138,7 +138,7 @@ function doublePicture(sheet, axis, theta, dcm, lit) {
   sheet.triad('A', dcm);
   sheet.arrow(axis, { colour: 'accent' });
   sheet.dot(knob, 'accent', 5);
-  sheet.label(knob, '$\\hat{e}$', 'accent', [15, -9]);
+  sheet.label(knob, '$\\hat{e}$', 'accent', [17, 2]);
   // The angle, on its second turn outside the first.
   const rest = theta - 2 * Math.PI;
   if (rest > 1e-9) sheet.turn(axis, 2 * Math.PI, arm, { radius: 0.5, colour: 'accent', head: false });
@@ -201,7 +201,7 @@ function wayView(model) {
   const self = { redraw() {} };
   const sheet = new Sheet({ bounds: [-180, -142, 180, 222], size: BALL, changed: () => self.redraw(),
     name: 'The sphere that the tip of a unit vector moves on, its three ways from A to B, and below it their speeds.' });
-  let edited = 'second', kept = {};
+  let edited = 'second', kept = {}, begun = false;
   const ends = choice({ name: 'Set the angles z-x-y of', options: [['first', 'A, the start'], ['second', 'B, the end']], change(value) {
     edited = value;
     self.redraw();
@@ -220,8 +220,8 @@ function wayView(model) {
     element('div', { class: 'controls' }, way.element, element('div', { class: 'row-of-controls' }, tip.element, ends.element),
       ...angles.map((angle) => angle.element)),
     element('div', { class: 'readouts' }, readout('Now', table.element),
-      readout('Blended entries before they are repaired: lengths', lengths.element))];
-  [...table.element.querySelectorAll('.row > .head-of-numbers:first-child')].slice(1).forEach((head, k) => head.classList.add(WAYS[k]));
+      readout('Row lengths of the blended entries', lengths.element))];
+  [...table.element.querySelectorAll('.head-of-row')].slice(1).forEach((head, k) => head.classList.add(WAYS[k]));
 
   self.draw = () => {
     const share = model.get('share'), first = model.get('first'), second = model.get('second'), k = AXES.indexOf(model.get('unit_vector'));
@@ -230,7 +230,10 @@ function wayView(model) {
     ends.show(edited);
     angles.forEach((angle, n) => angle.show(model.get(edited)[n]));
     tip.show(AXES[k]);
-    if (Math.abs(way.time - share * SECONDS) > 1e-6) way.set(share * SECONDS);
+    if (!begun || Math.abs(way.time - share * SECONDS) > 1e-6) {
+      begun = true;
+      way.set(share * SECONDS);
+    }
     const now = kept.dcms.map((at) => at(share)), speeds = kept.dcms.map((at) => speedAt(at, share)), raw = kept.raw(share);
     table.show(now.map((dcm, n) => (dcm ? [`${fixed(degrees(between(kept.from, dcm)), 1)}°`,
       Number.isNaN(speeds[n]) ? '–' : `${fixed(degrees(speeds[n]), 1)} °/s`] : ['–', '–'])));
@@ -264,10 +267,11 @@ function wayPicture(sheet, { from, to, tracks, speeds }, now, raw, k, share) {
   sheet.circle([0, 0, 1], { half: 'front', colour: 'muted', kind: 'faint' });
   sheet.circle([0, 0, 1], { half: 'back', colour: 'muted', kind: 'guide faint' });
   sheet.line([from[k], to[k]], 'E', 'guide');
-  tracks.forEach((track, n) => {
-    const tips = track.filter(Boolean).map((dcm) => dcm[k]);
-    if (tips.length > 1) sheet.line(tips, WAYS[n], 'axis trace');
+  // E goes the same way round as C, at another pace: dots a fifth of a second apart.
+  tracks.slice(0, 2).forEach((track, n) => {
+    if (track[0]) sheet.line(track.map((dcm) => dcm[k]), WAYS[n], 'axis trace');
   });
+  tracks[2].forEach((dcm, n) => { if (dcm && n % 3 === 0) sheet.dot(dcm[k], 'E', 3); });
   sheet.arrow(from[k], { colour: 'A', label: hat('A') });
   sheet.arrow(to[k], { colour: 'B', label: hat('B') });
   sheet.layer = 1;

@@ -36,7 +36,7 @@ function compared(turns, fixed, compare) {
 }
 
 export function render({ model, el }) {
-  let lit = null;
+  let lit = null, begun = false;
   const state = () => ({ turns: model.get('turns'), kind: model.get('fixed'), compare: model.get('compare'), share: model.get('share') });
   const setTurn = (k, turn) => change(model, { turns: state().turns.map((old, n) => (n === k ? turn : old)) });
 
@@ -97,7 +97,7 @@ export function render({ model, el }) {
     element('div', { class: 'readouts' },
       element('div', { class: 'readout' }, titled(title), product),
       element('div', { class: 'readout' }, titled(ends), result.element)));
-  const heads = [...result.element.querySelectorAll('.row > .head-of-numbers:first-child')].slice(-3);
+  const heads = [...result.element.querySelectorAll('.head-of-row')].slice(-3);
 
   function draw() {
     const { turns, kind, share, compare: comparison } = state(), now = partly(turns, share);
@@ -116,7 +116,10 @@ export function render({ model, el }) {
     });
     more.disabled = turns.length === 4;
     fewer.disabled = turns.length === 1;
-    if (Math.abs(chain.time - share * SECONDS) > 1e-6) chain.set(share * SECONDS);
+    if (!begun || Math.abs(chain.time - share * SECONDS) > 1e-6) {
+      begun = true;
+      chain.set(share * SECONDS);
+    }
     factors.forEach((one, k) => one.show(now[k] ?? turns[k], k < now.length, kind, turns.length));
     set(title, `${dcmName(end, 'N')} as a product, newest turn on the ${kind === 'body' ? 'left' : 'right'}`);
     set(ends, `Multiplied out`);
@@ -192,7 +195,7 @@ function picture(sheet, { turns, kind, share, other, lit }) {
   for (let k = 1; k < last; k += 1) sheet.triad(LETTERS[k], frames[k], { reach: BEFORE, labels: false });
   if (last && !other) {
     const axis = axisOf(frames, now, kind, last - 1), angle = now[last - 1][1];
-    sheet.line([scale(-1, axis), scale(REACH, axis)], 'accent', 'guide');
+    sheet.line([scale(-0.35, axis), scale(REACH, axis)], 'accent', 'guide');
     frames[last - 1].forEach((row) => around(sheet, axis, angle, row));
   }
   sheet.faded = false;
