@@ -134,18 +134,19 @@ class MotionFigure(MovingFigure):
         fault, error = (curve[-1] for curve in (_fault(dcm[None]), _error(dcm[None], run['reference'][-1:])))
         lengths = ', '.join(f'{length:.2f}' for length in np.linalg.norm(dcm, axis=1))
         restored = 'restored after every step' if self.restored else 'not restored'
-        times = {0: 'has not flipped yet', 1: 'has flipped once'}.get(self.flips, f'has flipped {self.flips} times')
+        times = {0: 'has not flipped yet' if self.axis == 'y' else 'does not flip', 1: 'has flipped once'}.get(self.flips, f'has flipped {self.flips} times')
         drawing = Drawing(
             f'A {self.body} that spins freely about its {self.axis} axis, drawn with its triad A as its {DESCRIPTIONS[self.description]} '
             f'says after {run["time"][-1]:.1f} seconds, {restored}, with the {self.method} method in steps of {1000 * self.step:g} '
             f'milliseconds. It {times}. The unit vectors of A, which should be 1 long, are {lengths} long; the matrix is '
-            f'not orthogonal by {fault:.1e}, and the orientation is wrong by {error:.1e} radians. Dashed: where the {self.body} '
-            f'really is. The arrow H is the angular momentum, which keeps its direction. In the corner stands the triad of N.',
+            f'not orthogonal by {_words(fault)}, and the orientation is wrong by {_words(error)} radians. Dashed: the reference, '
+            f'computed with steps ten times finer. The arrow H is the angular momentum, which keeps its direction. In the corner stands the triad of N.',
             scale=SIZE)
         corner = np.array((-136, -108, 0)) / SIZE @ drawing.view
         drawing.triad('N', np.eye(3), corner, 0.28)
-        drawing.scale = SIZE * min(1, REACH / np.linalg.norm(dcm, axis=1).max())
         drawing.arrow(1.4 * self._momentum(), colour='accent', label=r'$\mathbf{H}$')
+        # A body that has grown out of the sheet is drawn smaller, and with it what it really is.
+        drawing.scale = SIZE * min(1, REACH / np.linalg.norm(dcm, axis=1).max())
         toward = dcm @ drawing.view[2] > 0
 
         def arrow(k):
@@ -169,7 +170,7 @@ class MotionFigure(MovingFigure):
         errors = {name: _error(curve, reference) for name, curve in curves.items()}
         margins = np.degrees(gimbal_lock_margin(body_fixed_from_dcm(dcm_from_quaternion(run['reference']), 'zxy'), 'zxy'))
         margin = np.array([margins[max(0, k - every + 1):k + 1].min() for k in range(0, len(margins), every)])
-        last = '; '.join(f'{DESCRIPTIONS[name]}, not orthogonal by {faults[name][-1]:.0e}, error {errors[name][-1]:.0e} radians'
+        last = '; '.join(f'{DESCRIPTIONS[name]}, not orthogonal by {_words(faults[name][-1])}, error {_words(errors[name][-1])} radians'
                          for name in DESCRIPTIONS)
         drawing = Drawing(f'Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} seconds. Above, on a '
                           f'logarithmic scale, by how much each description is not orthogonal; in the middle, its error against the reference; below, '
@@ -195,6 +196,13 @@ class MotionFigure(MovingFigure):
         return drawing
 
 
+def _words(value):
+    if value >= 1e-3 or value < 1e-15:
+        return f'{value:.2g}' if value >= 1e-3 else 'less than 10 to the -15'
+    mantissa, exponent = f'{value:.1e}'.split('e')
+    return f'{mantissa} times 10 to the {int(exponent)}'
+
+
 def _across(time):
     return LEFT + (RIGHT - LEFT) * time / SECONDS
 
@@ -213,41 +221,60 @@ def _curve(drawing, times, values, part, kind):
 @lru_cache(maxsize=8)
 def _run(body, axis, disturbance, method, step, restored, count):
     start = np.where([axis == other for other in 'xyz'], SPIN, disturbance)
-    moments = np.array(MOMENTS[body])
     rows = [(start, np.eye(3), np.eye(4)[0], np.zeros(3))]
-    fine, references = (start, np.eye(4)[0]), [np.eye(4)[0]]
 
-    def rates(omega, *descriptions):
-        x, y, z = moments * omega
-        a, b, c = omega
-        acceleration = -np.array((b * z - c * y, c * x - a * z, a * y - b * x)) / moments
-        return acceleration, *(rate(description, omega) for rate, description in zip(RATES[-len(descriptions):], descriptions))
-
-    def quaternion_rates(omega, quaternion):
-        return rates(omega)[0], quaternion_rate(quaternion, omega)
+    def rates(omega, matrix, quaternion, angles):
+        return (np.array(_angular_acceleration(omega, MOMENTS[body])), dcm_rate(matrix, omega),
+                quaternion_rate(quaternion, omega), np.linalg.solve(angular_velocity_matrix(angles, 'zxy'), omega))
 
     for _ in range(count):
         with np.errstate(all='ignore'):
             omega, matrix, quaternion, angles = _step(rates, rows[-1], step, method)
-            for _ in range(FINER):
-                omega_fine, reference = _step(quaternion_rates, fine, step / FINER, 'Runge-Kutta')
-                fine = omega_fine, reference / np.linalg.norm(reference)
         if not max(abs(omega).max(), abs(matrix).max(), abs(quaternion).max()) < LARGEST or not np.isfinite(angles).all():
             break
         if restored:
             matrix, quaternion = nearest_dcm(matrix).dcm, quaternion / np.linalg.norm(quaternion)
         rows.append((omega, matrix, quaternion, angles))
-        references.append(fine[1])
     names = 'angular_velocity', 'matrix', 'quaternion', 'angles'
-    return {'time': step * np.arange(len(rows)), 'reference': np.array(references),
+    return {'time': step * np.arange(len(rows)), 'reference': _reference(start, MOMENTS[body], step / FINER, FINER * (len(rows) - 1))[::FINER],
             **{name: np.array(column) for name, column in zip(names, zip(*rows))}}
 
 
-def _angle_rates(angles, omega):
-    return np.linalg.solve(angular_velocity_matrix(angles, 'zxy'), omega)
+def _angular_acceleration(omega, moments):
+    """Return the change of the angular velocity along the principal axes, without torque."""
+    (x, y, z), (a, b, c) = omega, moments
+    return -(y * (c * z) - z * (b * y)) / a, -(z * (a * x) - x * (c * z)) / b, -(x * (b * y) - y * (a * x)) / c
 
 
-RATES = dcm_rate, quaternion_rate, _angle_rates
+def _reference(start, moments, step, count):
+    """Return the unit quaternions of so many Runge-Kutta steps from the identity, shape ``(count + 1, 4)``.
+
+    The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4 matrix,
+    and those of all steps are found together, which is ten times as fast as one after the other.
+    """
+    def beyond(length, slope):
+        return [value + length * change for value, change in zip(omega, slope)]
+
+    omega, stages = start.tolist(), []
+    for _ in range(count):
+        first = _angular_acceleration(omega, moments)
+        second = _angular_acceleration(middle := beyond(step / 2, first), moments)
+        third = _angular_acceleration(again := beyond(step / 2, second), moments)
+        fourth = _angular_acceleration(end := beyond(step, third), moments)
+        stages.append((omega, middle, again, end))
+        omega = beyond(step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)])
+    quaternions = [np.eye(4)[0]]
+    if count:
+        # The fixed quaternions 1, i, j, k, and in front of them an axis for the steps.
+        units, (first, second, third, fourth) = np.eye(4), np.array(stages).transpose(1, 0, 2)[:, :, None]
+        a = quaternion_rate(units, first)
+        b = quaternion_rate(units + step / 2 * a, second)
+        c = quaternion_rate(units + step / 2 * b, third)
+        d = quaternion_rate(units + step * c, fourth)
+        for matrix in units + step / 6 * (a + 2 * b + 2 * c + d):
+            quaternion = quaternions[-1] @ matrix
+            quaternions.append(quaternion / np.sqrt(quaternion @ quaternion))
+    return np.array(quaternions)
 
 
 def _step(rates, state, step, method):

@@ -1,11 +1,11 @@
 import { AXES, IDENTITY, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromBodyFixed, dcmFromQuaternion, dot, gimbalLockMargin,
   length, multiply, nearestDcm, scale, times, transpose, unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, follow, liveText, onceAFrame, open, player, put, slider,
-  stage } from './shared.js';
+  stage, words } from './shared.js';
 
 // As in motion.py.
 const MOMENTS = { racket: [1.2, 16, 17], book: [0.8424, 1.7748, 2.5524] };
-const DESCRIPTIONS = { matrix: 'Direction cosine matrix', quaternion: 'Quaternion', angles: 'Euler angles' };
+const DESCRIPTIONS = { matrix: 'Matrix', quaternion: 'Quaternion', angles: 'Euler angles' };
 const COLOURS = { matrix: 'A', quaternion: 'D', angles: 'C' };
 const SPIN = 4, SECONDS = 20, FINER = 10, LARGEST = 1e6, SAMPLE = 0.1;
 const SIZE = 118, LONGEST = 1.25, LEFT = -128, RIGHT = 168;
@@ -173,13 +173,13 @@ function drawBook(sheet, matrix) {
 
 // '0.0023', '4.1 × 10⁻⁷': two digits.
 function power(value) {
-  if (!(value >= 1e-15)) return Number.isNaN(value) ? '–' : 'less than 10⁻¹⁵';
+  if (!(value >= 1e-15)) return Number.isNaN(value) ? '–' : '< 10⁻¹⁵';
   if (value >= 0.001 && value < 1000) return String(Number(value.toPrecision(2)));
   const [mantissa, exponent] = value.toExponential(1).split('e');
   return `${mantissa} × 10${[...exponent.replace('+', '')].map((sign) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(sign)]).join('')}`;
 }
 
-const often = (count) => ['has not flipped yet', 'has flipped once', 'has flipped twice'][count] ?? `has flipped ${count} times`;
+const often = (count, axis) => [axis === 'y' ? 'has not flipped yet' : 'does not flip', 'has flipped once', 'has flipped twice'][count] ?? `has flipped ${count} times`;
 
 // ---- the figure ----------------------------------------------------------------------------------------
 
@@ -191,7 +191,7 @@ export function render({ model, el }) {
   let run, made = '';
 
   const sheet = new Sheet({ bounds: [-180, -150, 180, 150], size: SIZE, changed: () => redraw(),
-    name: 'The tumbling body with its triad A, drawn from the computed numbers. Dashed: where it really is.' });
+    name: 'The tumbling body with its triad A, drawn from the computed numbers. Dashed: the reference. H: the angular momentum.' });
   const plot = new Sheet({ name: '', bounds: [-180, 0, 180, 356], grab(part, at) {
     const scrub = (to) => { clock.pause(); clock.set(Math.max(0, Math.min(SECONDS, SECONDS * (to[0] - LEFT) / (RIGHT - LEFT)))); };
     scrub(at);
@@ -211,7 +211,7 @@ export function render({ model, el }) {
   const body = choice({ name: 'Body', options: [['racket', 'tennis racket'], 'book'], change: (value) => change(model, { body: value }) });
   const axis = choice({ name: 'Spin about', options: AXES.map((name, k) => [name, `${name}, ${['smallest', 'middle', 'largest'][k]} moment of inertia`]),
     change: (value) => change(model, { axis: value }) });
-  const method = choice({ name: 'Method', options: [['Euler', 'Euler’s'], ['Runge-Kutta', 'Runge–Kutta, fourth order']],
+  const method = choice({ name: 'Method', options: ['Euler', ['Runge-Kutta', 'Runge–Kutta, fourth order']],
     change: (value) => change(model, { method: value }) });
   const step = slider({ symbol: '', name: 'Step', unit: 'milliseconds', sign: ' ms', factor: 0.001, min: 5, max: 100, step: 5, more: () => '',
     change: (value) => change(model, { step: value }) });
@@ -227,17 +227,18 @@ export function render({ model, el }) {
       element('svg', { class: 'swatch', viewBox: '0 0 34 10', 'aria-hidden': 'true' }, element('path', { class: `axis ${COLOURS[name]}`, d: 'M2 5H32' })),
       element('span', {}, title))), faulty, wrong) };
   });
-  const heads = ['Drawn', 'not orthogonal by', 'error (rad)'].map((text) => element('th', { scope: 'col' }, text));
-  const text = liveText();
+  const heads = ['Drawn', 'not orthogonal\u00a0by', 'error (rad)'].map((text) => element('th', { scope: 'col' }, text));
+  const aside = element('p', { class: 'aside' }), text = liveText();
 
-  open(el, stage(sheet, text),
-    element('div', { class: 'readouts' }, plot.svg),
-    element('div', { class: 'controls' },
-      element('div', { class: 'clock' }, clock.element, reset),
-      element('table', { class: 'runs' }, element('thead', {}, element('tr', {}, ...heads)), element('tbody', {}, ...rows.map((row) => row.element))),
-      element('div', { class: 'pairs' },
-        element('label', { class: 'choice' }, restored, element('span', {}, 'Restore matrix and quaternion after every step')),
-        method.element, named('Step', step), named('Disturbance', disturbance), body.element, axis.element)));
+  // Beside the drawing, so that on a phone it stays in view with it.
+  const left = stage(sheet, text);
+  left.append(element('div', { class: 'clock' }, clock.element, reset));
+  open(el, left,
+    element('div', { class: 'readouts' }, plot.svg,
+      element('table', { class: 'runs' }, element('thead', {}, element('tr', {}, ...heads)), element('tbody', {}, ...rows.map((row) => row.element))), aside),
+    element('div', { class: 'controls pairs' },
+      element('label', { class: 'choice' }, restored, element('span', {}, 'Restore after every step')),
+      method.element, named('Step', step), named('Disturbance', disturbance), body.element, axis.element));
 
   function draw() {
     const settings = Object.fromEntries(SETTINGS.map((name) => [name, model.get(name)])), time = model.get('time');
@@ -248,12 +249,21 @@ export function render({ model, el }) {
     }
     const wanted = Math.floor(time / run.step + 1e-9), until = performance.now() + 5;
     while (run.last < wanted && !run.ended && performance.now() < until) run.next();
+    if (run.ended && time > run.step * run.last) {
+      clock.pause();
+      clock.set(run.step * run.last);
+      return;
+    }
     // The rest is computed in the next frames, and drawn as it grows.
-    if (run.last < wanted && !run.ended) redraw();
+    if (run.last < wanted) redraw();
     const k = Math.min(wanted, run.last);
 
     if (clock.time !== time) clock.set(time);
     body.show(settings.body);
+    if (aside.dataset.body !== settings.body) {
+      aside.dataset.body = settings.body;
+      aside.replaceChildren(...words(`Dashed: the reference, with steps ten times finer. $\\mathbf{H}$: angular momentum of the ${settings.body}, fixed in $N$.`));
+    }
     axis.show(settings.axis);
     method.show(settings.method);
     step.show(settings.step);
@@ -271,9 +281,9 @@ export function render({ model, el }) {
     text.say(told(name, k, settings, values[name], matrix));
   }
 
-  function told(name, k, { body: what, restored: valid, method: how }, [faulty, wrong], matrix) {
+  function told(name, k, { body: what, axis: about, restored: valid, method: how }, [faulty, wrong], matrix) {
     const now = (run.step * k).toFixed(1), count = run.flips.filter((flip) => flip <= k).length;
-    const begin = `After ${now} s the ${what} ${often(count)}. `;
+    const begin = `After ${now} s the ${what} ${often(count, about)}. `;
     if (run.ended && k === run.last) {
       return `${begin}Here the run ends: the computed numbers have passed a million. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
     }
@@ -283,17 +293,17 @@ export function render({ model, el }) {
     const title = name === 'matrix' ? 'The matrix' : 'The matrix of the quaternion';
     if (valid) return `${begin}${title} is restored after every step and stays orthogonal, but the orientation is wrong by ${power(wrong)} rad.`;
     const lengths = matrix.map(length), worst = lengths.map((far) => Math.abs(Math.log(far))), far = worst.indexOf(Math.max(...worst));
-    const seen = worst[far] > 0.02 ? `: its unit vector a ${AXES[far]} is ${lengths[far].toPrecision(3)} long` : '';
+    const seen = worst[far] > 0.02 ? `: its unit vector $\\hat{a}_${AXES[far]}$ is ${lengths[far].toPrecision(3)} long` : '';
     return `${begin}${title}, not restored, is not orthogonal by ${power(faulty)}${seen}. The orientation is wrong by ${power(wrong)} rad.`;
   }
 
   function picture(what, matrix, truth) {
     sheet.size = SIZE;
     sheet.triad('N', IDENTITY, { origin: times(transpose(sheet.view), [-136 / SIZE, -108 / SIZE, 0]), reach: 0.28 });
-    // A body that has grown out of the sheet is drawn smaller, and with it what it really is.
-    sheet.size = SIZE * Math.min(1, LONGEST / Math.max(...matrix.map(length)));
     sheet.layer = 1;
     sheet.arrow(scale(1.4, run.momentum), { colour: 'accent', label: '$\\mathbf{H}$' });
+    // A body that has grown out of the sheet is drawn smaller, and with it what it really is.
+    sheet.size = SIZE * Math.min(1, LONGEST / Math.max(...matrix.map(length)));
     (what === 'racket' ? drawRacket : drawBook)(sheet, matrix);
     matrix.forEach((row, i) => {
       sheet.layer = i === 2 && dot(row, sheet.view[2]) <= 0 ? 1.5 : 5;
@@ -312,9 +322,9 @@ export function render({ model, el }) {
       const [top, bottom] = part;
       plot.text(title, [(LEFT + RIGHT) / 2, top - 13], 'ink', 16);
       const lines = [0, 5, 10, 15, 20].map((second) => [[across(second), top], [across(second), bottom]]);
-      for (const [words, value] of Object.entries(marks)) {
+      for (const [mark, value] of Object.entries(marks)) {
         lines.push([[LEFT, down(part, value)], [RIGHT, down(part, value)]]);
-        plot.text(words, [LEFT - 26, down(part, value)], 'muted', 14);
+        plot.text(mark, [LEFT - 26, down(part, value)], 'muted', 14);
       }
       plot.path('ML'.repeat(lines.length), lines.flat(), 'faint muted');
       plot.path('ML', [[now, top], [now, bottom]], 'accent');
