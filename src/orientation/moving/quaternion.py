@@ -73,7 +73,7 @@ class QuaternionFigure(MovingFigure):
     @property
     def sheet(self):
         """Left, top, right and bottom of the drawing, in pixels from its origin."""
-        return (-118, -132, 242, 232) if self.view == 'double' else (-180, -142, 180, 222)
+        return (-118, -142, 242, 222) if self.view == 'double' else (-180, -142, 180, 222)
 
     @property
     def quaternion(self):

@@ -15,7 +15,8 @@ const between = (first, second) => axisAngleFromDcm(multiply(second, transpose(f
 export function render({ model, el }) {
   const double = doubleView(model), way = wayView(model);
   const views = { double, way };
-  const switches = [['double', '$q$ and $-q$'], ['way', 'From $A$ to $B$']].map(([name, text]) => button(text, () => change(model, { view: name })));
+  const switches = [['double', '$q$ and $-q$', 'q and minus q'], ['way', 'From $A$ to $B$', 'From A to B']].map(([name, text, spokenText]) => button(
+    text, () => change(model, { view: name }), { 'aria-label': spokenText }));
   const root = open(el, element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches)), ...double.parts, ...way.parts);
   root.classList.add('two-views');
 
@@ -45,7 +46,7 @@ function doubleView(model) {
     change(model, { angle: Math.min(FULL, Math.max(0, angle)) });
   };
   const pointTo = (axis) => change(model, { axis });
-  const sheet = new Sheet({ bounds: [-118, -132, 242, 232], size: SIZE, changed: () => self.redraw(),
+  const sheet = new Sheet({ bounds: [-118, -142, 242, 222], size: SIZE, changed: () => self.redraw(),
     name: 'A frame A that turns in N about the unit vector e, and beside it the circle of half the angle with q and minus q.',
     grab(part, at) {
       const axis = model.get('axis'), angle = model.get('angle');
@@ -66,6 +67,8 @@ function doubleView(model) {
       const follower = followTurn(sheet, { axis, arm: IDENTITY[part], angle, at });
       return (to) => turnTo(follower(to));
     } });
+  // Inside a drawing touch-action has no effect: a finger on a grip would scroll the page.
+  sheet.svg.addEventListener('touchstart', (event) => { if (event.target.dataset.part) event.preventDefault(); });
   const bearing = (at) => Math.atan2(MIDDLE[1] - at[1], at[0] - MIDDLE[0]);
 
   const angle = slider({ symbol: '$\\theta$', name: 'theta', min: 0, max: 720, change: turnTo });

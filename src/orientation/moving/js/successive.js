@@ -49,6 +49,8 @@ export function render({ model, el }) {
       const follower = followTurn(sheet, { axis: axisOf(frames, now, kind, k), arm: frames[k][part], angle, at });
       return (to) => setTurn(k, [axis, wrapped(follower(to))]);
     } });
+  // Inside a drawing touch-action has no effect: a finger on a grip would scroll the page.
+  sheet.svg.addEventListener('touchstart', (event) => { if (event.target.dataset.part) event.preventDefault(); });
   const redraw = onceAFrame(draw);
 
   const rows = LETTERS.slice(1).split('').map((letter, k) => {
