@@ -10,10 +10,10 @@ SHORTEST = 1e-150
 
 
 def _length_missing(f, x, y, z):
-    # 1 where no direction can be computed, 0 elsewhere: compared with the tolerance like any excess.
+    # True, which is 1 and so more than the tolerance, where no direction can be computed: beyond these
+    # limits the square of the length is no longer a number with all its digits.
     length = f.norm(x, y, z)
-    # Beyond the limits the square of the length is no longer a number with all its digits.
-    return f.where((length > SHORTEST) & (length < 1 / SHORTEST), 0, 1)
+    return (length <= SHORTEST) | (length >= 1 / SHORTEST)
 
 
 def _explain_zero(components, where):

@@ -43,15 +43,18 @@ def dcm_from_rotation_vector(vector):
     """
     def formula(f, x, y, z):
         angle = f.norm(x, y, z)
-        length = f.where(angle > 0, angle, 1.0)
-        half = f.sin(angle / 2) / length
-        first = f.where(angle > 0, f.sin(angle) / length, 1.0)
-        # (1 - cos) / angle^2 as a square of sines: no digits are lost when the angle is small.
-        second, cosine = 2 * half**2, f.cos(angle)
-        xy, xz, yz = second * x * y, second * x * z, second * y * z
-        return (cosine + second * x * x, xy + first * z, xz - first * y,
-                xy - first * z, cosine + second * y * y, yz + first * x,
-                xz + first * y, yz - first * x, cosine + second * z * z)
+        turning = angle > 0
+        length = f.where(turning, angle, 1.0)
+        cosine = f.cos(angle)
+        first = f.where(turning, f.sin(angle) / length, 1.0)
+        # The digits that 1 - cos loses at small angles are multiplied by squares of small numbers. It is
+        # divided twice because the square of a very small length is 0.
+        second = (1 - cosine) / length / length
+        sx, sy, sz, rx, ry = first * x, first * y, first * z, second * x, second * y
+        xy, xz, yz = rx * y, rx * z, ry * z
+        return (cosine + rx * x, xy + sz, xz - sy,
+                xy - sz, cosine + ry * y, yz + sx,
+                xz + sy, yz - sx, cosine + second * z * z)
 
     return evaluate(formula, (3, 3), ('vector', vector, (3,)))
 
