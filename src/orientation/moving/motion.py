@@ -157,7 +157,7 @@ class MotionFigure(MovingFigure):
         (_draw_racket if self.body == 'racket' else _draw_book)(drawing, dcm)
         for k in range(3 if toward[2] else 2):
             arrow(k)
-        for points in OUTLINES[self.body]:
+        for points in SHAPES[self.body]:
             drawing.line(points @ dcm_from_quaternion(run['reference'][-1]), 'muted', 'guide')
         return drawing
 
@@ -328,7 +328,7 @@ THROAT = np.array([(0.065, 0.206, 0), (-0.24, 0, 0), (0.065, -0.206, 0)])
 HANDLE = np.array([(-0.24, 0, 0), (-0.85, 0, 0)])
 EDGES = np.array((1.32, 0.9, 0.18))   # of a uniform box with these moments of inertia
 COVER = np.array([(x, y, 0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))]) * EDGES / 2
-OUTLINES = {'racket': (HEAD, THROAT, HANDLE), 'book': (COVER,)}
+SHAPES = {'racket': (HEAD, THROAT, HANDLE), 'book': (COVER,)}
 
 
 def _draw_racket(drawing, dcm):

@@ -138,7 +138,7 @@ const STRINGS = [...[0.12, 0.285, 0.45, 0.615, 0.78].flatMap((x) => [-1, 1].map(
 const THROAT = [[0.065, 0.206, 0], [-0.24, 0, 0], [0.065, -0.206, 0]], HANDLE = [[-0.24, 0, 0], [-0.85, 0, 0]];
 const EDGES = [1.32, 0.9, 0.18];
 const COVER = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]].map(([x, y]) => [x * EDGES[0] / 2, y * EDGES[1] / 2, 0]);
-const OUTLINES = { racket: [HEAD, THROAT, HANDLE], book: [COVER] };
+const SHAPES = { racket: [HEAD, THROAT, HANDLE], book: [COVER] };
 
 // Components along N of points given along A: the rows of the matrix are A's unit vectors, skewed or not.
 const placed = (points, matrix) => { const columns = transpose(matrix); return points.map((point) => times(columns, point)); };
@@ -310,7 +310,7 @@ export function render({ model, el }) {
       sheet.arrow(row, { colour: 'A', label: `$\\hat{a}_${AXES[i]}$` });
     });
     sheet.layer = 6;
-    for (const outline of OUTLINES[what]) sheet.line(placed(outline, truth), 'muted', 'guide');
+    for (const outline of SHAPES[what]) sheet.line(placed(outline, truth), 'muted', 'guide');
   }
 
   function curves(drawn, k) {

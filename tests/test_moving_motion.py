@@ -1,0 +1,616 @@
+"""The tumbling racket: the integration in Python and in the browser's language, and the figure in a browser."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import traitlets
+from bs4 import BeautifulSoup
+from conftest import REPOSITORY
+from scipy.integrate import solve_ivp
+
+from orientation import (
+    angular_velocity_matrix,
+    axis_angle_from_dcm,
+    body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    dcm_rate,
+    gimbal_lock_margin,
+    nearest_dcm,
+    quaternion_rate,
+)
+from orientation.moving import MotionFigure, bundle
+from orientation.moving.motion import DESCRIPTIONS, MOMENTS, SPIN
+
+NODE = Path(sys.executable).with_name("node")
+SETTINGS = ("body", "axis", "disturbance", "method", "step", "restored")
+RUNS = [
+    dict(zip(SETTINGS, values))
+    for values in (
+        ("racket", "y", 0.01, "Euler", 0.01, False),
+        ("racket", "y", 0.01, "Euler", 0.01, True),
+        ("racket", "y", 0.2, "Runge-Kutta", 0.02, False),
+        ("racket", "y", 0.2, "Runge-Kutta", 0.05, True),
+        ("book", "x", 0.1, "Runge-Kutta", 0.02, False),
+        ("book", "z", 0.3, "Euler", 0.02, True),
+    )
+]
+AGREE = 1e-12
+FEW_SECONDS = 4.0
+
+
+# ---- the same integration, written once more from the module's functions -------------------------------
+
+
+def integrated(body, axis, disturbance, method, step, restored, seconds):
+    """Each description at every step, by the textbook's formulas and the rates of the module."""
+    moments = np.array(MOMENTS[body])
+    omega = np.array([SPIN if axis == other else disturbance for other in "xyz"])
+
+    def rates(state):
+        omega, matrix, quaternion, angles = state[:3], state[3:12].reshape(3, 3), state[12:16], state[16:]
+        return np.concatenate(
+            [
+                -np.cross(omega, moments * omega) / moments,
+                dcm_rate(matrix, omega).ravel(),
+                quaternion_rate(quaternion, omega),
+                np.linalg.solve(angular_velocity_matrix(angles, "zxy"), omega),
+            ]
+        )
+
+    state = np.concatenate([omega, np.eye(3).ravel(), [1, 0, 0, 0], np.zeros(3)])
+    states = [state]
+    for _ in range(round(seconds / step)):
+        a = rates(state)
+        if method == "Euler":
+            state = state + step * a
+        else:
+            b = rates(state + step / 2 * a)
+            c = rates(state + step / 2 * b)
+            d = rates(state + step * c)
+            state = state + step / 6 * (a + 2 * b + 2 * c + d)
+        if restored:
+            state[3:12] = nearest_dcm(state[3:12].reshape(3, 3)).dcm.ravel()
+            state[12:16] /= np.linalg.norm(state[12:16])
+        states.append(state)
+    states = np.array(states)
+    return {
+        "angular_velocity": states[:, :3],
+        "matrix": states[:, 3:12].reshape(-1, 3, 3),
+        "quaternion": states[:, 12:16],
+        "angles": states[:, 16:],
+    }
+
+
+@pytest.mark.parametrize("settings", RUNS, ids=str)
+def test_the_figure_integrates_as_the_formulas_say(settings):
+    ours = MotionFigure(**settings, time=FEW_SECONDS).run()
+    for name, expected in integrated(**settings, seconds=FEW_SECONDS).items():
+        assert ours[name].shape == expected.shape
+        assert abs(ours[name] - expected).max() < AGREE, name
+
+
+def test_the_reference_agrees_with_scipy():
+    figure = MotionFigure(body="book", disturbance=0.2, step=0.01, time=6.0)
+    moments = np.array(MOMENTS["book"])
+
+    def rate(_, state):
+        omega, q = state[:3], state[3:]
+        return np.concatenate([-np.cross(omega, moments * omega) / moments, quaternion_rate(q, omega)])
+
+    start = np.concatenate([figure.run()["angular_velocity"][0], [1, 0, 0, 0]])
+    truth = solve_ivp(rate, (0, 6), start, "DOP853", rtol=1e-12, atol=1e-13).y[3:, -1]
+    assert abs(figure.run()["reference"][-1] - truth).max() < 1e-8
+
+
+@pytest.mark.parametrize("description", DESCRIPTIONS)
+def test_angular_momentum_stays_where_it_is(description):
+    # Along N it is C^T I omega: a wrong sign in a rate, or a transposed matrix, would turn it.
+    figure = MotionFigure(method="Runge-Kutta", step=0.005, time=5.0, description=description)
+    run = figure.run()
+    momentum = MOMENTS["racket"] * run["angular_velocity"]
+    assert abs(figure.dcm.T @ momentum[-1] - momentum[0]).max() < 1e-5 * abs(momentum[0]).max()
+    assert abs(figure.dcm - np.eye(3)).max() > 0.5
+
+
+def test_the_racket_flips_about_its_middle_axis_only():
+    # What the chapter's program finds: flips after 3.3, 8.5, 13.7 and 18.9 s.
+    counts = [
+        MotionFigure(method="Runge-Kutta", step=0.02, time=t).flips for t in (3.2, 3.4, 8.4, 8.6, 13.6, 13.8, 18.8, 19)
+    ]
+    assert counts == [0, 1, 1, 2, 2, 3, 3, 4]
+    for axis in "xz":
+        figure = MotionFigure(axis=axis, step=0.05, time=20, method="Runge-Kutta")
+        assert figure.flips == 0 and "does not flip" in repr(figure)
+
+
+def test_drift_and_what_restoring_restores():
+    def fault(dcm):
+        return abs(dcm @ dcm.T - np.eye(3)).max()
+
+    coarse = MotionFigure()
+    assert fault(coarse.dcm) > 0.5, "the drift should be seen with the naked eye"
+    truth = dcm_from_quaternion(coarse.run()["reference"][-1])
+    for description in ("matrix", "quaternion"):
+        restored = MotionFigure(restored=True, description=description).dcm
+        assert fault(restored) < 1e-14
+        assert axis_angle_from_dcm(restored @ truth.T)[1] > 0.1, "valid is not yet right"
+    assert fault(MotionFigure(method="Runge-Kutta").dcm) < 1e-6
+
+
+def test_a_run_ends_where_its_numbers_have_no_meaning():
+    figure = MotionFigure(step=0.1, disturbance=0.5, axis="x", time=20)
+    run = figure.run()
+    assert 1 < run["time"][-1] < 19 and len({len(column) for column in run.values()}) == 1
+    assert np.isfinite(figure.dcm).all() and abs(figure.dcm).max() <= 1e6
+    assert "<svg" in figure.still()
+
+
+# ---- the widget ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name, value, words",
+    [
+        ("step", 5, "0.005 to 0.1 seconds"),
+        ("step", float("nan"), "nan"),
+        ("time", -1, "from 0 to 20"),
+        ("time", "now", "'now'"),
+        ("disturbance", 1, "rad/s"),
+        ("method", "euler", "Euler"),
+        ("axis", 0, "axis"),
+        ("body", "cat", "racket"),
+        ("description", "dcm", "matrix"),
+        ("restored", "perhaps", "restored"),
+    ],
+)
+def test_bad_values_are_refused_by_name(name, value, words):
+    figure = MotionFigure()
+    before = figure.state()
+    with pytest.raises(traitlets.TraitError, match=words):
+        setattr(figure, name, value)
+    assert figure.state() == before
+
+
+def test_state_survives_the_page():
+    figure = MotionFigure(time=2, description="angles")
+    page = BeautifulSoup(figure.still(), "html.parser")
+    assert json.loads(page.figure["data-state"]) == json.loads(json.dumps(figure.state()))
+    assert MotionFigure(**figure.state()).state() == figure.state()
+    assert page.figure["data-figure"] == "motion"
+
+
+def test_attributes_can_be_observed():
+    figure, heard = MotionFigure(), []
+    figure.observe(lambda change: heard.append(change["new"]), "time")
+    figure.time = 1
+    assert heard == [1.0]
+
+
+@pytest.mark.parametrize("time", (0, 6))
+@pytest.mark.parametrize("body", MOMENTS)
+def test_the_still_shows_and_tells(body, time):
+    figure = MotionFigure(body=body, time=time)
+    pictures = BeautifulSoup(figure.still(), "html.parser").find_all("svg", role="img")
+    assert [svg["viewbox"] for svg in pictures] == ["-180 -150 360 300", "-180 0 360 356"]
+    drawn, plotted = (svg["aria-label"] for svg in pictures)
+    assert body in drawn and f"after {time}.0 seconds" in drawn and "not restored" in drawn
+    lengths = np.linalg.norm(figure.dcm, axis=1)
+    assert ", ".join(f"{length:.2f}" for length in lengths) in drawn
+    margins = np.degrees(
+        gimbal_lock_margin(body_fixed_from_dcm(dcm_from_quaternion(figure.run()["reference"]), "zxy"), "zxy")
+    )
+    assert f"at the least {margins.min():.0f} degrees" in plotted
+    assert figure.still() == MotionFigure(body=body, time=time).still()
+
+
+# ---- the browser's language ----------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def node(tmp_path_factory):
+    """``node(code, data)``: what the code returns of the data, with everything of the figure in scope."""
+    module = bundle.esm("motion")
+
+    def run(code, data):
+        script = tmp_path_factory.mktemp("node") / "motion.mjs"
+        script.write_text(
+            "import { readFileSync } from 'node:fs';\n"
+            + module
+            + f"\nconst data = JSON.parse(readFileSync(0));\nconsole.log(JSON.stringify({code}));\n",
+            "utf8",
+        )
+        done = subprocess.run([NODE, script], input=json.dumps(data), capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return run
+
+
+TRAJECTORY = """(({ settings, count }) => {
+  const run = new Run(settings);
+  while (run.last < count && !run.ended) run.next();
+  return { states: run.states, references: run.references, flips: run.flips, ended: Boolean(run.ended),
+    faults: Object.keys(DESCRIPTIONS).map((name) => run.states.map((_, k) => run.faultAt(k, name))),
+    errors: Object.keys(DESCRIPTIONS).map((name) => run.states.map((_, k) => run.errorAt(k, name))),
+    margins: run.states.map((_, k) => run.marginAt(k)) };
+})(data)"""
+
+
+def as_runs(answer):
+    states = np.array(answer["states"])
+    return {
+        "angular_velocity": states[:, :3],
+        "quaternion": states[:, 3:7],
+        "matrix": states[:, 7:16].reshape(-1, 3, 3),
+        "angles": states[:, 16:],
+        "reference": np.array(answer["references"])[:, 3:],
+    }
+
+
+@pytest.mark.parametrize("settings", RUNS, ids=str)
+def test_trajectories_agree_to_twelve_digits(node, settings):
+    answer = node(TRAJECTORY, {"settings": settings, "count": round(FEW_SECONDS / settings["step"])})
+    theirs = as_runs(answer)
+    figure = MotionFigure(**settings, time=FEW_SECONDS)
+    expected = integrated(**settings, seconds=FEW_SECONDS)
+    expected["reference"] = figure.run()["reference"]
+    for name, values in expected.items():
+        assert theirs[name].shape == values.shape
+        assert abs(theirs[name] - values).max() < AGREE, name
+    assert len(answer["flips"]) == figure.flips
+
+
+def test_faults_errors_and_margins_agree(node):
+    settings = dict(zip(SETTINGS, ("racket", "y", 0.2, "Euler", 0.02, False)))
+    answer = node(TRAJECTORY, {"settings": settings, "count": 150})
+    run = MotionFigure(**settings, time=3.0).run()
+    truth = dcm_from_quaternion(run["reference"])
+    lengths = np.linalg.norm(run["quaternion"], axis=1)
+    matrices = (
+        run["matrix"],
+        dcm_from_quaternion(run["quaternion"] / lengths[:, None]) * lengths[:, None, None] ** 2,
+        dcm_from_body_fixed(run["angles"], "zxy"),
+    )
+    for k, matrix in enumerate(matrices):
+        fault = abs(matrix @ matrix.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2))
+        error = axis_angle_from_dcm(nearest_dcm(matrix @ truth.swapaxes(1, 2)).dcm)[1]
+        assert abs(np.array(answer["faults"][k]) - fault).max() < 1e-11
+        assert abs(np.array(answer["errors"][k]) - error).max() < 1e-11
+    margins = np.degrees(gimbal_lock_margin(body_fixed_from_dcm(truth, "zxy"), "zxy"))
+    assert abs(np.array(answer["margins"]) - margins).max() < 1e-9
+
+
+def test_rates_agree_with_the_module(node):
+    random = np.random.default_rng(5)
+    dcms, quaternions = random.normal(size=(300, 3, 3)), random.normal(size=(300, 4))
+    angles, omegas = random.uniform(-3, 3, (300, 3)), random.normal(size=(300, 3))
+    columns = [dcms.reshape(-1, 9), quaternions, angles, omegas]
+    answer = node(
+        "data.map(([dcm, q, angles, omega]) => [dcmRate(dcm, omega), quaternionRate(q, omega), angleRates(angles, omega)])",
+        [[entry.tolist() for entry in row] for row in zip(*columns)],
+    )
+    for row, dcm, quaternion, angle, omega in zip(answer, dcms, quaternions, angles, omegas):
+        assert abs(np.reshape(row[0], (3, 3)) - dcm_rate(dcm, omega)).max() < 1e-14
+        assert abs(row[1] - quaternion_rate(quaternion, omega)).max() < 1e-14
+        rates = np.linalg.solve(angular_velocity_matrix(angle, "zxy"), omega)
+        assert abs(row[2] - rates).max() < 1e-13 * (1 + abs(rates).max()) / abs(np.cos(angle[1]))
+
+
+def test_both_end_a_hopeless_run_at_the_same_step(node):
+    settings = dict(zip(SETTINGS, ("racket", "y", 0.5, "Euler", 0.1, False)))
+    answer = node(TRAJECTORY, {"settings": settings, "count": 200})
+    assert answer["ended"]
+    assert len(answer["states"]) == len(MotionFigure(**settings, time=20).run()["time"])
+
+
+def test_the_front_end_is_small():
+    import gzip
+
+    assert len(gzip.compress(bundle.script("motion").encode())) < 9_000
+
+
+# ---- in a browser --------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory):
+    """A page that holds the figure between two paragraphs, opened from disk as a reader may."""
+    folder = tmp_path_factory.mktemp("page")
+
+    def build(theme):
+        scripts = bundle.shared_script() + bundle.script("motion")
+        page = folder / f"{theme}.html"
+        colours = {"light": "#fff", "dark": "#121212"}[theme]
+        page.write_text(
+            f'<!doctype html><html lang="en" data-theme="{theme}"><head><meta charset="utf-8"><title>Motion</title>'
+            f'<meta name="viewport" content="width=device-width"><style>body{{margin:0;background:{colours};'
+            f"--pst-color-background:{colours}}}main{{max-width:700px;margin:auto;padding:0 1rem}}"
+            f"h1{{color:gray}}{bundle.style()}</style></head><body><main><h1 hidden>Motion</h1>"
+            f"{MotionFigure().still()}</main><script>{scripts}</script></body></html>",
+            "utf8",
+        )
+        return page.as_uri()
+
+    return {theme: build(theme) for theme in ("light", "dark")}
+
+
+@pytest.fixture
+def visit(browser, address):
+    """``visit(theme, width, ...)``: the page, opened anew; it must not complain."""
+    contexts, faults = [], []
+
+    def open_page(theme="light", width=1300, **more):
+        context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=theme, **more)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on("console", lambda message: message.type == "error" and faults.append(message.text))
+        page.goto(address[theme])
+        settled(page)
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert not faults
+
+
+def words(page):
+    return page.locator(".words").text_content()
+
+
+def settled(page, at=None):
+    """Wait until the words have come to the time of the slider, or to ``at``."""
+    page.wait_for_function(
+        """(at) => {
+          const words = document.querySelector('.words').textContent, time = document.querySelector('.player input').value;
+          return words.startsWith(`After ${Number(at ?? time).toFixed(1)} s`);
+        }""",
+        arg=at,
+    )
+
+
+def time_of(page):
+    return float(page.locator(".player input[type=range]").input_value())
+
+
+def set_time(page, seconds):
+    page.get_by_label("Time in seconds").fill(str(seconds))
+    settled(page, seconds)
+
+
+def curves(page):
+    return page.eval_on_selector_all(".plot .axis", "(paths) => paths.map((path) => path.getAttribute('d'))")
+
+
+def table(page):
+    return page.eval_on_selector_all(".runs tbody tr", "(rows) => rows.map((row) => row.innerText.trim().split(/\\s*\\t\\s*/))")
+
+
+def test_it_opens_on_the_still_and_stays_at_rest(visit):
+    page = visit()
+    assert page.locator(".still").is_hidden() and page.locator(".live").is_visible()
+    assert "has flipped once" in words(page)
+    page.wait_for_timeout(900)   # longer than the words wait before they are read aloud
+    before = page.locator(".live").inner_html()
+    page.wait_for_timeout(400)
+    assert page.locator(".live").inner_html() == before and time_of(page) == 6
+
+
+def test_what_it_says_is_what_python_says(visit):
+    page, figure = visit(), MotionFigure()
+    fault = abs(figure.dcm @ figure.dcm.T - np.eye(3)).max()
+    assert f"not orthogonal by {float(f'{fault:.2g}'):g}" in words(page)
+    assert f"{np.linalg.norm(figure.dcm, axis=1).max():.3g} long" in words(page)
+    assert [row[0] for row in table(page)] == ["Matrix", "Quaternion", "Euler angles"]
+    assert table(page)[0][1] == f"{float(f'{fault:.2g}'):g}"
+
+
+def test_play_pause_reset(visit):
+    page = visit()
+    page.get_by_role("button", name="Reset").click()
+    settled(page, 0)
+    assert time_of(page) == 0 and all("L" not in data for data in curves(page))
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("document.querySelector('.player input').value > 1")
+    page.get_by_role("button", name="Pause").click()
+    settled(page)
+    stopped = time_of(page)
+    assert stopped > 1 and all("L" in data for data in curves(page))
+    page.wait_for_timeout(300)
+    assert time_of(page) == stopped
+    # Back in what has been computed: the curves stay.
+    grown = curves(page)
+    set_time(page, 0.5)
+    assert curves(page) == grown
+    page.get_by_role("button", name="Reset").click()
+    settled(page, 0)
+    assert time_of(page) == 0 and all("L" not in data for data in curves(page))
+
+
+def test_restoring_changes_the_plot_and_brings_the_triad_back(visit):
+    page = visit()
+    drifted = curves(page)
+    page.get_by_label("Restore after every step").check()
+    page.wait_for_function("document.querySelector('.words').textContent.includes('stays orthogonal')")
+    settled(page, 6)
+    assert curves(page)[:2] != drifted[:2]
+    assert [row[1] for row in table(page)] == ["< 10⁻¹⁵"] * 3
+    page.get_by_label("Restore after every step").uncheck()
+    page.wait_for_function("document.querySelector('.words').textContent.includes('not restored')")
+    settled(page, 6)
+    assert curves(page) == drifted
+
+
+def test_every_control_changes_the_run(visit):
+    page = visit()
+    before = curves(page)
+    for change in (
+        lambda: page.get_by_label("Method", exact=True).select_option("Runge-Kutta"),
+        lambda: page.get_by_label("Step in milliseconds").fill("50"),
+        lambda: page.get_by_label("Disturbance in radians per second").fill("0.2"),
+        lambda: page.get_by_label("Body", exact=True).select_option("book"),
+        lambda: page.get_by_label("Spin about", exact=True).select_option("z"),
+    ):
+        change()
+        page.wait_for_timeout(150)
+        settled(page, 6)
+        after = curves(page)
+        assert after != before
+        before = after
+    assert "the book does not flip" in words(page)
+    page.get_by_role("radio", name="Euler angles").check()
+    page.wait_for_function("document.querySelector('.words').textContent.includes('gimbal lock')")
+
+
+def test_a_hopeless_step_says_so(visit):
+    page = visit()
+    page.get_by_label("Step in milliseconds").fill("100")
+    page.get_by_label("Disturbance in radians per second").fill("0.5")
+    page.get_by_label("Time in seconds").fill("20")
+    page.wait_for_function("document.querySelector('.words').textContent.includes('smaller steps')")
+    assert time_of(page) < 19
+
+
+def test_keyboard_alone(visit):
+    page = visit()
+    names = []
+    for _ in range(20):
+        page.keyboard.press("Tab")
+        names.append(
+            page.evaluate(
+                """() => { const e = document.activeElement;
+                return e.getAttribute('aria-label') ?? (e.labels?.length ? e.labels[0].innerText : e.innerText) }"""
+            ).strip()
+        )
+    expected = ["Play", "Time", "Time in seconds", "Reset", "Matrix", "Restore after every step", "Method", "Step"]
+    expected += ["Step in milliseconds", "Disturbance", "Disturbance in radians per second", "Body", "Spin about"]
+    found = [name for name in names if name in expected]
+    assert found[: len(expected)] == expected
+    page.get_by_label("Time", exact=True).and_(page.locator("input")).focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function("document.querySelector('.player input').value == 6.05")
+    page.get_by_role("radio", name="Matrix").focus()
+    page.keyboard.press("ArrowDown")
+    page.wait_for_function("document.querySelector('.words').textContent.includes('quaternion')")
+    page.get_by_label("Restore after every step").focus()
+    page.keyboard.press("Space")
+    page.wait_for_function("document.querySelector('.words').textContent.includes('stays orthogonal')")
+    page.get_by_role("button", name="Play").focus()
+    page.keyboard.press("Enter")
+    page.wait_for_function("document.querySelector('.player input').value > 6.3")
+    page.keyboard.press("Enter")
+    assert page.get_by_role("button", name="Play").is_visible()
+    triad = page.locator(".stage .marks").inner_html()
+    page.locator(".stage .sheet").focus()
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_function("(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=triad)
+
+
+def test_sliders_tell_their_values_and_units(visit):
+    page = visit()
+    for name, told in (
+        ("Time", "Time, 6 seconds"),
+        ("Step", "Step, 10 milliseconds"),
+        ("Disturbance", "Disturbance, 0.01 radians per second"),
+    ):
+        slider = page.locator(f'input[type=range][aria-label="{name}"]')
+        assert slider.get_attribute("aria-valuetext") == told
+    page.wait_for_function("document.querySelector('[role=status]').textContent.startsWith('After 6.0 s')")
+
+
+def test_touch_on_a_phone(visit):
+    page = visit(width=380, has_touch=True, is_mobile=True)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 380
+    page.get_by_label("Restore after every step").tap()
+    page.wait_for_function("document.querySelector('.words').textContent.includes('stays orthogonal')")
+    page.evaluate("window.scrollTo(0, 0)")
+    page.locator(".plot").scroll_into_view_if_needed()
+    box = page.locator(".plot").bounding_box()
+    # The middle of the time axis, as on the sheet: 20 pixels right of the middle.
+    page.touchscreen.tap(box["x"] + box["width"] * 200 / 360, box["y"] + box["height"] * 0.85)
+    page.wait_for_function("Math.abs(document.querySelector('.player input').value - 10) < 0.2")
+    page.get_by_role("button", name="Play").tap()
+    page.wait_for_function("document.querySelector('.player input').value > 10.5")
+    page.get_by_role("button", name="Pause").tap()
+
+
+def test_dragging_in_the_plot_goes_through_time(visit):
+    page = visit()
+    box = page.locator(".plot").bounding_box()
+    at = lambda second: box["x"] + box["width"] * (52 + 296 * second / 20) / 360
+    page.mouse.move(at(2), box["y"] + 60)
+    page.mouse.down()
+    page.wait_for_function("Math.abs(document.querySelector('.player input').value - 2) < 0.1")
+    page.mouse.move(at(5), box["y"] + 200)
+    page.mouse.up()
+    page.wait_for_function("Math.abs(document.querySelector('.player input').value - 5) < 0.1")
+
+
+def test_dragging_the_drawing_turns_the_view(visit):
+    page = visit()
+    before, box = page.locator(".stage .marks").inner_html(), page.locator(".stage .sheet").bounding_box()
+    page.mouse.move(box["x"] + 100, box["y"] + 100)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 160, box["y"] + 100)
+    page.mouse.up()
+    page.wait_for_function("(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=before)
+
+
+def test_less_motion_goes_in_steps(visit):
+    page = visit(reduced_motion="reduce")
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_timeout(1800)
+    page.get_by_role("button", name="Pause").click()
+    moved = time_of(page) - 6
+    assert 0.5 <= moved <= 2.5
+    page.evaluate(
+        """() => { window.times = new Set();
+        new MutationObserver(() => times.add(document.querySelector('.player input').value))
+          .observe(document.querySelector('.plot'), { subtree: true, attributes: true }); }"""
+    )
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_timeout(1800)
+    assert 1 <= page.evaluate("times.size") <= 4
+
+
+@pytest.mark.parametrize("theme", ("light", "dark"))
+@pytest.mark.parametrize("width", (1300, 380))
+def test_axe_finds_nothing(visit, theme, width):
+    page = visit(theme, width)
+    page.evaluate((REPOSITORY / "node_modules" / "axe-core" / "axe.min.js").read_text("utf8"))
+    found = page.evaluate(
+        "async () => (await axe.run('.moving', {resultTypes: ['violations']})).violations"
+        ".map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 200)} ${v.nodes[0].failureSummary}`)"
+    )
+    assert found == []
+    assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") == 0
+
+
+def test_a_frame_fits_on_a_slow_machine(visit):
+    page = visit()
+    set_time(page, 20)
+    page.context.new_cdp_session(page).send("Emulation.setCPUThrottlingRate", {"rate": 4})
+    spent = page.evaluate(
+        """async () => {
+          const field = document.querySelector('.player input'), spent = [], ask = window.requestAnimationFrame.bind(window);
+          window.requestAnimationFrame = (work) => ask((moment) => {
+            const begin = performance.now();
+            work(moment);
+            spent.push(performance.now() - begin);
+          });
+          for (let k = 0; k < 60; k += 1) {
+            field.value = 2 + 0.25 * k;
+            field.dispatchEvent(new Event('input'));
+            await new Promise((done) => setTimeout(done, 30));
+          }
+          window.requestAnimationFrame = ask;
+          return spent;
+        }"""
+    )
+    assert len(spent) > 30 and np.median(spent) < 16, spent
