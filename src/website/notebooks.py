@@ -12,6 +12,8 @@ import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
+from .moving import WIDGET
+
 PLACES = ("*.ipynb", "chapters/*.ipynb", "appendix/*.ipynb")
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -32,6 +34,8 @@ def normalise(notebook):
     for position, cell in enumerate(notebook.cells):
         cell["id"] = f"cell-{position}"
         cell.metadata = {key: cell.metadata[key] for key in KEPT_IN_CELLS if key in cell.metadata}
+        for output in cell.get("outputs", []):
+            output.get("data", {}).pop(WIDGET, None)  # it names a model in a kernel that is gone
         cell.source = "\n".join(line.rstrip() for line in cell.source.strip().splitlines())
     return notebook
 
