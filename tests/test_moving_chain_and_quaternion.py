@@ -225,11 +225,16 @@ def words(page):
     return page.inner_text(".stage:not([hidden]) .words")
 
 
+# A control's own label, or its text with the formulas as they are spoken.
+NAME = """() => document.activeElement.getAttribute('aria-label') ?? [...document.activeElement.childNodes].map(
+  (part) => part.getAttribute?.('aria-label') ?? part.textContent).join('')"""
+
+
 def tab_to(page, name):
     """Come to a control by the Tab key alone."""
     for _ in range(80):
         page.keyboard.press("Tab")
-        if page.evaluate("() => document.activeElement.getAttribute('aria-label') ?? document.activeElement.textContent") == name:
+        if page.evaluate(NAME) == name:
             return
     pytest.fail(f"the Tab key does not come to {name!r}")
 
@@ -385,7 +390,7 @@ def test_chain_by_touch(opened):
     finger(page, start, (start[0] - 40, start[1] + 50))
     assert page.evaluate("scrollY") == 0
     angle = float(page.input_value('input[aria-label="Turn 3, to frame C in degrees"]'))
-    assert angle != 30 and not np.allclose(matrix(page), before)
+    assert angle != 40 and not np.allclose(matrix(page), before)
     expected = SuccessiveFigure()
     expected.turns = (*expected.turns[:2], ("y", math.radians(angle)))
     assert np.abs(matrix(page) - expected.dcm).max() < 5.01e-4

@@ -76,6 +76,11 @@ class QuaternionFigure(MovingFigure):
         return (-118, -142, 242, 222) if self.view == 'double' else (-180, -142, 180, 222)
 
     @property
+    def room(self):
+        """Height of the figure in pixels with its controls beside and below it."""
+        return (614, 842) if self.view == 'double' else (691, 888)
+
+    @property
     def quaternion(self):
         """The unit quaternion of half the angle, scalar first, shape ``(4,)``."""
         return quaternion_from_axis_angle(self.axis, self.angle)

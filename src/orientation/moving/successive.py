@@ -73,12 +73,13 @@ class SuccessiveFigure(MovingFigure):
     >>> from orientation.moving import SuccessiveFigure
     >>> figure = SuccessiveFigure(turns=[('z', 1.2), ('x', 0.4)], compare='1 and 2 exchanged')
     >>> figure.dcm.shape, round(figure.angle_between, 6)
-    ((3, 3), 0.455848)
+    ((3, 3), 0.449655)
     """
 
     kind = 'successive'
     sheet = (-180, -142, 180, 222)
-    turns = Turns((('z', math.radians(50)), ('x', math.radians(30)), ('y', math.radians(30)))).tag(sync=True, state=True)
+    room = (685, 925)
+    turns = Turns((('z', math.radians(30)), ('x', math.radians(50)), ('y', math.radians(40)))).tag(sync=True, state=True)
     fixed = traitlets.Enum(('body', 'space'), 'body').tag(sync=True, state=True)
     compare = traitlets.Enum(COMPARISONS, 'nothing').tag(sync=True, state=True)
     share = Numbers(1.0, largest=1.0).tag(sync=True, state=True)

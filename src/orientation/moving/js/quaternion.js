@@ -15,8 +15,7 @@ const between = (first, second) => axisAngleFromDcm(multiply(second, transpose(f
 export function render({ model, el }) {
   const double = doubleView(model), way = wayView(model);
   const views = { double, way };
-  const switches = [['double', '$q$ and $-q$', 'q and minus q'], ['way', 'From $A$ to $B$', 'From A to B']].map(([name, text, spokenText]) => button(
-    text, () => change(model, { view: name }), { 'aria-label': spokenText }));
+  const switches = [['double', '$q$ and $-q$'], ['way', 'From $A$ to $B$']].map(([name, text]) => button(text, () => change(model, { view: name })));
   const root = open(el, element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches)), ...double.parts, ...way.parts);
   root.classList.add('two-views');
 
@@ -214,7 +213,7 @@ function wayView(model) {
   const tip = choice({ name: 'Follow the unit vector', options: AXES, change: (value) => change(model, { unit_vector: value }) });
   const way = player({ name: 'Time on the way', seconds: SECONDS, show: (time) => change(model, { share: time / SECONDS }) });
   const table = numberTable({ name: 'The three ways', kind: 'ways', rows: ['$C$ slerp', '$D$ Euler angles', '$E$ matrix entries'],
-    columns: ['turned by', 'speed'], names: ['C, slerp', 'D, Euler angles', 'E, matrix entries'].map((name) => ['turned from A by', 'speed'].map(
+    columns: ['turned', 'speed'], names: ['C, slerp', 'D, Euler angles', 'E, matrix entries'].map((name) => ['turned from A by', 'speed'].map(
       (what) => `${name}, ${what}`)), light: () => {} });
   const lengths = numberTable({ name: 'Lengths of the rows of the blended matrix', columns: AXES.map((axis) => `row ${axis}`),
     names: [AXES.map((axis) => `length of row ${axis}`)], light: () => {} });
