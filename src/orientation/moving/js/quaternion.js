@@ -1,8 +1,7 @@
-import { AXES, IDENTITY, add, axisAngleFromDcm, conjugate, cross, dcmFromAxisAngle, dcmFromBodyFixed, dcmFromQuaternion, dot,
-  length, multiply, multiplyQuaternions, nearestDcm, quaternionFromAxisAngle, quaternionFromDcm, scale, slerp, subtract,
-  times, transpose, unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, glide, group, liveText,
-  numberField, numberTable, onceAFrame, open, plain, player, put, radians, slider, stage, words } from './shared.js';
+import { AXES, IDENTITY, add, axisAngleFromDcm, dcmFromBodyFixed, dcmFromQuaternion, dot, length, multiply,
+  nearestDcm, quaternionFromAxisAngle, quaternionFromDcm, scale, slerp, subtract, times, transpose, unit } from './mathematics.js';
+import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, glide,
+  group, liveText, numberField, numberTable, onceAFrame, open, plain, player, put, radians, slider, stage } from './shared.js';
 
 // As in quaternion.py: pixels, places on the sheet, seconds.
 const SIZE = 96, KNOB = 1.32, MIDDLE = [142, 130], RADIUS = 70, SECONDS = 4, BALL = 104, SAMPLES = 60;

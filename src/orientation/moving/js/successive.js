@@ -1,7 +1,7 @@
-import { AXES, IDENTITY, add, axisAngleFromDcm, cross, dot, multiply, scale, simpleDcm, subtract, times,
-  transpose, unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, group, liveText, numberTable,
-  onceAFrame, open, plain, player, put, slider, stage, words, wrapped } from './shared.js';
+import { AXES, IDENTITY, add, axisAngleFromDcm, dot, multiply, scale, simpleDcm, subtract, times, transpose,
+  unit } from './mathematics.js';
+import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, group, liveText,
+  numberTable, onceAFrame, open, player, put, slider, stage, words, wrapped } from './shared.js';
 
 const REACH = 1.25, BEFORE = 0.66, SIZE = 96, SECONDS = 6;   // as in successive.py
 const LETTERS = 'NABCD';
