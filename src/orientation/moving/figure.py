@@ -19,11 +19,13 @@ class MovingFigure(anywidget.AnyWidget):
 
     A figure has a ``kind``, the name of its module in ``js``; traits tagged ``state=True``; and a method
     ``drawing`` that returns its still. ``sheet`` gives left, top, right and bottom of what may be drawn, in
-    pixels from the origin: still and figure have the same size, so that a page does not move.
+    pixels from the origin: still and figure have the same size. ``room`` is the height of the whole figure
+    in pixels, beside and below its controls, which a page keeps free so that nothing moves.
     """
 
     kind = ''
     sheet = (-180, -160, 180, 160)
+    room = (0, 0)
 
     _esm = traitlets.Unicode().tag(sync=True)
     _css = traitlets.Unicode().tag(sync=True)
@@ -35,6 +37,13 @@ class MovingFigure(anywidget.AnyWidget):
     @traitlets.default('_css')
     def _default_css(self):
         return STYLE + bundle.style()
+
+    def __init__(self, **attributes):
+        unknown = sorted(set(attributes) - set(self.trait_names()))
+        if unknown:  # a widget would take a misspelt name in silence
+            raise TypeError(f'{type(self).__name__} has no {", ".join(unknown)}; what can be set is '
+                            f'{", ".join(sorted(self.trait_names(state=True)))}')
+        super().__init__(**attributes)
 
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
@@ -49,7 +58,8 @@ class MovingFigure(anywidget.AnyWidget):
         # The drawing adds a margin of 8 pixels to the bounds it is given.
         svg = self.drawing().svg(bounds=np.add(self.sheet, (8, 8, -8, -8)))
         state = escape(json.dumps(self.state(), separators=(',', ':')), quote=False).replace("'", '&#39;')
-        return (f'<figure class="orientation-figure moving" data-figure="{self.kind}" data-state=\'{state}\'>'
+        return (f'<figure class="orientation-figure moving" data-figure="{self.kind}" '
+                f'style="--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px" data-state=\'{state}\'>'
                 f'<style>{STYLE}</style><div class="still">{svg}</div></figure>')
 
     def _repr_mimebundle_(self, **kwargs):
