@@ -27,6 +27,7 @@ COLOURS = {'matrix': 'A', 'quaternion': 'D', 'angles': 'C'}
 LEFT, RIGHT, PLOT = -128, 168, (-180, 0, 180, 356)
 # Top, bottom, value at the bottom and at the top, and the marked values, of each part of the plot.
 FAULT, ERROR, MARGIN = (24, 124, -16, 2), (156, 256, -12, 1), (288, 324, 0, 90)
+LEGEND = 104
 
 
 class Between(Numbers):
@@ -78,13 +79,17 @@ class MotionFigure(MovingFigure):
     Examples
     --------
     >>> from orientation.moving import MotionFigure
-    >>> figure = MotionFigure(method='Runge-Kutta', step=0.02, time=1)
-    >>> figure.dcm.round(3).tolist()[1]
-    [-0.033, 0.999, 0.031]
+    >>> figure = MotionFigure(method='Runge-Kutta', step=0.02, time=3)
+    >>> figure.flips
+    0
+    >>> figure.time = 4
+    >>> figure.flips
+    1
     """
 
     kind = 'motion'
     sheet = (-180, -150, 180, 150)
+    room = (612, 1112)
     body = traitlets.Enum(tuple(MOMENTS), 'racket').tag(sync=True, state=True)
     axis = traitlets.Enum(tuple('xyz'), 'y').tag(sync=True, state=True)
     disturbance = Between(0.01, 0, 0.5, 'rad/s').tag(sync=True, state=True)
@@ -136,11 +141,12 @@ class MotionFigure(MovingFigure):
         restored = 'restored after every step' if self.restored else 'not restored'
         times = {0: 'has not flipped yet' if self.axis == 'y' else 'does not flip', 1: 'has flipped once'}.get(self.flips, f'has flipped {self.flips} times')
         drawing = Drawing(
-            f'A {self.body} that spins freely about its {self.axis} axis, drawn with its triad A as its {DESCRIPTIONS[self.description]} '
-            f'says after {run["time"][-1]:.1f} seconds, {restored}, with the {self.method} method in steps of {1000 * self.step:g} '
-            f'milliseconds. It {times}. The unit vectors of A, which should be 1 long, are {lengths} long; the matrix is '
-            f'not orthogonal by {_words(fault)}, and the orientation is wrong by {_words(error)} radians. Dashed: the reference, '
-            f'computed with steps ten times finer. The arrow H is the angular momentum, which keeps its direction. In the corner stands the triad of N.',
+            f'A {self.body} that spins freely about its {self.axis} axis, drawn with its triad A as its '
+            f'{DESCRIPTIONS[self.description]} says after {run["time"][-1]:.1f} seconds, {restored}, with the '
+            f'{self.method} method in steps of {1000 * self.step:g} milliseconds. It {times}. The unit vectors of A, '
+            f'which should be 1 long, are {lengths} long; the matrix is not orthogonal by {_words(fault)}, and the '
+            f'orientation is wrong by {_words(error)} radians. Dashed: the reference, computed with steps ten times '
+            f'finer. The arrow H is the angular momentum, which keeps its direction. In the corner stands the triad of N.',
             scale=SIZE)
         corner = np.array((-136, -108, 0)) / SIZE @ drawing.view
         drawing.triad('N', np.eye(3), corner, 0.28)
@@ -168,13 +174,16 @@ class MotionFigure(MovingFigure):
         curves = {name: _matrices(run, name, slice(None, None, every)) for name in DESCRIPTIONS}
         faults = {name: _fault(curve) for name, curve in curves.items()}
         errors = {name: _error(curve, reference) for name, curve in curves.items()}
-        margins = np.degrees(gimbal_lock_margin(body_fixed_from_dcm(dcm_from_quaternion(run['reference']), 'zxy'), 'zxy'))
+        angles = body_fixed_from_dcm(dcm_from_quaternion(run['reference']), 'zxy')
+        margins = np.degrees(gimbal_lock_margin(angles, 'zxy'))
         margin = np.array([margins[max(0, k - every + 1):k + 1].min() for k in range(0, len(margins), every)])
-        last = '; '.join(f'{DESCRIPTIONS[name]}, not orthogonal by {_words(faults[name][-1])}, error {_words(errors[name][-1])} radians'
-                         for name in DESCRIPTIONS)
-        drawing = Drawing(f'Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} seconds. Above, on a '
-                          f'logarithmic scale, by how much each description is not orthogonal; in the middle, its error against the reference; below, '
-                          f'the margin of the Euler angles to gimbal lock, at the least {margin.min():.0f} degrees. At the last: {last}.')
+        last = '; '.join(f'{title}, not orthogonal by {_words(faults[name][-1])}, error {_words(errors[name][-1])} radians'
+                         for name, title in DESCRIPTIONS.items())
+        drawing = Drawing(
+            f'Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} seconds. Above, on a '
+            f'logarithmic scale, by how much each description is not orthogonal; in the middle, its error against the '
+            f'reference; below, the margin of the Euler angles to gimbal lock, at the least {margin.min():.0f} degrees. '
+            f'At the last: {last}.')
         for part, title, marks in (
                 (FAULT, r'$\mathrm{not\ orthogonal\ by}$', {-15: '10^{-15}', -10: '10^{-10}', -5: '10^{-5}', 0: '1'}),
                 (ERROR, r'$\mathrm{error\ (rad)}$', {-10: '10^{-10}', -5: '10^{-5}', 0: '1'}),
@@ -193,6 +202,12 @@ class MotionFigure(MovingFigure):
             for name, colour in COLOURS.items():
                 _curve(drawing, times, np.log10(np.maximum(values[name], 1e-30)), part, f'axis {colour}')
         _curve(drawing, times, margin, MARGIN, 'ink')
+        # What the figure says in its table, where curves only pass through on their way up.
+        for name, words, place, middle in (('matrix', 'matrix', -120, -73), ('quaternion', 'quaternion', -40, 19),
+                                           ('angles', r'Euler\ angles', 64, 127)):
+            colour = COLOURS[name]
+            drawing.path('ML', [(place, LEGEND), (place + 22, LEGEND)], f'axis {colour}')
+            drawing.label((0, 0, 0), rf'$\mathrm{{{words}}}$', colour, (middle, LEGEND), 14)
         return drawing
 
 
@@ -230,7 +245,8 @@ def _run(body, axis, disturbance, method, step, restored, count):
     for _ in range(count):
         with np.errstate(all='ignore'):
             omega, matrix, quaternion, angles = _step(rates, rows[-1], step, method)
-        if not max(abs(omega).max(), abs(matrix).max(), abs(quaternion).max()) < LARGEST or not np.isfinite(angles).all():
+        largest = max(abs(omega).max(), abs(matrix).max(), abs(quaternion).max())
+        if not largest < LARGEST or not np.isfinite(angles).all():
             break
         if restored:
             matrix, quaternion = nearest_dcm(matrix).dcm, quaternion / np.linalg.norm(quaternion)
@@ -322,7 +338,8 @@ def _ring(middle, along, across, count=28):
 
 
 HEAD = _ring(0.45, 0.47, 0.36)
-STRINGS = np.array([(x, side * 0.36 * np.sqrt(1 - ((x - 0.45) / 0.47)**2), 0) for x in (0.12, 0.285, 0.45, 0.615, 0.78) for side in (-1, 1)]
+STRINGS = np.array([(x, side * 0.36 * np.sqrt(1 - ((x - 0.45) / 0.47)**2), 0)
+                    for x in (0.12, 0.285, 0.45, 0.615, 0.78) for side in (-1, 1)]
                    + [(0.45 + side * 0.47 * np.sqrt(1 - (y / 0.36)**2), y, 0) for y in (-0.2, 0, 0.2) for side in (-1, 1)])
 THROAT = np.array([(0.065, 0.206, 0), (-0.24, 0, 0), (0.065, -0.206, 0)])
 HANDLE = np.array([(-0.24, 0, 0), (-0.85, 0, 0)])
@@ -353,4 +370,5 @@ def _draw_book(drawing, dcm):
         u, v = half[(k + 1) % 3], half[(k + 2) % 3]
         for side in (-1, 1):
             if side * np.cross(u, v) @ drawing.view[2] > 0:
-                drawing.area(side * half[k] + np.array([u + v, v - u, -u - v, u - v]), 'A', 38 if k == 2 and side < 0 else fill)
+                corners = side * half[k] + np.array([u + v, v - u, -u - v, u - v])
+                drawing.area(corners, 'A', 38 if k == 2 and side < 0 else fill)

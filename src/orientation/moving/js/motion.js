@@ -128,12 +128,14 @@ export class Run {
 }
 
 const across = (time) => LEFT + (RIGHT - LEFT) * time / SECONDS;
-const down = ([top, bottom, least, most], value) => bottom - (bottom - top) * (Math.max(least, Math.min(most, value)) - least) / (most - least);
+const down = ([top, bottom, least, most], value) => bottom
+  - (bottom - top) * (Math.max(least, Math.min(most, value)) - least) / (most - least);
 
 // ---- the bodies, along A -------------------------------------------------------------------------------
 
 const HEAD = Array.from({ length: 29 }, (_, k) => [0.45 + 0.47 * Math.cos(Math.PI * k / 14), 0.36 * Math.sin(Math.PI * k / 14), 0]);
-const STRINGS = [...[0.12, 0.285, 0.45, 0.615, 0.78].flatMap((x) => [-1, 1].map((side) => [x, side * 0.36 * Math.sqrt(1 - ((x - 0.45) / 0.47) ** 2), 0])),
+const STRINGS = [
+  ...[0.12, 0.285, 0.45, 0.615, 0.78].flatMap((x) => [-1, 1].map((side) => [x, side * 0.36 * Math.sqrt(1 - ((x - 0.45) / 0.47) ** 2), 0])),
   ...[-0.2, 0, 0.2].flatMap((y) => [-1, 1].map((side) => [0.45 + side * 0.47 * Math.sqrt(1 - (y / 0.36) ** 2), y, 0]))];
 const THROAT = [[0.065, 0.206, 0], [-0.24, 0, 0], [0.065, -0.206, 0]], HANDLE = [[-0.24, 0, 0], [-0.85, 0, 0]];
 const EDGES = [1.32, 0.9, 0.18];
@@ -160,11 +162,11 @@ function drawBook(sheet, matrix) {
   sheet.layer = 3;
   [26, 26, 8].forEach((fill, k) => {
     const u = half[(k + 1) % 3], v = half[(k + 2) % 3];
+    const corners = [add(u, v), add(v, scale(-1, u)), scale(-1, add(u, v)), add(u, scale(-1, v))];
     for (const side of [-1, 1]) {
       // Cross products of the edges: the faces of a skewed box do not look along the rows.
       if (side * dot(cross(u, v), sheet.view[2]) <= 0) continue;
-      sheet.area([add(u, v), add(v, scale(-1, u)), scale(-1, add(u, v)), add(u, scale(-1, v))].map((p) => add(p, scale(side, half[k]))), 'A',
-        k === 2 && side < 0 ? 38 : fill);
+      sheet.area(corners.map((p) => add(p, scale(side, half[k]))), 'A', k === 2 && side < 0 ? 38 : fill);
     }
   });
 }
@@ -176,7 +178,7 @@ function power(value) {
   if (!(value >= 1e-15)) return Number.isNaN(value) ? '–' : '< 10⁻¹⁵';
   if (value >= 0.001 && value < 1000) return String(Number(value.toPrecision(2)));
   const [mantissa, exponent] = value.toExponential(1).split('e');
-  return `${mantissa} × 10${[...exponent.replace('+', '')].map((sign) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(sign)]).join('')}`;
+  return `${mantissa}\u2009×\u200910${[...exponent.replace('+', '')].map((sign) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(sign)]).join('')}`;
 }
 
 const often = (count, axis) => [axis === 'y' ? 'has not flipped yet' : 'does not flip', 'has flipped once', 'has flipped twice'][count] ?? `has flipped ${count} times`;
@@ -184,16 +186,18 @@ const often = (count, axis) => [axis === 'y' ? 'has not flipped yet' : 'does not
 // ---- the figure ----------------------------------------------------------------------------------------
 
 const SETTINGS = ['body', 'axis', 'disturbance', 'method', 'step', 'restored'];
-let figures = 0;
 
 export function render({ model, el }) {
-  const number = figures += 1;
+  const alone = `description-${Math.random()}`;   // the buttons of one figure exclude each other, not those of the next
   let run, made = '';
 
   const sheet = new Sheet({ bounds: [-180, -150, 180, 150], size: SIZE, changed: () => redraw(),
     name: 'The tumbling body with its triad A, drawn from the computed numbers. Dashed: the reference. H: the angular momentum.' });
   const plot = new Sheet({ name: '', bounds: [-180, 0, 180, 356], grab(part, at) {
-    const scrub = (to) => { clock.pause(); clock.set(Math.max(0, Math.min(SECONDS, SECONDS * (to[0] - LEFT) / (RIGHT - LEFT)))); };
+    const scrub = (to) => {
+      clock.pause();
+      clock.set(Math.max(0, Math.min(SECONDS, SECONDS * (to[0] - LEFT) / (RIGHT - LEFT))));
+    };
     scrub(at);
     return scrub;
   } });
@@ -220,7 +224,7 @@ export function render({ model, el }) {
   const restored = element('input', { type: 'checkbox', change: () => change(model, { restored: restored.checked }) });
   const named = (name, control) => element('div', { class: 'named' }, element('span', { 'aria-hidden': 'true' }, name), control.element);
   const rows = Object.entries(DESCRIPTIONS).map(([name, title]) => {
-    const pick = element('input', { type: 'radio', name: `description-${number}`, value: name,
+    const pick = element('input', { type: 'radio', name: alone, value: name,
       change: () => change(model, { description: name }) });
     const [faulty, wrong] = [element('td'), element('td')];
     return { name, pick, faulty, wrong, element: element('tr', {}, element('th', { scope: 'row' }, element('label', {}, pick,
