@@ -9,6 +9,11 @@ from pathlib import Path
 from docutils import nodes
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
+# On a narrow screen the drawing of a figure stays in view, under the bar at the top of the page.
+PAGE_STYLE = """
+.cell_output .output:has(> .moving) { overflow: visible; }
+.moving .stage { top: 3.5rem; }
+"""
 
 
 def prefer_stills(app, config):
@@ -18,7 +23,7 @@ def prefer_stills(app, config):
 
 def drop_widget_state(app, doctree):
     """Take out the widgets' state and the scripts that MyST-NB would load for it from elsewhere."""
-    scripts = doctree.get("nb_js_files", {})
+    scripts = app.env.nb_metadata.get(app.env.docname, {}).get("js_files", {})
     for key in [key for key in scripts if key.startswith("ipywidgets_")]:
         del scripts[key]
 
@@ -41,7 +46,7 @@ def add_scripts(app, pagename, templatename, context, doctree):
         return
     from orientation.moving import bundle
 
-    texts = {"shared.js": bundle.shared_script(), "moving.css": bundle.style()}
+    texts = {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
     texts |= {f"{kind}.js": bundle.script(kind) for kind in kinds}
     folder = Path(app.outdir) / "_static" / "moving"
     folder.mkdir(parents=True, exist_ok=True)

@@ -11,7 +11,7 @@ from .state import Numbers, Sequence
 
 # Radii of the rings of B and C, the camera, where the axes end: as in js/gimbal.js.
 OUTER, INNER, CAMERA, END, SIZE = 1.05, 0.76, (0.62, 0.44, 0.46), 1.42, 98
-INSET = (1.36, 1.08)   # the triads of A and D, right and up
+INSET = (1.4, 1.1)   # the triads of A and D, right and up
 VIEW = view_from(np.radians(58), np.radians(22))
 
 
@@ -38,7 +38,8 @@ class GimbalFigure(MovingFigure):
 
     kind = 'gimbal'
     sheet = (-180, -185, 200, 185)
-    angles = Numbers(np.radians((-12, 30, 20)), (3,), math.pi).tag(sync=True, state=True)
+    room = (436, 784)
+    angles = Numbers(np.radians((15, -25, -30)), (3,), math.pi).tag(sync=True, state=True)
     sequence = Sequence('zxy').tag(sync=True, state=True)
 
     @property
@@ -97,12 +98,14 @@ class GimbalFigure(MovingFigure):
                 add(7, arm, drawing.line, [(start + 0.1) * arm, END * arm], 'ink', 'guide')
         for _, method, arguments in sorted(marks, key=lambda mark: mark[0]):
             method(*arguments)
-        for axis, symbol in zip(axes, (r'$\psi$', r'$\theta$', r'$\varphi$')):
+        rests = (A[second], B[third], C[second])
+        for axis, rest, symbol in zip(axes, rests, (r'$\psi$', r'$\theta$', r'$\varphi$')):
+            drawing.turn(axis, 4.4, rest, 0.16, origin=0.9 * END * axis)
             tip = drawing.on_sheet(END * axis)
             drawing.label(END * axis, symbol, 'ink', 17 * tip / (np.linalg.norm(tip) or 1))
-        for letter, point in (('A', 1.62 * down), ('B', OUTER * (0.64 * B[first] + 0.77 * B[second])),
-                              ('C', 0.71 * INNER * (C[second] - C[third]))):
+        for letter, point, far in (('A', 1.62 * down, 0), ('B', OUTER * (0.64 * B[first] + 0.77 * B[second]), 20),
+                              ('C', 0.71 * INNER * (C[second] - C[third]), 20), ('D', 0.26 * D[2], 14)):
             place = drawing.on_sheet(point)
-            drawing.label(point, f'${letter}$', letter, (24, 4) if letter == 'A' else 20 * place / np.linalg.norm(place))
+            drawing.label(point, f'${letter}$', letter, far * place / (np.linalg.norm(place) or 1) if far else (24, 4))
         corner = np.array(INSET) @ VIEW[:2]
-        return drawing.triad('A', A, corner, 0.58).triad('D', D, corner, 0.4)
+        return drawing.triad('A', A, corner, 0.54).triad('D', D, corner, 0.3)

@@ -33,6 +33,7 @@ class NineNumbersFigure(MovingFigure):
 
     kind = 'nine_numbers'
     sheet = (-180, -165, 180, 165)
+    room = (524, 941)
     matrix = Numbers(((0.98, 0.43, -0.2), (-0.31, 0.8, 0.7), (0.08, -0.4, 0.74)), (3, 3), 10).tag(sync=True, state=True)
 
     @property

@@ -39,6 +39,7 @@ class TriadFigure(MovingFigure):
     """
 
     kind = 'triad'
+    room = (490, 872)
     axis = Direction((1, 2, 2)).tag(sync=True, state=True)
     angle = Numbers(math.radians(50), largest=math.pi).tag(sync=True, state=True)
     sequence = Sequence('zxy').tag(sync=True, state=True)

@@ -1,11 +1,11 @@
-import { AXES, IDENTITY, add, cross, dcmFromBodyFixed, dot, gimbalLockMargin, multiply, PROPER_EULER, SEQUENCES,
-  scale, simpleDcm, TAIT_BRYAN, times, transpose } from './mathematics.js';
+import { AXES, IDENTITY, add, dot, gimbalLockMargin, multiply, PROPER_EULER, SEQUENCES, scale, simpleDcm, times,
+  transpose } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, glide, group, hats, liveText,
   numberTable, onceAFrame, open, plain, radians, readout, slider, stage, wrapped } from './shared.js';
 
 // Radii of the rings of B and C, half the camera, where the axes end; as in gimbal.py.
 const OUTER = 1.05, INNER = 0.76, CAMERA = [0.62, 0.44, 0.46], END = 1.42, SIZE = 98;
-const BOUNDS = [-180, -185, 200, 185], INSET = [1.36, 1.08];   // the triads of A and D, right and up
+const BOUNDS = [-180, -185, 200, 185], INSET = [1.4, 1.1];   // the triads of A and D, right and up
 const SYMBOLS = ['$\\psi$', '$\\theta$', '$\\varphi$'], NAMES = ['psi', 'theta', 'phi'];
 const CLOSE = radians(10), LOCKED = radians(0.5);
 
@@ -84,7 +84,7 @@ export function render({ model, el }) {
     bar.firstChild.style.width = `${apart / 0.9}%`;
     bar.setAttribute('aria-valuenow', apart);
     bar.setAttribute('aria-valuetext', `${apart} degrees`);
-    sheet.draw(() => picture(sheet, gimbal, angles, close, lit));
+    sheet.draw(() => picture(sheet, gimbal, close, lit));
     text.say(lit ? inWords(gimbal.D, ...lit) : situation(gimbal, apart, order));
   }
 
@@ -121,7 +121,7 @@ for (let k = 0; k < 8; k += 1) {
 }
 GRIPS['20'] = ({ D, at }) => scale(0.3, D[at[2] === 0 ? 2 : 0]);
 
-function picture(sheet, gimbal, angles, close, lit) {
+function picture(sheet, gimbal, close, lit) {
   const { A, B, C, D, at, axes, normals } = gimbal;
   const near = (direction) => (dot(direction, sheet.view[2]) < 0 ? -1 : 1);
   const pin = (axis, from, to, colour, layer) => {
@@ -154,7 +154,7 @@ function picture(sheet, gimbal, angles, close, lit) {
     sheet.circle(D[0], { radius: 0.09, origin: scale(0.5, D[0]), colour: 'D', kind: 'fill-38' });
   }
 
-  // The axes, outside of what they carry, with the angle turned so far.
+  // The axes, outside of what they carry.
   const before = [A, B, C];
   axes.forEach((axis, k) => {
     const same = close && k !== 1, colour = same ? 'accent' : 'ink', rest = before[k][at[k === 2 ? 1 : k + 1]];
@@ -162,13 +162,12 @@ function picture(sheet, gimbal, angles, close, lit) {
       sheet.layer = 7 * near(scale(side, axis));
       sheet.line([scale(side * [OUTER + 0.1, OUTER + 0.1, INNER + 0.1][k], axis), scale(side * END, axis)], colour, same ? 'thick' : 'guide');
     }
-    sheet.layer = 7 * near(axis);
-    sheet.turn(axis, angles[k], rest, { radius: 0.24, origin: scale(END - 0.1, axis), colour });
-    sheet.line([scale(END - 0.1, axis), add(scale(END - 0.1, axis), scale(0.24, rest))], 'muted');
-    // At lock two of the three names would stand on one place.
-    const end = sheet.onSheet(scale(END, axis)), out = Math.hypot(...end);
-    const outward = out > 20 ? scale(17 / out, end) : [16, -16];
-    sheet.label(scale(END, axis), SYMBOLS[k], colour, close && k === 2 ? add(outward, [22, 0]) : outward);
+    // At lock the names of the two axes stand side by side, also where the axes point opposite ways.
+    const end = scale(same && dot(axis, axes[0]) < 0 ? -END : END, axis);
+    sheet.layer = 7 * near(end);
+    sheet.turn(axis, 4.4, rest, { radius: 0.16, origin: scale(0.9, end), colour });   // which way is positive
+    const place = sheet.onSheet(end), out = Math.hypot(...place);
+    sheet.label(end, SYMBOLS[k], colour, add(out > 20 ? scale(17 / out, place) : [16, -16], same && k === 2 ? [22, 0] : [0, 0]));
   });
   sheet.layer = 8;
   if (close) sheet.line([scale(-END, axes[0]), scale(END, axes[0])], 'accent', 'guide');
@@ -176,13 +175,15 @@ function picture(sheet, gimbal, angles, close, lit) {
   sheet.label(scale(1.62, down), '$A$', 'A', [24, 4]);
   sheet.labelBeyond(scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]]))), '$B$', 'B', 20);
   sheet.labelBeyond(scale(INNER, add(scale(0.71, C[at[1]]), scale(-0.71, C[at[2]]))), '$C$', 'C', 20);
+  sheet.labelBeyond(scale(0.26, D[2]), '$D$', 'D', 14);
 
   // The triads of A and D, which the matrix compares.
   const corner = add(scale(INSET[0], sheet.view[0]), scale(INSET[1], sheet.view[1]));
-  for (const [letter, rows, index, reach] of [['A', A, 1, 0.58], ['D', D, 0, 0.4]]) {
+  for (const [letter, rows, index, reach] of [['A', A, 1, 0.54], ['D', D, 0, 0.3]]) {
     rows.forEach((row, k) => {
       sheet.faded = lit !== null && lit[index] !== k;
-      sheet.arrow(add(corner, scale(reach, row)), { start: corner, colour: letter, label: `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$` });
+      sheet.arrow(add(corner, scale(reach, row)), { start: corner, colour: letter, size: 17,
+        label: `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$` });
     });
   }
   sheet.faded = false;

@@ -255,7 +255,7 @@ export class Sheet {
     put(grips.get(part), 'cy', y.toFixed(1));
   }
 
-  arrow(end, { start = [0, 0, 0], colour = 'ink', label = '', shift, kind = '' } = {}) {
+  arrow(end, { start = [0, 0, 0], colour = 'ink', label = '', shift, kind = '', size: letters = 20 } = {}) {
     const reach = subtract(end, start), tail = this.onSheet(start), tip = this.onSheet(end), depth = this.depthOf([start, end]);
     const pixels = length(subtract(tip, tail)), direction = unit(subtract(tip, tail));
     let outward = scale(17, direction);
@@ -270,7 +270,7 @@ export class Sheet {
       this.path('ML', [tail, subtract(tip, scale(10 * size, direction))], `axis ${colour} ${kind}`, depth);
       this.head(tip, direction, size, colour, depth + 1e-6);
     }
-    if (label) this.text(label, add(tip, shift ?? outward), colour);
+    if (label) this.text(label, add(tip, shift ?? outward), colour, letters);
   }
 
   head(tip, [right, down], size, colour, depth) {
@@ -507,11 +507,18 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
 // Text under the figure. It changes at once for the eye, and is read aloud when it has rested.
 export function liveText() {
   const seen = element('p', { class: 'words', 'aria-hidden': 'true' }), heard = element('p', { class: 'unseen', role: 'status' });
-  let now = null, wait = 0;
-  return { element: element('div', { class: 'live-text' }, seen, heard), say(text) {
+  let now = null, parts = [], wait = 0;
+  return { element: element('div', {}, seen, heard), say(text) {
     if (text === now) return;
     now = text;
-    seen.replaceChildren(...words(text));
+    // While only numbers change the formulas stay: setting them anew is most of the work of a drag.
+    const next = text.split('$');
+    if (next.length === parts.length && next.every((part, k) => k % 2 === 0 || part === parts[k])) {
+      next.forEach((part, k) => { if (part !== parts[k]) seen.childNodes[k].data = part; });
+    } else {
+      seen.replaceChildren(...next.map((part, k) => (k % 2 ? formula(part) : document.createTextNode(part))));
+    }
+    parts = next;
     clearTimeout(wait);
     wait = setTimeout(() => { heard.textContent = spoken(text); }, 600);
   } };

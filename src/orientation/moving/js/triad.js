@@ -168,7 +168,7 @@ const MEANINGS = {
     const half = angle / 2, sine = Math.sin(half);
     if (k === 0) {
       return {
-        words: `$q_0$ = cos $\\theta/2$ = cos ${inDegrees(half)} = ${number(quaternion[0])}: the cosine of half the angle.`,
+        words: `$q_0$ = cos($\\theta/2$) = cos ${inDegrees(half)} = ${number(quaternion[0])}: the cosine of half the angle.`,
         draw(sheet) {
           angleAbout(sheet, axis, angle, '$\\theta$', { colour: 'muted' });
           angleAbout(sheet, axis, half, '$\\theta/2$', { radius: 0.65, kind: 'thick' });
@@ -176,8 +176,8 @@ const MEANINGS = {
       };
     }
     return {
-      words: `$q_${'0ijk'[k]}$ = sin $\\theta/2$ · $e_${AXES[k - 1]}$ = ${number(sine)} · ${number(axis[k - 1])} = ${number(quaternion[k])}: the `
-        + `shadow on the line of ${N[k - 1]} of $\\hat{e}$, shortened to sin $\\theta/2$.`,
+      words: `$q_${'0ijk'[k]}$ = sin($\\theta/2$) $e_${AXES[k - 1]}$ = ${number(sine)} · ${number(axis[k - 1])} = ${number(quaternion[k])}: the `
+        + `shadow of sin($\\theta/2$) $\\hat{e}$ on the line of ${N[k - 1]}.`,
       draw(sheet) {
         sheet.arrow(scale(REACH, IDENTITY[k - 1]), { colour: 'N', label: N[k - 1] });
         angleAbout(sheet, axis, half, '$\\theta/2$', { radius: 0.65, kind: 'thick' });
