@@ -1,11 +1,16 @@
 """The page around the text: templates, styles, and nothing that it does not use."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 from docutils import nodes
 
-from .paths import WEBSITE
+from .paths import NODE_MODULES, WEBSITE
+
+NODE = Path(sys.executable).with_name("node")
+PURGE = NODE_MODULES / "purgecss" / "bin" / "purgecss.js"
 
 # The style sheets of the theme and of the other extensions, in their order.
 # They become one file in one cascade layer, so that every rule of book.css
@@ -68,13 +73,17 @@ def trim_page(app, pagename, templatename, context, doctree):
     context["styles"] = STYLES
 
 
-def bundle_styles(static):
-    """Write the theme's style sheets as one layer, without its icon font."""
+def bundle_styles(site):
+    """Write the theme's style sheets as one layer: no icon font, no rule that no page uses."""
+    static = site / "_static"
     parts = [path for name in THEME_STYLES for path in sorted(static.glob(name))]
     if (static / "basic.css").exists():  # else Sphinx had nothing to build and copied nothing
         rules = "\n".join(path.read_text("utf8") for path in parts)
         rules = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", rules, flags=re.DOTALL)
-        (static / "theme.css").write_text("@layer theme {\n" + rules + "\n}\n", "utf8")
+        theme = static / "theme.css"
+        theme.write_text("@layer theme {\n" + rules + "\n}\n", "utf8")
+        users = [str(site / "**/*.html"), str(static / "**/*.js")]
+        subprocess.run([NODE, PURGE, "--css", theme, "--content", *users, "--output", theme], check=True)
     for path in parts:
         path.unlink()
 
@@ -83,7 +92,7 @@ def finish(app, exception):
     if exception or app.builder.format != "html":
         return
     static = Path(app.outdir) / "_static"
-    bundle_styles(static)
+    bundle_styles(Path(app.outdir))
     for pattern in UNUSED_FILES:
         for path in static.glob(pattern):
             if path.is_file():

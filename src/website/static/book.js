@@ -27,12 +27,13 @@ if (menu) {
   });
 }
 
-// Excerpts on the search page show each formula once, and no TeX.
+// Excerpts on the search page show the text only, and each formula once.
 if (typeof Search !== "undefined") {
   const toText = Search.htmlToText;
   Search.htmlToText = (html, anchor) => {
     const page = new DOMParser().parseFromString(html, "text/html");
-    page.querySelectorAll(".katex-mathml").forEach((element) => element.remove());
+    const skipped = ".katex-mathml, .bd-header-article, .bd-sidebar-secondary, footer";
+    page.querySelectorAll(skipped).forEach((element) => element.remove());
     return toText(page.documentElement.outerHTML, anchor);
   };
 }
