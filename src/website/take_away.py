@@ -92,7 +92,7 @@ def build_wheel(app, exception):
         return
     sources = [REPOSITORY / name for name in ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")]
     package = REPOSITORY / "src" / "orientation"
-    newest = max(path.stat().st_mtime for path in [*sources, *package.rglob("*.py")])
+    newest = max(path.stat().st_mtime for path in [*sources, *package.rglob("*")])
     if wheel.exists() and wheel.stat().st_mtime > newest:
         return
     with tempfile.TemporaryDirectory() as copy:
