@@ -23,7 +23,8 @@ def test_euler_angles_keep_their_meaning_across_the_border(sequence):
 
 def test_axis_and_angle_and_quaternions_keep_their_meaning_across_the_border():
     axes, quaternions = random_unit_vectors(100, 2), random_unit_vectors(100, 3, size=4)
-    assert rotation_error(dcm_from_scipy_rotation(Rotation.from_rotvec(0.7 * axes)), dcm_from_axis_angle(axes, 0.7)) < 1e-14
+    assert rotation_error(dcm_from_scipy_rotation(Rotation.from_rotvec(0.7 * axes)),
+                          dcm_from_axis_angle(axes, 0.7)) < 1e-14
     assert rotation_error(dcm_from_scipy_rotation(Rotation.from_quat(quaternions, scalar_first=True)),
                           dcm_from_quaternion(quaternions)) < 1e-14
 

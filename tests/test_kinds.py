@@ -288,9 +288,12 @@ def test_what_is_no_expression_is_told(function, batches):
 
 
 @pytest.mark.parametrize('call', [
-    lambda sequence: dcm_from_body_fixed((1, 2, 3), sequence), lambda sequence: dcm_from_body_fixed(SYMBOLS, sequence),
-    lambda sequence: dcm_from_space_fixed((1, 2, 3), sequence), lambda sequence: body_fixed_from_dcm(np.eye(3), sequence),
-    lambda sequence: space_fixed_from_dcm(np.eye(3), sequence), lambda sequence: gimbal_lock_margin((1, 2, 3), sequence),
+    lambda sequence: dcm_from_body_fixed((1, 2, 3), sequence),
+    lambda sequence: dcm_from_body_fixed(SYMBOLS, sequence),
+    lambda sequence: dcm_from_space_fixed((1, 2, 3), sequence),
+    lambda sequence: body_fixed_from_dcm(np.eye(3), sequence),
+    lambda sequence: space_fixed_from_dcm(np.eye(3), sequence),
+    lambda sequence: gimbal_lock_margin((1, 2, 3), sequence),
     lambda sequence: angular_velocity_matrix((1, 2, 3), sequence)])
 def test_sequences_that_are_none(call):
     for sequence in ('zzx', 'xyy', 'xxx'):

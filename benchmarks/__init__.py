@@ -1,0 +1,1 @@
+"""Comparisons with other libraries, as ratios measured in one run."""
