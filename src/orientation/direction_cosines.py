@@ -190,7 +190,7 @@ def nearest_dcm(matrix):
     Raises
     ------
     ValueError
-        If the nearest matrix is not unique, as for a reflection or a matrix of rank one.
+        If the nearest matrix is not unique, as for a mirror image, or rows that all lie along one line.
     SymbolsNotPossible
         If the matrix holds symbols.
 
@@ -216,9 +216,13 @@ def nearest_dcm(matrix):
         where = f' (item {[int(k) for k in worst]})' if worst else ''
         raise ValueError(
             f'several direction cosine matrices are equally near to matrix{where}: its singular values are '
-            f'{", ".join(f"{scale:.6f}" for scale in scales[worst])} and its determinant is '
-            f'{numpy.linalg.det(array[worst]):.6f}. It is a reflection, or two of its rows are parallel or '
-            f'zero')
+            f'{", ".join(map(_six_decimals, scales[worst]))} and its determinant is '
+            f'{_six_decimals(numpy.linalg.det(array[worst]))}. It is a mirror image, or its rows all lie '
+            f'along one line')
     left[..., :, 2] *= handedness[..., None]
     dcm = left @ right
     return NearestDCM(dcm, numpy.linalg.norm(dcm - array, axis=(-2, -1)))
+
+
+def _six_decimals(number):
+    return f'{round(float(number), 6) + 0.0:.6f}'  # adding zero turns -0 into 0
