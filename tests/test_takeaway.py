@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import zipfile
 from copy import deepcopy
 from functools import cache
 
@@ -47,10 +48,13 @@ def words(text):
     return re.sub(r"\s+", " ", text.translate(str.maketrans("\u2018\u2019\u201c\u201d", "''\"\"")))
 
 
-def environment():
-    """Import the package from the wheel that lies beside the downloads."""
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory):
+    """Where the package is the one of the wheel that lies beside the downloads."""
     (wheel,) = FOLDER.glob("*.whl")
-    return os.environ | {"PYTHONPATH": str(wheel), "MPLBACKEND": "agg"}
+    installed = tmp_path_factory.mktemp("installed")
+    zipfile.ZipFile(wheel).extractall(installed)
+    return os.environ | {"PYTHONPATH": str(installed), "MPLBACKEND": "agg"}
 
 
 def plain_sentences(name):
@@ -66,32 +70,31 @@ def test_every_notebook_is_offered():
         assert (FOLDER / f"{name}.ipynb").is_file() and (FOLDER / f"{name}.py").is_file()
 
 
-def test_the_wheel_holds_the_package_and_no_more():
-    import zipfile
-
+def test_the_wheel_holds_the_package_and_no_more(environment):
     (wheel,) = FOLDER.glob("*.whl")
     names = zipfile.ZipFile(wheel).namelist()
     assert {name.split("/")[0] for name in names if "dist-info" not in name} == {"orientation"}
-    code = "import orientation; assert '.whl' in orientation.__file__, orientation.__file__"
-    subprocess.run([sys.executable, "-c", code], env=environment(), check=True)
+    code = "import orientation; print(orientation.__file__)"
+    place = subprocess.check_output([sys.executable, "-c", code], env=environment, text=True)
+    assert place.startswith(environment["PYTHONPATH"])
 
 
 @pytest.mark.parametrize("name", SOURCES)
-def test_notebook_runs(name, tmp_path):
+def test_notebook_runs(name, tmp_path, environment):
     client = NotebookClient(
         deepcopy(notebook(name)),  # running it adds outputs
         timeout=120,
         kernel_name="python3",
         resources={"metadata": {"path": tmp_path}},
     )
-    client.execute(env=environment())
+    client.execute(env=environment)
 
 
 @pytest.mark.parametrize("name", SOURCES)
-def test_script_runs(name, tmp_path):
+def test_script_runs(name, tmp_path, environment):
     path = FOLDER / f"{name}.py"
     done = subprocess.run(
-        [sys.executable, path], cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=300
+        [sys.executable, path], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
 
