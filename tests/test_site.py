@@ -150,7 +150,11 @@ def test_theme_switch(browser, site):
         seen = []
         for _ in range(3):
             page.click(".theme-switch-button")
-            seen.append(page.evaluate("[document.documentElement.dataset.mode, getComputedStyle(document.body).backgroundColor]"))
+            seen.append(
+                page.evaluate(
+                    "[document.documentElement.dataset.mode, getComputedStyle(document.body).backgroundColor]"
+                )
+            )
         assert {mode for mode, _ in seen} == {"auto", "light", "dark"}
         colours = dict(seen)
         assert colours["dark"] != colours["light"] == colours["auto"]

@@ -13,6 +13,7 @@ import nbformat
 import pytest
 from conftest import HTML, REPOSITORY
 from nbclient import NotebookClient
+
 from website.notebooks import all_notebooks
 
 FOLDER = HTML / "take-away"

@@ -11,6 +11,7 @@ import pytest
 import yaml
 from conftest import REPOSITORY
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
 from website.alternative_text import says_something
 from website.notebooks import all_notebooks, normalise
 from website.paths import fingerprint
@@ -130,21 +131,29 @@ def test_good_book(tmp_path):
         pytest.param(
             chapter(GOOD_TEXT + "\nSee {numref}`fig-nowhere`.\n"), "fig-nowhere", id="a figure is not there"
         ),
-        pytest.param(chapter(GOOD_TEXT + "\nSee {eq}`eq-nowhere`.\n"), "eq-nowhere", id="an equation is not there"),
+        pytest.param(
+            chapter(GOOD_TEXT + "\nSee {eq}`eq-nowhere`.\n"), "eq-nowhere", id="an equation is not there"
+        ),
         pytest.param(chapter(GOOD_TEXT + "\nSee {ref}`nowhere`.\n"), "nowhere", id="a section is not there"),
         pytest.param(chapter(GOOD_TEXT + "\nSee [it](#nowhere).\n"), "nowhere", id="a link leads nowhere"),
-        pytest.param(chapter(GOOD_TEXT + "\nA {term}`thing`.\n"), "thing", id="a term is not in the glossary"),
+        pytest.param(
+            chapter(GOOD_TEXT + "\nA {term}`thing`.\n"), "thing", id="a term is not in the glossary"
+        ),
         pytest.param(
             chapter(GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here")),
             "chapter.ipynb:26 (cell 1): WARNING: bad TeX",
             id="inline TeX is wrong",
         ),
         pytest.param(
-            chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")), "Undefined control sequence", id="TeX is unknown"
+            chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")),
+            "Undefined control sequence",
+            id="TeX is unknown",
         ),
         pytest.param(chapter(code=FIGURE.format("")), "no alternative text", id="a figure says nothing"),
         pytest.param(
-            chapter(code=FIGURE.format('role="img" aria-label="figure"')), "found 'figure'", id="it says too little"
+            chapter(code=FIGURE.format('role="img" aria-label="figure"')),
+            "found 'figure'",
+            id="it says too little",
         ),
         pytest.param(chapter(code=PLOT), "no alternative text", id="a plot says nothing"),
     ],

@@ -34,8 +34,7 @@ def inline(font):
 
 def text_faces():
     return "".join(
-        f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};'
-        f"{inline(file)}}}\n"
+        f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};{inline(file)}}}\n'
         for family, weight, style, file in TEXT_FACES
     )
 

@@ -21,7 +21,7 @@ def quote(text):
 
 
 class MarkdownWriter:
-    """Turns nodes into Markdown. ``cell`` is called with each code cell's node."""
+    """Turns the nodes of one page into Markdown."""
 
     def __init__(self, env, docname):
         self.figure_numbers = env.toc_fignumbers.get(docname, {})
@@ -132,7 +132,9 @@ class MarkdownWriter:
         ]
         columns = len(next(node.findall(nodes.row)).children)
         rows.insert(1, "|" + " --- |" * columns)
-        titles = [f"**{self.number('table', node)}** " + self.inline(t) for t in node if isinstance(t, nodes.title)]
+        titles = [
+            f"**{self.number('table', node)}** " + self.inline(t) for t in node if isinstance(t, nodes.title)
+        ]
         return "\n\n".join([*titles, "\n".join(rows)])
 
     def cell_text(self, entry):
@@ -186,6 +188,8 @@ class MarkdownWriter:
                 self.say(self.block(child, max(level, 1)))
 
     def figure_caption(self, figure):
-        captions = nodes.figure("", *[c for c in figure.children if isinstance(c, (nodes.caption, nodes.legend))])
+        captions = nodes.figure(
+            "", *[c for c in figure.children if isinstance(c, (nodes.caption, nodes.legend))]
+        )
         captions["ids"] = figure["ids"]
         return self.figure(captions, 1)

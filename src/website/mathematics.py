@@ -4,7 +4,7 @@ KaTeX runs inside Python (quickjs) and gives HTML for the eye and MathML for
 screen readers. TeX that it cannot set becomes a build warning.
 """
 
-from functools import lru_cache
+from functools import cache
 from html import escape
 
 import quickjs
@@ -27,7 +27,7 @@ RENDER = """(function (tex, display, stretch) {
 logger = logging.getLogger(__name__)
 
 
-@lru_cache(maxsize=None)
+@cache
 def katex():
     context = quickjs.Context()
     context.eval("globalThis.console = {log() {}, warn() {}, error() {}}")
@@ -35,7 +35,7 @@ def katex():
     return context.eval(RENDER)
 
 
-@lru_cache(maxsize=None)
+@cache
 def to_html(tex, display):
     """KaTeX's HTML for ``tex``; raises ValueError with KaTeX's own words."""
     # KaTeX sets the rows of a matrix so close that fractions in them would touch.

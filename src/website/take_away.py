@@ -81,7 +81,11 @@ def write_page(app, pagename, templatename, context, doctree):
     context["downloads"] = [
         {"path": f"{FOLDER}/{target.name}.ipynb", "text": "Notebook", "note": "for Jupyter, with the prose"},
         {"path": f"{FOLDER}/{target.name}.py", "text": "Python script", "note": "the prose as comments"},
-        {"path": f"{FOLDER}/{wheel_name()}", "text": "Package", "note": "what the code imports: pip install it"},
+        {
+            "path": f"{FOLDER}/{wheel_name()}",
+            "text": "Package",
+            "note": "what the code imports: pip install it",
+        },
     ]
 
 
@@ -98,7 +102,9 @@ def build_wheel(app, exception):
     with tempfile.TemporaryDirectory() as copy:
         for path in sources:
             shutil.copy(path, copy)
-        shutil.copytree(package, Path(copy, "src", "orientation"), ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(
+            package, Path(copy, "src", "orientation"), ignore=shutil.ignore_patterns("__pycache__")
+        )
         subprocess.run(
             [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check",
              "--no-deps", "--no-build-isolation", "--wheel-dir", wheel.parent, copy],
