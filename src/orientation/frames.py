@@ -286,7 +286,7 @@ def _product(turns):
         if joined and turn.axis and turn.axis == joined[-1].axis:
             turn = turn._replace(angle=joined.pop().angle + turn.angle)
         joined.append(turn)
-    matrices = [turn.dcm() for turn in joined] or [simple_dcm('x', 0.0)]
+    matrices = [turn.dcm() for turn in joined]
     if any(map(is_symbolic, matrices)):
         import sympy
         matrices = [sympy.Matrix(matrix) for matrix in matrices]
