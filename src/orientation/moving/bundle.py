@@ -54,7 +54,9 @@ def body(name):
 
 def esm(name):
     """Return the figure ``name`` as one module that imports nothing, as anywidget takes it."""
-    return ''.join(map(body, (*SHARED, name))) + 'export default { render };\n'
+    # The figure has a scope of its own, where it may use a name that the shared modules have.
+    figure = f'const render = (() => {{\n{body(name)}return render;\n}})();\n'
+    return ''.join(map(body, SHARED)) + figure + 'export default { render };\n'
 
 
 def shared_script():

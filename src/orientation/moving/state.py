@@ -31,12 +31,14 @@ class Numbers(traitlets.TraitType):
         except (TypeError, ValueError) as error:
             raise traitlets.TraitError(str(error)) from None
         if array.shape != self.shape:
-            raise traitlets.TraitError(f'{self.name} has shape {array.shape}, where {self.shape} was expected')
+            raise traitlets.TraitError(f'{self.name} has shape {array.shape}, where {self.shape or "one number"} '
+                                       'was expected')
         worst = abs(array).max()
         # A slider's end, converted from degrees, may be a rounding beyond.
         if worst > self.largest + 1e-12:
+            cause = '. Angles are in radians, not degrees' if self.largest == math.pi else ''
             raise traitlets.TraitError(f'{self.name} is {value!r}: numbers from -{self.largest:.6g} to '
-                                       f'{self.largest:.6g} were expected. Angles are in radians, not degrees')
+                                       f'{self.largest:.6g} were expected{cause}')
         return _tuples(array)
 
 

@@ -1,7 +1,7 @@
-import { AXES, IDENTITY, add, dot, gimbalLockMargin, multiply, PROPER_EULER, SEQUENCES, scale, simpleDcm, times,
-  transpose } from './mathematics.js';
+import { AXES, IDENTITY, add, dot, gimbalLockMargin, multiply, PROPER_EULER, SEQUENCES, scale,
+  simpleDcm } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, glide, group, hats, liveText,
-  numberTable, onceAFrame, open, plain, radians, readout, slider, stage, wrapped } from './shared.js';
+  numberTable, onceAFrame, open, plain, put, radians, readout, slider, stage, turned, wrapped, write } from './shared.js';
 
 // Radii of the rings of B and C, half the camera, where the axes end; as in gimbal.py.
 const OUTER = 1.05, INNER = 0.76, CAMERA = [0.62, 0.44, 0.46], END = 1.42, SIZE = 98;
@@ -15,7 +15,7 @@ function device(angles, sequence) {
   const A = IDENTITY, B = turns[0], C = multiply(turns[1], B), D = multiply(turns[2], C);
   const at = [...sequence].map((axis) => AXES.indexOf(axis));
   return { A, B, C, D, at, axes: [A[at[0]], B[at[1]], C[at[2]]], margin: gimbalLockMargin(angles, sequence),
-    normals: [B[3 - at[0] - at[1]], C[3 - at[1] - at[2]] ?? C[3 - at[0] - at[1]]] };
+    normals: [B[3 - at[0] - at[1]], C[3 - at[1] - at[2]]] };
 }
 
 export function render({ model, el }) {
@@ -31,11 +31,10 @@ export function render({ model, el }) {
     grab(part, at) {
       if (!part) return null;
       stop();
-      const [angles, sequence] = state(), { A, B, C, axes } = device(angles, sequence);
-      const [k, place] = [Number(part[0]), GRIPS[part]];
+      const [angles, order] = state(), gimbal = device(angles, order), k = Number(part[0]);
       // Where the part would be held if this joint were at zero.
-      const arm = times(transpose([A, B, C][k]), place(device(angles, sequence), k));
-      const follower = followTurn(sheet, { axis: axes[k], arm, angle: angles[k], at });
+      const arm = turned(gimbal.axes[k], -angles[k], GRIPS[part](gimbal));
+      const follower = followTurn(sheet, { axis: gimbal.axes[k], arm, angle: angles[k], at });
       return (to) => setAngle(k, follower(to));
     } });
   const redraw = onceAFrame(draw);
@@ -44,32 +43,41 @@ export function render({ model, el }) {
     const from = model.get('angles');
     stop = glide((part) => change(model, { angles: target(part, from).map(wrapped) }));
   };
-  const sliders = NAMES.map((name, k) => slider({ symbol: SYMBOLS[k], name, change: (angle) => { stop(); setAngle(k, angle); } }));
-  const sequence = choice({ name: 'Sequence', options: SEQUENCES, change: (value) => { stop(); change(model, { sequence: value }); } });
+  const sliders = NAMES.map((name, k) => slider({ symbol: SYMBOLS[k], name, change(angle) {
+    stop();
+    setAngle(k, angle);
+  } }));
+  const sequence = choice({ name: 'Sequence', options: SEQUENCES, change(value) {
+    stop();
+    change(model, { sequence: value });
+  } });
   const towards = (goal) => move((part, from) => from.map((angle, k) => angle + part * (goal[k] - angle)));
   const buttons = [
     button('All to zero', () => towards([0, 0, 0])),
     button('To gimbal lock', () => {
-      const [[psi, , phi], order] = state();
-      towards([psi, PROPER_EULER.includes(order) ? 0 : Math.PI / 2, phi]);
+      const [[psi, theta, phi], order] = state();
+      const nearest = PROPER_EULER.includes(order) ? Math.PI * Math.round(theta / Math.PI) : (theta < 0 ? -1 : 1) * Math.PI / 2;
+      towards([psi, nearest, phi]);
     }),
     button('Trade $\\psi$ for $\\varphi$', () => {
       const sense = dot(...[0, 2].map((k) => device(...state()).axes[k])) < 0 ? 1 : -1;
       move((part, [psi, theta, phi]) => [psi + part * radians(40), theta, phi + sense * part * radians(40)]);
     })];
-  const matrix = numberTable({ name: 'Direction cosine matrix of D with respect to A', kind: 'bracket', rows: hats('d'), columns: hats('a'),
-    names: AXES.map((i) => AXES.map((j) => `d ${i} dot a ${j}`)),
+  const matrix = numberTable({ name: 'Direction cosine matrix of D with respect to A', kind: 'bracket', rows: hats('d'),
+    columns: hats('a'), names: AXES.map((i) => AXES.map((j) => `d ${i} dot a ${j}`)),
     light(i, j) {
       lit = i === undefined ? null : [i, j];
       redraw();
     } });
-  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Margin to gimbal lock', 'aria-valuemin': '0', 'aria-valuemax': '90' },
-    element('span'));
+  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Margin to gimbal lock', 'aria-valuemin': '0',
+    'aria-valuemax': '90' }, element('span'));
   const margin = element('span', { class: 'value' });
   const text = liveText();
   open(el, stage(sheet, text), element('div', { class: 'readouts' }, sequence.element,
-    element('div', { class: 'controls' }, ...sliders.map((one) => one.element), group('Move the gimbal', 'row-of-controls', ...buttons)),
-    readout(['Direction cosine matrix ${}^D\\mathbf{C}^A$'], matrix.element), readout(['Margin to gimbal lock', margin], bar)));
+    element('div', { class: 'controls' }, ...sliders.map((one) => one.element),
+      group('Move the gimbal', 'row-of-controls', ...buttons)),
+    readout(['Direction cosine matrix ${}^D\\mathbf{C}^A$'], matrix.element),
+    readout(['Margin to gimbal lock', margin], bar)));
 
   function draw() {
     const [angles, order] = state(), gimbal = device(angles, order), close = gimbal.margin < CLOSE;
@@ -80,12 +88,12 @@ export function render({ model, el }) {
     sequence.show(order);
     matrix.show(gimbal.D.map((row) => row.map((entry) => fixed(entry))));
     const apart = plain(degrees(gimbal.margin), 1);
-    if (margin.textContent !== `${apart}°`) margin.textContent = `${apart}°`;
-    bar.firstChild.style.width = `${apart / 0.9}%`;
-    bar.setAttribute('aria-valuenow', apart);
-    bar.setAttribute('aria-valuetext', `${apart} degrees`);
+    write(margin, `${apart}°`);
+    put(bar.firstChild, 'style', `width:${(apart / 0.9).toFixed(1)}%`);
+    put(bar, 'aria-valuenow', apart);
+    put(bar, 'aria-valuetext', `${apart} degrees`);
     sheet.draw(() => picture(sheet, gimbal, close, lit));
-    text.say(lit ? inWords(gimbal.D, ...lit) : situation(gimbal, apart, order));
+    text.say(lit ? inWords(gimbal.D, ...lit) : situation(gimbal, apart));
   }
 
   draw();
@@ -96,9 +104,10 @@ export function render({ model, el }) {
   };
 }
 
-const inWords = (D, i, j) => `$\\hat{d}_${AXES[i]}$ · $\\hat{a}_${AXES[j]}$ = ${fixed(D[i][j]).trim()}: the cosine of the angle between them.`;
+const inWords = (D, i, j) => `$\\hat{d}_${AXES[i]}$ · $\\hat{a}_${AXES[j]}$ = ${fixed(D[i][j]).trim()}: `
+  + 'the cosine of the angle between them.';
 
-function situation({ axes, margin }, apart, order) {
+function situation({ axes, margin }, apart) {
   if (margin >= CLOSE) {
     return `The axes of $\\psi$ and $\\varphi$ are ${apart}° apart: three sliders turn the camera in three ways.`;
   }

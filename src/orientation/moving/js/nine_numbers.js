@@ -1,6 +1,6 @@
 import { AXES, IDENTITY, add, checkDcm, conditions, cross, determinant, length, nearestDcm, scale, subtract, unit } from './mathematics.js';
 import { Sheet, button, change, element, fixed, follow, glide, grid, group, hats, liveText, numberField, onceAFrame, open, put, readout,
-  stage } from './shared.js';
+  stage, write } from './shared.js';
 
 const REACH = 1.2, SIZE = 116;   // as in nine_numbers.py
 const A = hats('a'), N = hats('n');
@@ -69,14 +69,14 @@ export function render({ model, el }) {
   function draw() {
     const matrix = model.get('matrix'), near = nearestDcm(matrix), turned = determinant(matrix), fault = checkDcm(matrix);
     fields.forEach((row, i) => row.forEach((field, j) => field.show(matrix[i][j])));
-    entries.forEach((row, i) => row.forEach((entry, j) => { entry.textContent = near.dcm ? fixed(near.dcm[i][j], 4) : '\u2013'; }));
+    entries.forEach((row, i) => row.forEach((entry, j) => { write(entry, near.dcm ? fixed(near.dcm[i][j], 4) : '\u2013'); }));
     take.disabled = !near.dcm || near.distance < SMALL;
-    apart.textContent = near.dcm ? `Distance ${near.distance.toFixed(4)}` : 'Several are equally near.';
+    write(apart, near.dcm ? `Distance ${near.distance.toFixed(4)}` : 'Several are equally near.');
     const found = conditions(matrix).map(({ value, wanted, fault: excess }) => [value, wanted, Math.abs(excess) <= SMALL]);
     found.splice(3, 0, [turned, turned > 0 ? 1 : '+1', Math.abs(turned - 1) <= 2 * SMALL]);
     found.forEach(([value, wanted, holds], k) => {
-      checks[k].value.textContent = fixed(value, 4);
-      checks[k].verdict.textContent = holds ? '\u2713 holds' : `\u2717 not ${wanted}`;
+      write(checks[k].value, fixed(value, 4));
+      write(checks[k].verdict, holds ? '\u2713 holds' : `\u2717 not ${wanted}`);
       put(checks[k].line, 'class', holds ? '' : 'fails');
     });
     sheet.draw(() => picture(sheet, matrix, near.dcm));

@@ -25,6 +25,12 @@ export function put(target, name, value) {
   if (target.getAttribute(name) !== value) target.setAttribute(name, value);
 }
 
+// The same for the text of an element. Its one text node stays: a new one would be laid out from nothing.
+export function write(target, text) {
+  if (!target.firstChild) target.append(text);
+  else if (target.firstChild.data !== text) target.firstChild.data = text;
+}
+
 export const spoken = (text) => text.replace(/\$([^$]*)\$/g, (_, tex) => tex
   .replace(/\\(hat|mathbf|cdot|left|right)/g, ' ').replace(/\\varphi/g, 'phi').replace(/[\\{}^_]/g, ' ').trim())
   .replace(/\s+/g, ' ');
@@ -445,7 +451,7 @@ export function slider({ symbol, name, unit: unitName = 'degrees', sign = '°', 
       if (range.value !== shown) range.value = shown;
       put(range, 'aria-valuetext', `${name}, ${shown} ${unitName}`);
       field.show(value / factor);
-      if (rest.textContent !== more(value)) rest.textContent = more(value);
+      write(rest, more(value));
     },
     mark: (kind) => put(range.parentNode, 'class', `slider ${kind}`),
   };
@@ -471,7 +477,7 @@ export function grid({ name, rows, columns, cells, kind = '' }) {
 // row by row; `rows` and `columns` what stands before and above them; `light(row, column)` is called when a
 // number is touched or focused, and `light()` afterwards.
 export function numberTable({ name, names, rows, columns, light, kind = '' }) {
-  const at = (i, j, on) => {
+  const at = (i, j) => {
     const cell = element('button', { type: 'button', class: 'number', tabindex: i + j ? -1 : 0, 'data-at': `${i},${j}`,
       pointerenter: (event) => { if (event.pointerType === 'mouse') light(i, j); },
       pointerleave: (event) => { if (event.pointerType === 'mouse') relight(); },
@@ -480,11 +486,10 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
         light(i, j);
       },
       blur: () => light(),
-      click: () => cell.focus() },   // not every browser focuses a button that is touched
-    element('span', { class: 'unseen' }, `${on}: `), element('span'));
+      click: () => cell.focus() });   // not every browser focuses a button that is touched
     return cell;
   };
-  const cells = names.map((row, i) => row.map((on, j) => at(i, j, on)));
+  const cells = names.map((row, i) => row.map((_, j) => at(i, j)));
   const relight = () => {
     const focused = cells.flat().find((cell) => cell.matches(':focus'));
     light(...(focused ? focused.dataset.at.split(',').map(Number) : []));
@@ -499,8 +504,9 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
     event.preventDefault();
   });
   return { element: box, show: (values) => values.forEach((row, i) => row.forEach((value, j) => {
-    const shown = cells[i][j].lastChild;
-    if (shown.textContent !== value) shown.textContent = value;
+    const cell = cells[i][j];
+    write(cell, value);
+    put(cell, 'aria-label', `${names[i][j]}: ${value}`);
   })) };
 }
 
@@ -547,7 +553,7 @@ export function player({ name, seconds, step = 0.05, show }) {
   function pause() {
     cancelAnimationFrame(frame);
     frame = 0;
-    press.textContent = 'Play';
+    write(press, 'Play');
   }
   function tick(moment) {
     const passed = Math.min((moment - before) / 1000, 1);
@@ -561,7 +567,7 @@ export function player({ name, seconds, step = 0.05, show }) {
   function play() {
     if (now >= seconds) set(0);
     before = performance.now();
-    press.textContent = 'Pause';
+    write(press, 'Pause');
     frame = requestAnimationFrame(tick);
   }
   return { element: group(name, 'player', press, time.element), set, pause, play, get time() { return now; } };

@@ -1,0 +1,182 @@
+"""The Python side of the moving figures: what they accept, and what a notebook stores of them."""
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pytest
+from bs4 import BeautifulSoup
+from traitlets import TraitError
+
+import orientation as module
+from orientation import moving
+from orientation.moving import GimbalFigure, NineNumbersFigure, TriadFigure, bundle
+from website.moving import WIDGET
+from website.notebooks import normalise
+
+NODE = Path(sys.executable).with_name("node")
+FIGURES = [
+    figure
+    for figure in (getattr(moving, name) for name in moving.__all__)
+    if issubclass(figure, moving.MovingFigure) and figure.kind
+]
+
+
+def test_the_module_alone_loads_no_widgets():
+    check = "import sys, orientation; assert not {'anywidget', 'ipywidgets', 'matplotlib'} & set(sys.modules)"
+    subprocess.run([sys.executable, "-c", check], check=True)
+
+
+def bundle_of(figure):
+    data, _ = figure._repr_mimebundle_()
+    return data, BeautifulSoup(data["text/html"], "html.parser").select_one("figure.orientation-figure.moving")
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_what_a_cell_puts_out(figure):
+    data, still = bundle_of(figure())
+    assert WIDGET in data and data["text/plain"].startswith(figure.__name__)
+    assert still["data-figure"] == figure.kind
+    picture = still.select_one(".still > svg[role=img]")
+    assert len(picture["aria-label"].split()) > 10
+    assert "<script" not in data["text/html"]
+    # Nothing of it differs from run to run.
+    again, _ = bundle_of(figure())
+    assert {key: again[key] for key in again if key != WIDGET} == {key: data[key] for key in data if key != WIDGET}
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_state_goes_to_the_page_and_back(figure):
+    first = figure()
+    _, still = bundle_of(first)
+    state = json.loads(still["data-state"])
+    assert state and set(state) == set(first.state())
+    second = figure(**state)
+    assert second.state() == first.state()
+    assert first.state() == {name: getattr(first, name) for name in first.trait_names(state=True)}
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_front_end_is_one_module_that_needs_nothing(figure, tmp_path):
+    text = figure()._esm
+    assert "import " not in text.replace("important", "") and text.count("export ") == 1
+    assert text.endswith("export default { render };\n")
+    module_file, script_file = tmp_path / "figure.mjs", tmp_path / "figure.js"
+    module_file.write_text(text, "utf8")
+    # It must also load where there is no page yet.
+    check = f"import('{module_file.as_uri()}').then((figure) => {{ if (typeof figure.default.render !== 'function') process.exit(1); }})"
+    subprocess.run([NODE, "-e", check], check=True)
+    script_file.write_text(bundle.shared_script() + bundle.script(figure.kind), "utf8")
+    subprocess.run([NODE, "--check", script_file], check=True)
+    assert not any(word in text for word in ("http://", "https://")) or "http://www.w3.org/2000/svg" in text
+    assert text.count("http") == 1
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_a_misspelt_attribute_is_an_error(figure):
+    with pytest.raises(TypeError, match=f"{figure.__name__} has no angel"):
+        figure(angel=1)
+
+
+@pytest.mark.parametrize(
+    "figure, name, value, message",
+    [
+        (TriadFigure, "angle", 35, "radians, not degrees"),
+        (TriadFigure, "angle", math.nan, "angle is nan"),
+        (TriadFigure, "angle", (1, 2), "one number was expected"),
+        (TriadFigure, "angle", "0.3", "real numbers"),
+        (TriadFigure, "axis", (0, 0, 0), "points nowhere"),
+        (TriadFigure, "axis", (1, 0), r"\(3,\)"),
+        (TriadFigure, "axis", [[1, 0, 0]], "expected"),
+        (TriadFigure, "axis", (1, math.inf, 0), "inf"),
+        (TriadFigure, "sequence", "zzx", "zzx.*the twelve are"),
+        (TriadFigure, "sequence", "ZXY", "the twelve are"),
+        (GimbalFigure, "angles", (0, 90, 0), "radians, not degrees"),
+        (GimbalFigure, "angles", (0, 1), r"\(3,\)"),
+        (GimbalFigure, "sequence", 313, "the twelve are"),
+        (NineNumbersFigure, "matrix", np.eye(2), r"\(3, 3\)"),
+        (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1, 0], [0, 0, None]], "real numbers"),
+        (NineNumbersFigure, "matrix", 100 * np.eye(3), "from -10 to 10"),
+    ],
+)
+def test_bad_values_are_refused_and_change_nothing(figure, name, value, message):
+    one = figure()
+    before = one.state()
+    with pytest.raises(TraitError, match=message):
+        setattr(one, name, value)
+    assert one.state() == before
+    with pytest.raises(TraitError, match=message):
+        figure(**{name: value})
+
+
+def test_attributes_tell_who_observes_them():
+    figure, heard = TriadFigure(), []
+    figure.observe(lambda change: heard.append(change.new), "angle")
+    figure.angle = 0.3
+    figure.angle = 0.3
+    figure.angle = np.float64(-0.5)
+    assert heard == [0.3, -0.5]
+    assert isinstance(figure.angle, float)
+
+
+def test_what_comes_from_the_page_is_checked_and_heard():
+    figure, heard = GimbalFigure(), []
+    figure.observe(lambda change: heard.append(change.new), "angles")
+    figure.set_state({"angles": [0.1, 0.2, 0.3]})  # what a message from the front end does
+    assert figure.angles == (0.1, 0.2, 0.3) and heard == [(0.1, 0.2, 0.3)]
+    with pytest.raises(TraitError):
+        figure.set_state({"angles": [0.1, 0.2, None]})
+    assert figure.angles == (0.1, 0.2, 0.3)
+
+
+def test_the_end_of_a_slider_is_within_bounds():
+    TriadFigure(angle=180 * math.pi / 180)
+    GimbalFigure(angles=(-math.pi, math.nextafter(math.pi, 4), 0))
+
+
+def test_the_axis_is_kept_at_unit_length_and_does_not_wander():
+    figure = TriadFigure(axis=(3, 0, -4))
+    assert figure.axis == (0.6, 0.0, -0.8)
+    figure.axis = (1, 2, 3)
+    first = figure.axis
+    for _ in range(5):
+        figure.axis = figure.axis
+    assert figure.axis == first and math.hypot(*first) == pytest.approx(1, abs=1e-15)
+
+
+@pytest.mark.parametrize("sequence", module.SEQUENCES)
+def test_computed_attributes(sequence):
+    triad = TriadFigure(axis=(1, -2, 0.5), angle=2.5, sequence=sequence)
+    assert module.same_orientation(triad.dcm, module.dcm_from_axis_angle((1, -2, 0.5), 2.5))
+    assert module.same_orientation(module.dcm_from_quaternion(triad.quaternion), triad.dcm)
+    assert module.same_orientation(module.dcm_from_body_fixed(triad.angles, sequence), triad.dcm)
+    gimbal = GimbalFigure(angles=(0.3, -0.8, 2), sequence=sequence)
+    assert module.same_orientation(gimbal.dcm, module.dcm_from_body_fixed((0.3, -0.8, 2), sequence))
+    assert gimbal.margin == module.gimbal_lock_margin((0.3, -0.8, 2), sequence)
+    assert len(gimbal.drawing().marks) > 20
+    with pytest.raises(AttributeError):
+        triad.dcm = np.eye(3)
+
+
+def test_stills_of_extreme_states_can_be_drawn():
+    for axis, angle in (((0, 0, 1), 0), ((1, 0, 0), math.pi), ((0.77, 0.48, 0.41), -3)):
+        assert "<svg" in TriadFigure(axis=axis, angle=angle).still()
+    for matrix in (np.zeros((3, 3)), np.diag((1, 1, -1)), np.eye(3), np.ones((3, 3))):
+        assert "<svg" in NineNumbersFigure(matrix=matrix).still()
+    for sequence in module.SEQUENCES:
+        for middle in (0, math.pi / 2, math.pi):
+            assert "<svg" in GimbalFigure(angles=(0, middle, 0), sequence=sequence).still()
+
+
+def test_a_stored_notebook_holds_the_still_and_no_widget():
+    data, metadata = TriadFigure()._repr_mimebundle_()
+    output = nbformat.v4.new_output("execute_result", data=data, metadata=metadata, execution_count=1)
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("TriadFigure()", outputs=[output])])
+    notebook.metadata["widgets"] = {"application/vnd.jupyter.widget-state+json": {"state": {"a": {}}}}
+    stored = nbformat.writes(normalise(notebook))
+    assert "vnd.jupyter.widget" not in stored
+    assert 'data-figure=\\"triad\\"' in stored
