@@ -115,7 +115,8 @@ def same_orientation(first, second, tolerance=TOLERANCE):
     Raises
     ------
     ValueError
-        If one is a matrix and the other a quaternion, or the shapes are neither.
+        If one is a matrix and the other a quaternion, the shapes are neither, two batches differ in
+        shape, or a number is not finite.
 
     Examples
     --------
@@ -167,6 +168,12 @@ def diagnose(given, expected, angles=None, sequence=None):
     -------
     Diagnosis
         ``same``, and ``causes``: a tuple of sentences. As a string, one message.
+
+    Raises
+    ------
+    ValueError
+        As for :func:`same_orientation`; for a batch; and if ``angles`` and ``sequence`` are not both
+        given, or do not make ``expected``.
 
     Examples
     --------

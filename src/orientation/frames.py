@@ -183,7 +183,8 @@ class Frames:
         Raises
         ------
         ValueError
-            If a name is unknown, or no path connects the two.
+            If a name is unknown, no path connects the two, or the path holds batches of different
+            shapes, or a batch and symbols.
         """
         turns = [turn for edge in self._edges_between(target, source) for turn in edge.turns]
         return _product(turns or [_Turn('x', self._zero(), None, '')])
