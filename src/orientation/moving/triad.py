@@ -9,7 +9,7 @@ from ..euler_angles import body_fixed_from_dcm
 from .figure import MovingFigure
 from .state import Direction, Numbers, Sequence
 
-REACH, KNOB = 1.25, 1.38   # of the arrows of N and of the line of the axis: labels keep clear of those of A
+REACH, KNOB = 1.25, 1.55   # of the arrows of N and of the line of the axis: labels keep clear of those of A
 SIZE = 112
 
 
@@ -39,7 +39,8 @@ class TriadFigure(MovingFigure):
     """
 
     kind = 'triad'
-    room = (490, 872)
+    sheet = (-180, -172, 180, 172)
+    room = (512, 884)
     axis = Direction((1, 2, 2)).tag(sync=True, state=True)
     angle = Numbers(math.radians(50), largest=math.pi).tag(sync=True, state=True)
     sequence = Sequence('zxy').tag(sync=True, state=True)

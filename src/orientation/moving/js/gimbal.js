@@ -56,7 +56,8 @@ export function render({ model, el }) {
     button('All to zero', () => towards([0, 0, 0])),
     button('To gimbal lock', () => {
       const [[psi, theta, phi], order] = state();
-      const nearest = PROPER_EULER.includes(order) ? Math.PI * Math.round(theta / Math.PI) : (theta < 0 ? -1 : 1) * Math.PI / 2;
+      const nearest = PROPER_EULER.includes(order) ? Math.PI * Math.round(theta / Math.PI)
+        : (theta < 0 ? -1 : 1) * Math.PI / 2;
       towards([psi, nearest, phi]);
     }),
     button('Trade $\\psi$ for $\\varphi$', () => {
@@ -169,14 +170,16 @@ function picture(sheet, gimbal, close, lit) {
     const same = close && k !== 1, colour = same ? 'accent' : 'ink', rest = before[k][at[k === 2 ? 1 : k + 1]];
     for (const side of [1, -1]) {
       sheet.layer = 7 * near(scale(side, axis));
-      sheet.line([scale(side * [OUTER + 0.1, OUTER + 0.1, INNER + 0.1][k], axis), scale(side * END, axis)], colour, same ? 'thick' : 'guide');
+      const begin = (k === 2 ? INNER : OUTER) + 0.1;
+      sheet.line([scale(side * begin, axis), scale(side * END, axis)], colour, same ? 'thick' : 'guide');
     }
     // At lock the names of the two axes stand side by side, also where the axes point opposite ways.
     const end = scale(same && dot(axis, axes[0]) < 0 ? -END : END, axis);
     sheet.layer = 7 * near(end);
     sheet.turn(axis, 4.4, rest, { radius: 0.16, origin: scale(0.9, end), colour });   // which way is positive
     const place = sheet.onSheet(end), out = Math.hypot(...place);
-    sheet.label(end, SYMBOLS[k], colour, add(out > 20 ? scale(17 / out, place) : [16, -16], same && k === 2 ? [22, 0] : [0, 0]));
+    const outward = out > 20 ? scale(17 / out, place) : [16, -16];
+    sheet.label(end, SYMBOLS[k], colour, same && k === 2 ? add(outward, [22, 0]) : outward);
   });
   sheet.layer = 8;
   if (close) sheet.line([scale(-END, axes[0]), scale(END, axes[0])], 'accent', 'guide');

@@ -1,6 +1,7 @@
-import { AXES, IDENTITY, add, checkDcm, conditions, cross, determinant, length, nearestDcm, scale, subtract, unit } from './mathematics.js';
-import { Sheet, button, change, element, fixed, follow, glide, grid, group, hats, liveText, numberField, onceAFrame, open, put, readout,
-  stage, write } from './shared.js';
+import { AXES, IDENTITY, add, checkDcm, conditions, cross, determinant, length, nearestDcm, scale, subtract,
+  unit } from './mathematics.js';
+import { Sheet, button, change, element, fixed, follow, glide, grid, group, hats, liveText, numberField, onceAFrame,
+  open, put, readout, stage, write } from './shared.js';
 
 const REACH = 1.2, SIZE = 116;   // as in nine_numbers.py
 const A = hats('a'), N = hats('n');
@@ -36,8 +37,8 @@ export function render({ model, el }) {
     } });
   const redraw = onceAFrame(draw);
 
-  const fields = AXES.map((i, row) => AXES.map((j, column) => numberField({ name: `row ${i}, column ${j}`, step: 0.05, digits: 4, min: -10, max: 10,
-    change(value) {
+  const fields = AXES.map((i, row) => AXES.map((j, column) => numberField({
+    name: `row ${i}, column ${j}`, step: 0.05, digits: 4, min: -10, max: 10, change(value) {
       stop();
       const matrix = copy();
       matrix[row][column] = value;
@@ -52,7 +53,8 @@ export function render({ model, el }) {
   const take = button('Take the nearest', () => {
     const from = copy(), { dcm } = nearestDcm(from);
     stop();
-    stop = glide((part) => setMatrix(part === 1 ? dcm : from.map((row, k) => add(scale(1 - part, row), scale(part, dcm[k])))));
+    const between = (part) => from.map((row, k) => add(scale(1 - part, row), scale(part, dcm[k])));
+    stop = glide((part) => setMatrix(part === 1 ? dcm : between(part)));
   });
   const examples = EXAMPLES.map(([name, matrix]) => button(name, () => {
     stop();
@@ -60,16 +62,18 @@ export function render({ model, el }) {
   }));
   const apart = element('span', { class: 'value' }), text = liveText();
   open(el, stage(sheet, text), element('div', { class: 'readouts' },
-    readout(['Nine numbers'], grid({ name: 'Nine numbers', rows: A, columns: N, kind: 'bracket entries', cells: fields.map((row) => row.map((field) => field.element)) })),
+    readout(['Nine numbers'], grid({ name: 'Nine numbers', rows: A, columns: N, kind: 'bracket entries',
+      cells: fields.map((row) => row.map((field) => field.element)) })),
     group('Examples', 'row-of-controls', ...examples),
-    readout(['Nearest valid matrix, drawn dotted'], grid({ name: 'Nearest direction cosine matrix', rows: A, columns: N, kind: 'bracket',
-      cells: entries }), element('div', { class: 'row-of-controls' }, take, apart))),
+    readout(['Nearest valid matrix, drawn dotted'],
+      grid({ name: 'Nearest direction cosine matrix', rows: A, columns: N, kind: 'bracket four', cells: entries }),
+      element('div', { class: 'row-of-controls' }, take, apart))),
   element('ul', { class: 'checks', 'aria-label': 'Conditions' }, ...checks.map(({ line }) => line)));
 
   function draw() {
     const matrix = model.get('matrix'), near = nearestDcm(matrix), turned = determinant(matrix), fault = checkDcm(matrix);
     fields.forEach((row, i) => row.forEach((field, j) => field.show(matrix[i][j])));
-    entries.forEach((row, i) => row.forEach((entry, j) => { write(entry, near.dcm ? fixed(near.dcm[i][j], 4) : '\u2013'); }));
+    entries.forEach((row, i) => row.forEach((entry, j) => write(entry, near.dcm ? fixed(near.dcm[i][j], 4) : '\u2013')));
     take.disabled = !near.dcm || near.distance < SMALL;
     write(apart, near.dcm ? `Distance ${near.distance.toFixed(4)}` : 'Several are equally near.');
     const found = conditions(matrix).map(({ value, wanted, fault: excess }) => [value, wanted, Math.abs(excess) <= SMALL]);

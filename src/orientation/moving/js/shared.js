@@ -8,6 +8,9 @@ import { LABELS, OUTLINES } from './glyphs.js';
 // ---- elements and words --------------------------------------------------------------------------------
 
 const DRAWN = new Set(['svg', 'g', 'path', 'circle']);
+const WITH_KEYS = new Set(['button', 'input', 'select']);
+// On an element that has the focus, this keeps JupyterLab from taking the keys as its own shortcuts.
+const OWN_KEYS = 'data-lm-suppress-shortcuts';
 
 // An element with attributes (functions are event listeners) and children; $...$ in a text is mathematics.
 export function element(tag, attributes = {}, ...children) {
@@ -16,6 +19,7 @@ export function element(tag, attributes = {}, ...children) {
     if (typeof value === 'function') made.addEventListener(name, value);
     else if (value !== undefined && value !== false) made.setAttribute(name, value === true ? '' : value);
   }
+  if (WITH_KEYS.has(tag)) made.setAttribute(OWN_KEYS, 'true');
   made.append(...children.flatMap((child) => (typeof child === 'string' ? words(child) : child)));
   return made;
 }
@@ -110,7 +114,8 @@ export class Sheet {
     this.layers = ['marks', 'labels', 'grips'].map((kind) => element('g', { class: kind }));
     this.pools = [[], new Map(), new Map()];
     this.svg = element('svg', { viewBox: `${left} ${top} ${right - left} ${bottom - top}`, class: 'sheet',
-      style: `max-width:${right - left}px`, tabindex: '0', role: 'application', 'aria-roledescription': 'drawing',
+      style: `max-width:${right - left}px`, tabindex: '0', [OWN_KEYS]: 'true',
+      role: 'application', 'aria-roledescription': 'drawing',
       'aria-label': `${name} The arrow keys turn the view, Home turns it back.`,
       pointerdown: (event) => this.hold(event), pointermove: (event) => this.move(event),
       pointerup: (event) => this.release(event), pointercancel: (event) => this.release(event),
@@ -192,7 +197,8 @@ export class Sheet {
 
   // `points` are on the sheet, `depth` along v_z.
   path(commands, points, kind, depth = 0) {
-    this.marks.push({ kind: kind + (this.faded ? ' faded' : ''), data: pathData(commands, points), depth: 1000 * this.layer + depth });
+    this.marks.push({ kind: kind + (this.faded ? ' faded' : ''), data: pathData(commands, points),
+      depth: 1000 * this.layer + depth });
   }
 
   line(points, colour = 'ink', kind = '') {
@@ -256,9 +262,10 @@ export class Sheet {
   grip(point, part, radius = 18) {
     const [, , grips] = this.pools, [x, y] = this.onSheet(point);
     this.used[1].add(part);
-    if (!grips.has(part)) grips.set(part, this.layers[2].appendChild(element('circle', { class: 'grip', r: radius, 'data-part': part })));
-    put(grips.get(part), 'cx', x.toFixed(1));
-    put(grips.get(part), 'cy', y.toFixed(1));
+    const made = grips.get(part) ?? element('circle', { class: 'grip', r: radius, 'data-part': part });
+    if (!grips.has(part)) grips.set(part, this.layers[2].appendChild(made));
+    put(made, 'cx', x.toFixed(1));
+    put(made, 'cy', y.toFixed(1));
   }
 
   arrow(end, { start = [0, 0, 0], colour = 'ink', label = '', shift, kind = '', size: letters = 20 } = {}) {
@@ -280,7 +287,8 @@ export class Sheet {
   }
 
   head(tip, [right, down], size, colour, depth) {
-    const corners = (HEADS[colour] ?? BARB).map(([x, y]) => add(tip, scale(size, [x * right - y * down, x * down + y * right])));
+    const corners = (HEADS[colour] ?? BARB).map(([x, y]) => (
+      add(tip, scale(size, [x * right - y * down, x * down + y * right]))));
     this.path('MLLLZ', corners, `head ${colour}`, depth);
   }
 
@@ -291,7 +299,8 @@ export class Sheet {
   }
 
   // The arc swept by the direction `start`, turned through `angle` about `axis`.
-  turn(axis, angle, start, { radius = 0.5, label = '', origin = [0, 0, 0], colour = 'ink', shift = [0, 0], kind = '', head = true } = {}) {
+  turn(axis, angle, start, { radius = 0.5, label = '', origin = [0, 0, 0], colour = 'ink', shift = [0, 0], kind = '',
+    head = true } = {}) {
     const arm = scale(radius, unit(start)), normal = unit(axis), pieces = Math.max(4, Math.ceil(Math.abs(angle)));
     const at = (part) => turned(normal, part * angle, arm);
     const swept = Math.abs(angle) * radius * this.size, size = head ? Math.min(0.8, swept / 28) : 0;
@@ -325,7 +334,8 @@ export class Sheet {
   circle(normal, { radius = 1, origin = [0, 0, 0], colour = 'muted', kind = 'guide', half = '' } = {}) {
     const n = unit(normal);
     const level = cross(n, this.view[2]);
-    const across = unit(length(level) > 1e-6 ? level : cross(n, IDENTITY[n.map(Math.abs).indexOf(Math.min(...n.map(Math.abs)))]));
+    const sizes = n.map(Math.abs), other = IDENTITY[sizes.indexOf(Math.min(...sizes))];
+    const across = unit(length(level) > 1e-6 ? level : cross(n, other));
     const up = cross(across, n);   // the point of the circle nearest to the reader
     const [u, v] = [across, dot(up, this.view[2]) < 0 ? scale(-1, up) : up].map((p) => this.onSheet(scale(radius, p)));
     const middle = this.onSheet(origin);
@@ -348,7 +358,8 @@ export class Sheet {
       const [u, v] = [half[(i + 1) % 3], half[(i + 2) % 3]];
       for (const outward of [half[i], scale(-1, half[i])]) {
         if (dot(outward, this.view[2]) > 1e-9) {
-          this.area([add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)].map((p) => add(origin, outward, p)), colour, fill);
+          const corners = [add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)];
+          this.area(corners.map((p) => add(origin, outward, p)), colour, fill);
         }
       }
     });
@@ -469,7 +480,8 @@ export function choice({ name, options, change, hidden = false }) {
 export function grid({ name, rows, columns, cells, kind = '' }) {
   const head = (text, side) => element('span', { class: `head-of-${side}`, 'aria-hidden': 'true' }, text);
   return group(name, `numbers ${kind}`,
-    ...(columns ? [element('div', { class: 'row' }, ...(rows ? [head('', 'row')] : []), ...columns.map((text) => head(text, 'column')))] : []),
+    ...(columns ? [element('div', { class: 'row' }, ...(rows ? [head('', 'row')] : []),
+      ...columns.map((text) => head(text, 'column')))] : []),
     ...cells.map((row, i) => element('div', { class: 'row' }, ...(rows ? [head(rows[i], 'row')] : []), ...row)));
 }
 
@@ -600,8 +612,7 @@ export const stage = (sheet, text) => element('div', { class: 'stage' }, sheet.s
 
 // The element that a figure fills: on a page of the book the one beside the still, else a new figure.
 export function open(el, ...children) {
-  // JupyterLab's keyboard shortcuts stay out of a figure that has the focus.
-  const live = element('div', { class: 'live', 'data-lm-suppress-shortcuts': 'true' }, ...children);
+  const live = element('div', { class: 'live' }, ...children);
   if (!el.closest('.moving')) el.append(element('div', { class: 'orientation-figure moving' }, live));
   else el.append(live);
   return live;

@@ -3,7 +3,7 @@ import { AXES, IDENTITY, bodyFixedFromDcm, dcmFromAxisAngle, dot, gimbalLockMarg
 import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, group, hats, liveText,
   numberField, numberTable, onceAFrame, open, plain, radians, readout, slider, stage, turned, wrapped } from './shared.js';
 
-const REACH = 1.25, KNOB = 1.38, SIZE = 112;   // as in triad.py
+const REACH = 1.25, KNOB = 1.55, SIZE = 112;   // as in triad.py
 const ANGLES = ['$\\psi$', '$\\theta$', '$\\varphi$'];
 const [N, A] = ['n', 'a'].map(hats);
 const number = (value, digits = 3) => fixed(value, digits).trim();
@@ -19,7 +19,7 @@ export function render({ model, el }) {
   };
   const turnTo = (angle) => change(model, { angle });
   const pointTo = (axis) => change(model, { axis });
-  const sheet = new Sheet({ bounds: [-180, -160, 180, 160], size: SIZE, changed: () => redraw(),
+  const sheet = new Sheet({ bounds: [-180, -172, 180, 172], size: SIZE, changed: () => redraw(),
     name: 'Triads of the frames N and A from one origin; A is turned about the unit vector e.',
     grab(part, at) {
       const axis = model.get('axis');
@@ -113,8 +113,8 @@ const MEANINGS = {
   matrix({ dcm }, i, j) {
     const value = dcm[i][j], between = Math.acos(Math.max(-1, Math.min(1, value)));
     return {
-      words: `Row ${AXES[i]}, column ${AXES[j]}: ${A[i]} · ${N[j]} = cos ${inDegrees(between)} = ${number(value)}. It is the shadow of `
-        + `${A[i]} on the line of ${N[j]}${value < -0.0005 ? ', which falls on the far side' : ''}.`,
+      words: `Row ${AXES[i]}, column ${AXES[j]}: ${A[i]} · ${N[j]} = cos ${inDegrees(between)} = ${number(value)}. `
+        + `It is the shadow of ${A[i]} on the line of ${N[j]}${value < -0.0005 ? ', which falls on the far side' : ''}.`,
       draw(sheet) {
         sheet.arrow(scale(REACH, IDENTITY[j]), { colour: 'N', label: N[j] });
         sheet.arrow(dcm[i], { colour: 'A', label: A[i] });
@@ -176,8 +176,8 @@ const MEANINGS = {
       };
     }
     return {
-      words: `$q_${'0ijk'[k]}$ = sin($\\theta/2$) $e_${AXES[k - 1]}$ = ${number(sine)} · ${number(axis[k - 1])} = ${number(quaternion[k])}: the `
-        + `shadow of sin($\\theta/2$) $\\hat{e}$ on the line of ${N[k - 1]}.`,
+      words: `$q_${'0ijk'[k]}$ = sin($\\theta/2$) $e_${AXES[k - 1]}$ = ${number(sine)} · ${number(axis[k - 1])} = `
+        + `${number(quaternion[k])}: the shadow of sin($\\theta/2$) $\\hat{e}$ on the line of ${N[k - 1]}.`,
       draw(sheet) {
         sheet.arrow(scale(REACH, IDENTITY[k - 1]), { colour: 'N', label: N[k - 1] });
         angleAbout(sheet, axis, half, '$\\theta/2$', { radius: 0.65, kind: 'thick' });
