@@ -163,6 +163,20 @@ def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
         assert asleep.locator("#after").bounding_box()["y"] == pytest.approx(after["y"], abs=60)
 
 
+ARROWS = """(box) => [...document.querySelectorAll(box + ' .axis')].map((arrow) => [
+  [...arrow.classList].find((name) => name.length === 1) ?? 'accent', arrow.getAttribute('d').match(/-?[0-9.]+/g).map(Number)])"""
+
+
+@pytest.mark.parametrize("kind", ["triad", "gimbal", "nine_numbers"])
+def test_both_languages_draw_the_same_arrows(open_figure, kind):
+    """The still comes from Python, the figure from the browser: every arrow lies where its twin does."""
+    page = open_figure(kind)
+    still, live = (sorted(page.evaluate(ARROWS, box)) for box in (".still", ".live .sheet"))
+    assert len(still) == len(live) >= 6
+    for (frame, line), (twin, place) in zip(still, live):
+        assert frame == twin and line == pytest.approx(place, abs=0.11)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_figure_opened_from_disk(open_figure, folder, kind):
     page = open_figure(kind, base=folder.as_uri() + "/")
