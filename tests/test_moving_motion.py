@@ -214,7 +214,7 @@ def test_the_still_shows_and_tells(body, time):
 @pytest.fixture(scope="module")
 def node(tmp_path_factory):
     """``node(code, data)``: what the code returns of the data, with everything of the figure in scope."""
-    module = bundle.esm("motion")
+    module = "".join(map(bundle.body, (*bundle.SHARED, "motion")))
 
     def run(code, data):
         script = tmp_path_factory.mktemp("node") / "motion.mjs"

@@ -89,7 +89,7 @@ class MotionFigure(MovingFigure):
 
     kind = 'motion'
     sheet = (-180, -150, 180, 150)
-    room = (612, 1112)
+    room = (612, 1185)
     body = traitlets.Enum(tuple(MOMENTS), 'racket').tag(sync=True, state=True)
     axis = traitlets.Enum(tuple('xyz'), 'y').tag(sync=True, state=True)
     disturbance = Between(0.01, 0, 0.5, 'rad/s').tag(sync=True, state=True)

@@ -36,7 +36,7 @@ class Numbers(traitlets.TraitType):
         worst = abs(array).max()
         # A slider's end, converted from degrees, may be a rounding beyond.
         if worst > self.largest + 1e-12:
-            cause = '. Angles are in radians, not degrees' if self.largest == math.pi else ''
+            cause = '. Angles are in radians, not degrees' if (self.largest / math.pi).is_integer() else ''
             raise traitlets.TraitError(f'{self.name} is {value!r}: numbers from -{self.largest:.6g} to '
                                        f'{self.largest:.6g} were expected{cause}')
         return _tuples(array)
