@@ -308,20 +308,27 @@ def test_touch(open_figure, kind):
     page.wait_for_function("scrollY > 50")
 
 
-DRAGS = [("triad", "1", (40, 20)), ("triad", "axis", (-50, 30)), ("gimbal", "01", (20, 30)), ("gimbal", "13", (25, -20)),
-         ("gimbal", "20", (10, 25)), ("nine_numbers", "0", (-30, 20))]  # fmt: skip
+# Where a part is held: the middle of a spot, or a corner of a line, which always is the same point of it.
+HOLD = """([part, corner]) => {
+  const grip = document.querySelector(`.sheet [data-part="${part}"]`), matrix = grip.getScreenCTM();
+  const [x, y] = corner === null ? [grip.cx.baseVal.value, grip.cy.baseVal.value]
+    : grip.getAttribute('d').match(/-?[0-9.]+/g).map(Number).slice(2 * corner, 2 * corner + 2);
+  const place = new DOMPoint(x, y).matrixTransform(matrix);
+  grip.parentNode.append(grip);   // another grip may lie over it
+  return [place.x, place.y];
+}"""
+DRAGS = [("triad", "1", None, (10, 45)), ("triad", "axis", None, (-20, 50)), ("gimbal", "B", 4, (10, 50)),
+         ("gimbal", "C", 12, (15, -45)), ("gimbal", "D", None, (10, 35)), ("nine_numbers", "0", None, (-10, 45))]  # fmt: skip
 
 
 @pytest.mark.parametrize("touch", [False, True], ids=["mouse", "touch"])
-@pytest.mark.parametrize("kind, part, way", DRAGS)
-def test_parts_follow_the_pointer(open_figure, kind, part, way, touch):
+@pytest.mark.parametrize("kind, part, corner, way", DRAGS)
+def test_parts_follow_the_pointer(open_figure, kind, part, corner, way, touch):
     page = open_figure(kind, viewport=NARROW, has_touch=touch, is_mobile=touch)
-    grip = page.locator(f'.sheet [data-part="{part}"]')
-    start = middle(grip)
-    # Another grip may lie over it; take hold of this one.
-    page.eval_on_selector(f'.sheet [data-part="{part}"]', "grip => grip.parentNode.append(grip)")
+    page.evaluate("document.querySelector('#after').style.height = '2000px'")
+    start = page.evaluate(HOLD, [part, corner])
     end = start[0] + way[0], start[1] + way[1]
-    scale = page.eval_on_selector(".sheet", "sheet => sheet.getScreenCTM().a")
+    before = page.locator(".live").inner_text()
     if touch:
         Finger(page).drag(start, end)
     else:
@@ -330,34 +337,32 @@ def test_parts_follow_the_pointer(open_figure, kind, part, way, touch):
         page.mouse.move(*end, steps=6)
         page.mouse.up()
         settle(page)
-    reached = np.subtract(middle(grip), start) / scale
-    assert np.linalg.norm(reached) > 10, "it did not move"
-    if kind == "triad" and part == "axis" or kind == "nine_numbers":
-        assert np.linalg.norm(np.subtract(middle(grip), end)) < 3, "it is not where the pointer is"
+    assert page.evaluate("scrollY") == 0, "the page has moved instead"
+    assert page.locator(".live").inner_text() != before
+    if corner is not None:
+        return
+    reached = page.evaluate(HOLD, [part, corner])
+    if part == "axis" or kind == "nine_numbers":
+        assert reached == pytest.approx(end, abs=3), "it is not where the pointer is"
     else:
-        # On a circle the nearest place to the pointer: none of the others a degree away is nearer.
-        assert np.dot(reached, way) > 0
-    assert page.evaluate("scrollY") == 0
+        assert np.dot(np.subtract(reached, start), way) > 100, "it went another way"
 
 
-def test_what_is_held_goes_to_the_nearest_place_on_its_circle(open_figure):
-    """Turning back and forth by hand brings the rings back to where they were."""
-    page = open_figure("gimbal")
-    grip = page.locator('.sheet [data-part="01"]')
-    page.eval_on_selector('.sheet [data-part="01"]', "grip => grip.parentNode.append(grip)")
-    start, places = middle(grip), []
-    for angle in (15, 40, 60, 20, 15):
-        type_number(page, "psi in degrees", angle)
-        places.append(middle(grip))
-    assert places[0] == pytest.approx(places[-1])
-    page.mouse.move(*start)
+@pytest.mark.parametrize("part, name", [("B", "psi"), ("C", "theta")])
+def test_a_ring_stays_under_the_pointer(open_figure, part, name):
+    """Places of one point of a ring, from the slider; held there, the ring follows the pointer along them."""
+    page, places = open_figure("gimbal"), []
+    for angle in (40, 20, 0, -20, 20):
+        type_number(page, f"{name} in degrees", angle)
+        places.append(page.evaluate(HOLD, [part, 8]))
+    assert places[1] == pytest.approx(places[-1])
+    page.mouse.move(*places[1])
     page.mouse.down()
-    for place in places[1:4]:
+    for angle, place in ((0, places[2]), (-20, places[3]), (40, places[0])):
         page.mouse.move(*place, steps=10)
         settle(page)
-        assert middle(grip) == pytest.approx(place, abs=2.5)
+        assert float(page.get_by_label(f"{name} in degrees").input_value()) == pytest.approx(angle, abs=2)
     page.mouse.up()
-    assert float(page.get_by_label("psi in degrees").input_value()) == pytest.approx(20, abs=2)
 
 
 @pytest.mark.parametrize("axis, angle", [((0, 0, 1), 30), ((1, 2, -2), -125), ((-3, 0.5, 1), 180), ((0, 1, 0), 0)])

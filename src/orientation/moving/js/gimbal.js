@@ -1,5 +1,5 @@
-import { AXES, IDENTITY, add, dot, gimbalLockMargin, multiply, PROPER_EULER, SEQUENCES, scale,
-  simpleDcm } from './mathematics.js';
+import { AXES, IDENTITY, add, dot, gimbalLockMargin, length, multiply, PROPER_EULER, SEQUENCES, scale,
+  simpleDcm, subtract } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, glide, group, hats, liveText,
   numberTable, onceAFrame, open, plain, put, radians, readout, slider, stage, turned, wrapped, write } from './shared.js';
 
@@ -31,9 +31,11 @@ export function render({ model, el }) {
     grab(part, at) {
       if (!part) return null;
       stop();
-      const [angles, order] = state(), gimbal = device(angles, order), k = Number(part[0]);
-      // Where the part would be held if this joint were at zero.
-      const arm = turned(gimbal.axes[k], -angles[k], GRIPS[part](gimbal));
+      const [angles, order] = state(), gimbal = device(angles, order), k = 'BCD'.indexOf(part);
+      const far = (point) => length(subtract(sheet.onSheet(point), at)) - 0.1 * dot(point, sheet.view[2]);
+      const held = PLACES[part](gimbal, 360).reduce((best, point) => (far(point) < far(best) ? point : best));
+      // Where that would be if this joint were at zero.
+      const arm = turned(gimbal.axes[k], -angles[k], held);
       const follower = followTurn(sheet, { axis: gimbal.axes[k], arm, angle: angles[k], at });
       return (to) => setAngle(k, follower(to));
     } });
@@ -121,15 +123,15 @@ function situation({ axes, margin }, apart) {
     + `. Trade one for the other and the camera stands still. One way of turning is lost.`;
 }
 
-// Where each ring and the camera can be held: names begin with the joint that moves them.
-const GRIPS = {};
-for (let k = 0; k < 8; k += 1) {
-  const [u, v] = [Math.cos(k * Math.PI / 4), Math.sin(k * Math.PI / 4)];
-  const onRing = (frame, at, other) => add(scale(u, frame[at]), scale(v, frame[other]));
-  GRIPS[`0${k}`] = ({ B, at }) => scale(OUTER, onRing(B, at[0], at[1]));
-  GRIPS[`1${k}`] = ({ C, at }) => scale(INNER, onRing(C, at[1], at[2]));
-}
-GRIPS['20'] = ({ D, at }) => scale(0.3, D[at[2] === 0 ? 2 : 0]);
+// Points at which the rings and the camera can be held.
+const circle = (u, v, radius, count) => Array.from({ length: count }, (_, k) => add(
+  scale(radius * Math.cos(2 * k * Math.PI / count), u), scale(radius * Math.sin(2 * k * Math.PI / count), v)));
+const PLACES = {
+  B: ({ B, at }, count) => circle(B[at[0]], B[at[1]], OUTER, count),
+  C: ({ C, at }, count) => circle(C[at[1]], C[at[2]], INNER, count),
+  // Beside the axis that the camera turns about.
+  D: ({ D, at }) => [scale(0.3, D[at[2] === 0 ? 2 : 0])],
+};
 
 function picture(sheet, gimbal, close, lit) {
   const { A, B, C, D, at, axes, normals } = gimbal;
@@ -199,5 +201,7 @@ function picture(sheet, gimbal, close, lit) {
     });
   }
   sheet.faded = false;
-  for (const [part, place] of Object.entries(GRIPS)) sheet.grip(place(gimbal), part, part === '20' ? 22 : 15);
+  sheet.gripLine(PLACES.B(gimbal, 40), 'B');
+  sheet.gripLine(PLACES.C(gimbal, 40), 'C');
+  sheet.grip(PLACES.D(gimbal)[0], 'D', 22);
 }

@@ -11,9 +11,20 @@ const TOLERANCE = 1e-9;
 
 // Vectors and matrices.
 
-export const dot = (u, v) => u.reduce((sum, entry, k) => sum + entry * v[k], 0);
+// Plain loops: these are called some thousand times for each picture.
+export function dot(u, v) {
+  let sum = 0;
+  for (let k = 0; k < u.length; k += 1) sum += u[k] * v[k];
+  return sum;
+}
+
+export function add(...vectors) {
+  const sum = [...vectors[0]];
+  for (let n = 1; n < vectors.length; n += 1) for (let k = 0; k < sum.length; k += 1) sum[k] += vectors[n][k];
+  return sum;
+}
+
 export const cross = (u, v) => [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-export const add = (...vectors) => vectors[0].map((_, k) => vectors.reduce((sum, v) => sum + v[k], 0));
 export const scale = (factor, v) => v.map((entry) => factor * entry);
 export const subtract = (u, v) => u.map((entry, k) => entry - v[k]);
 export const length = (v) => Math.hypot(...v);

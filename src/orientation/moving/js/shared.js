@@ -117,6 +117,8 @@ export class Sheet {
       style: `max-width:${right - left}px`, tabindex: '0', [OWN_KEYS]: 'true',
       role: 'application', 'aria-roledescription': 'drawing',
       'aria-label': `${name} The arrow keys turn the view, Home turns it back.`,
+      // A finger on a grip must not scroll the page; inside an SVG drawing, touch-action is not heard.
+      touchstart: (event) => { if (event.target.dataset.part) event.preventDefault(); },
       pointerdown: (event) => this.hold(event), pointermove: (event) => this.move(event),
       pointerup: (event) => this.release(event), pointercancel: (event) => this.release(event),
       keydown: (event) => this.press(event), dblclick: () => this.look(...this.home) }, ...this.layers);
@@ -174,14 +176,22 @@ export class Sheet {
     this.finish();
   }
 
+  // Every mark keeps its element from one picture to the next, because it is drawn in the same turn; where
+  // the depths have changed places, so do the elements.
   finish() {
-    const [pool, labels, grips] = this.pools;
-    this.marks.sort((a, b) => a.depth - b.depth);
-    while (pool.length < this.marks.length) pool.push(this.layers[0].appendChild(element('path')));
-    pool.forEach((path, k) => {
-      put(path, 'class', this.marks[k]?.kind ?? '');
-      put(path, 'd', this.marks[k]?.data ?? '');
+    const [pool, labels, grips] = this.pools, [layer] = this.layers;
+    this.marks.forEach((mark, k) => {
+      pool[k] ??= element('path');
+      put(pool[k], 'class', mark.kind);
+      put(pool[k], 'd', mark.data);
+      mark.path = pool[k];
     });
+    pool.slice(this.marks.length).forEach((path) => path.remove());
+    let next = null;
+    for (const { path } of this.marks.sort((a, b) => a.depth - b.depth).reverse()) {
+      if (path.nextSibling !== next || !path.parentNode) layer.insertBefore(path, next);
+      next = path;
+    }
     for (const [k, known] of [labels, grips].entries()) {
       for (const [name, made] of known) put(made, 'visibility', this.used[k].has(name) ? 'visible' : 'hidden');
     }
@@ -260,12 +270,22 @@ export class Sheet {
 
   // A place where the reader can take hold; `part` comes back in grab(part, at).
   grip(point, part, radius = 18) {
-    const [, , grips] = this.pools, [x, y] = this.onSheet(point);
-    this.used[1].add(part);
-    const made = grips.get(part) ?? element('circle', { class: 'grip', r: radius, 'data-part': part });
-    if (!grips.has(part)) grips.set(part, this.layers[2].appendChild(made));
+    const [x, y] = this.onSheet(point), made = this.gripElement(part, 'circle');
+    put(made, 'r', String(radius));
     put(made, 'cx', x.toFixed(1));
     put(made, 'cy', y.toFixed(1));
+  }
+
+  // The same along a closed line.
+  gripLine(points, part) {
+    put(this.gripElement(part, 'path'), 'd', pathData(polygon(points.length), points.map((p) => this.onSheet(p))));
+  }
+
+  gripElement(part, tag) {
+    const [, , grips] = this.pools;
+    this.used[1].add(part);
+    if (!grips.has(part)) grips.set(part, this.layers[2].appendChild(element(tag, { class: 'grip', 'data-part': part })));
+    return grips.get(part);
   }
 
   arrow(end, { start = [0, 0, 0], colour = 'ink', label = '', shift, kind = '', size: letters = 20 } = {}) {
