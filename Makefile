@@ -22,7 +22,7 @@ help:
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
 
-setup: $(VENV)/ready node_modules/ready $(KERNEL_SETTINGS)
+setup: $(VENV)/ready node_modules/ready $(VENV)/runtime/ready $(KERNEL_SETTINGS)
 
 $(VENV)/ready: constraints.txt pyproject.toml
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'The book needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Name one: make PYTHON=python3.12')"
@@ -33,8 +33,14 @@ $(VENV)/ready: constraints.txt pyproject.toml
 	@touch $@
 
 node_modules/ready: package-lock.json $(VENV)/ready
-	@echo "Setting up KaTeX and the typefaces in node_modules ..."
+	@echo "Setting up KaTeX, the typefaces and Python for browsers in node_modules ..."
 	@PATH="$(CURDIR)/$(VENV)/bin:$$PATH" npm ci --silent --ignore-scripts --no-audit --no-fund
+	@touch $@
+
+$(VENV)/runtime/ready: src/website/live/wheels.txt $(VENV)/ready
+	@echo "Setting up SymPy for browsers in $(VENV)/runtime ..."
+	@rm -rf $(@D)
+	@$(RUN) -m pip download --quiet --disable-pip-version-check --no-deps --only-binary=:all: --require-hashes --requirement $< --dest $(@D)
 	@touch $@
 
 $(KERNEL_SETTINGS): src/website/ipython_kernel_config.py

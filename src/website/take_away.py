@@ -20,6 +20,7 @@ from .markdown import MarkdownWriter
 from .paths import REPOSITORY
 
 FOLDER = "take-away"
+PACKAGES = ("orientation", "coursework")
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
 
@@ -90,21 +91,23 @@ def write_page(app, pagename, templatename, context, doctree):
 
 
 def build_wheel(app, exception):
-    """Build the package into the site, from a copy: setuptools leaves files behind."""
+    """Build our packages into the site, as one wheel, from a copy: setuptools leaves files behind."""
     wheel = Path(app.outdir) / FOLDER / wheel_name()
     if exception or app.builder.format != "html":
         return
     sources = [REPOSITORY / name for name in ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")]
-    package = REPOSITORY / "src" / "orientation"
-    newest = max(path.stat().st_mtime for path in [*sources, *package.rglob("*")])
+    packages = [REPOSITORY / "src" / name for name in PACKAGES]
+    files = [path for package in packages for path in package.rglob("*") if "__pycache__" not in path.parts]
+    newest = max(path.stat().st_mtime for path in [*sources, *files])
     if wheel.exists() and wheel.stat().st_mtime > newest:
         return
     with tempfile.TemporaryDirectory() as copy:
         for path in sources:
             shutil.copy(path, copy)
-        shutil.copytree(
-            package, Path(copy, "src", "orientation"), ignore=shutil.ignore_patterns("__pycache__")
-        )
+        for package in packages:
+            shutil.copytree(
+                package, Path(copy, "src", package.name), ignore=shutil.ignore_patterns("__pycache__")
+            )
         subprocess.run(
             [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check",
              "--no-deps", "--no-build-isolation", "--wheel-dir", wheel.parent, copy],

@@ -1,0 +1,157 @@
+"""The runtime folder of the site: Pyodide from npm, wheels from PyPI and our own, and their lock file.
+
+Whatever is fetched is fetched by `make setup`, pinned and hash-checked; here it is byte-compiled and
+put in place. A wheel is compiled once: the result is kept under its contents' hash.
+"""
+
+import hashlib
+import json
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from sphinx.errors import ConfigError
+
+from ..page import NODE
+from ..paths import NODE_MODULES, REPOSITORY
+from ..take_away import FOLDER as TAKE_AWAY
+from ..take_away import wheel_name
+
+HERE = Path(__file__).parent
+FETCHED = REPOSITORY / ".venv" / "runtime"  # where `make setup` puts the wheels of wheels.txt
+COMPILED = REPOSITORY / "_build" / "runtime"
+PYODIDE = NODE_MODULES / "pyodide"
+PYODIDE_FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
+
+FOLDER = "runtime"
+LOCK = "pyodide-lock.json"
+OUR_IMPORTS = ("orientation", "coursework")
+DEPENDS = {"sympy": ["mpmath"], "orientation-of-reference-frames": ["sympy"]}
+NUMERICAL = ("numpy", "matplotlib")  # not on PyPI for browsers; see the setting numpy_in_the_page
+
+
+def sha256(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+def official_lock():
+    """Pyodide's own list of packages, as npm brings it."""
+    return json.loads((PYODIDE / LOCK).read_text("utf8"))
+
+
+def official_address():
+    """Where Pyodide's makers serve the packages of their list."""
+    version = json.loads((PYODIDE / "package.json").read_text("utf8"))["version"]
+    return f"https://cdn.jsdelivr.net/pyodide/v{version}/full/"
+
+
+def with_dependencies(names, packages):
+    """The names of ``packages`` that ``names`` lead to, themselves among them."""
+    found, waiting = set(), list(names)
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting += packages[name]["depends"]
+    return sorted(found)
+
+
+def compile_wheels(wheels):
+    """Return the compiled form of each of ``wheels``, made now or kept from before."""
+    program = b"".join(path.read_bytes() for path in COMPILER)
+    program += (PYODIDE / "package.json").read_bytes()
+    compiled = {
+        wheel: COMPILED / sha256(program + wheel.read_bytes())[:12] / wheel.name for wheel in wheels
+    }
+    missing = {wheel: target for wheel, target in compiled.items() if not target.exists()}
+    if missing:
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("in", "out"):
+                Path(folder, name).mkdir()
+            for wheel in missing:
+                shutil.copy(wheel, Path(folder, "in"))
+            command = [NODE, COMPILER[0], PYODIDE / "pyodide.mjs", COMPILER[1], folder]
+            subprocess.run(command, check=True)
+            for wheel, target in missing.items():
+                for outdated in COMPILED.glob(f"*/{wheel.name}"):
+                    shutil.rmtree(outdated.parent)
+                target.parent.mkdir(parents=True)
+                shutil.move(Path(folder, "out", wheel.name), target)
+    return list(compiled.values())
+
+
+def entry(name, version, imports, file_name, digest):
+    """A package of the lock file, in the form that Pyodide reads."""
+    return {
+        "name": name,
+        "version": version,
+        "file_name": file_name,
+        "install_dir": "site",
+        "sha256": digest,
+        "package_type": "package",
+        "imports": list(imports),
+        "depends": DEPENDS.get(name, []),
+    }
+
+
+def own_packages(wheels, target):
+    """Put ``wheels`` into the folder ``target`` and return their part of the lock file.
+
+    Each lies in a folder named by its contents: a browser that kept an older wheel of the same name
+    does not mistake it for this one.
+    """
+    packages = {}
+    for wheel in wheels:
+        content = wheel.read_bytes()
+        distribution, version = wheel.name.split("-")[:2]
+        name = distribution.replace("_", "-")
+        place = target / "wheels" / sha256(content)[:12]
+        place.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(wheel, place / wheel.name)
+        imports = OUR_IMPORTS if wheel.name == wheel_name() else (name,)
+        path = str((place / wheel.name).relative_to(target))
+        packages[name] = entry(name, version, imports, path, sha256(content))
+    return packages
+
+
+def numerical_packages(setting, target, official, address):
+    """NumPy's and Matplotlib's part of the lock file: see the setting numpy_in_the_page.
+
+    Where ``setting`` is the path of a folder, the wheels that ``official`` names are copied from it.
+    """
+    if setting in (False, "off"):
+        return {}
+    packages = official["packages"]
+    chosen = {name: dict(packages[name]) for name in with_dependencies(NUMERICAL, packages)}
+    for package in chosen.values():
+        if setting == "official":
+            package["file_name"] = address + package["file_name"]
+            continue
+        wheel = REPOSITORY / setting / package["file_name"]
+        if not wheel.is_file():
+            raise ConfigError(f"numpy_in_the_page: there is no {package['file_name']} in {setting}")
+        content = wheel.read_bytes()
+        if sha256(content) != package["sha256"]:
+            raise ConfigError(f"numpy_in_the_page: {wheel.name} in {setting} is not the official file")
+        place = target / "wheels" / package["sha256"][:12]
+        place.mkdir(parents=True, exist_ok=True)
+        (place / wheel.name).write_bytes(content)
+        package["file_name"] = str((place / wheel.name).relative_to(target))
+    return chosen
+
+
+def write(site, setting):
+    """Write the runtime folder of ``site``, a folder with the built pages."""
+    target = site / FOLDER
+    shutil.rmtree(target / "wheels", ignore_errors=True)
+    (target / "pyodide").mkdir(parents=True, exist_ok=True)
+    for name in PYODIDE_FILES:
+        shutil.copyfile(PYODIDE / name, target / "pyodide" / name)
+    wheels = [*sorted(FETCHED.glob("*.whl")), site / TAKE_AWAY / wheel_name()]
+    official = official_lock()
+    packages = own_packages(compile_wheels(wheels), target)
+    packages |= numerical_packages(setting, target, official, official_address())
+    lock = {"info": official["info"], "packages": packages}
+    (target / LOCK).write_text(json.dumps(lock, indent=1), "utf8")
