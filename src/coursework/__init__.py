@@ -1,0 +1,8 @@
+"""Exercises that check themselves and hold no answers, and the tools that make and grade them.
+
+A student needs ``from coursework import check`` and no more.
+"""
+
+from .check import check, hint, progress
+
+__all__ = ['check', 'hint', 'progress']

@@ -65,17 +65,19 @@ def dcm_from_axis_angle(axis, angle):
     -----
     Source: Rodrigues' formula Rodrigues (1840), transposed to act on components.
     """
-    def formula(f, x, y, z, angle):
-        length = f.norm(x, y, z)
-        cosine, sine = f.cos(angle), f.sin(angle) / length
-        rest = (1 - cosine) / length**2
-        sx, sy, sz, rx, ry = sine * x, sine * y, sine * z, rest * x, rest * y
-        xy, xz, yz = rx * y, rx * z, ry * z
-        return (cosine + rx * x, xy + sz, xz - sy,
-                xy - sz, cosine + ry * y, yz + sx,
-                xz + sy, yz - sx, cosine + rest * z * z)
+    return evaluate(axis_angle_formula, (3, 3), ('axis', axis, (3,)), ('angle', angle, ()), guard=AXIS_GUARD)
 
-    return evaluate(formula, (3, 3), ('axis', axis, (3,)), ('angle', angle, ()), guard=AXIS_GUARD)
+
+def axis_angle_formula(f, x, y, z, angle):
+    """Formula of :func:`dcm_from_axis_angle`, for the components of the axis and the angle."""
+    length = f.norm(x, y, z)
+    cosine, sine = f.cos(angle), f.sin(angle) / length
+    rest = (1 - cosine) / length**2
+    sx, sy, sz, rx, ry = sine * x, sine * y, sine * z, rest * x, rest * y
+    xy, xz, yz = rx * y, rx * z, ry * z
+    return (cosine + rx * x, xy + sz, xz - sy,
+            xy - sz, cosine + ry * y, yz + sx,
+            xz + sy, yz - sx, cosine + rest * z * z)
 
 
 def quaternion_from_axis_angle(axis, angle):

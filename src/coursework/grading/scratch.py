@@ -1,0 +1,63 @@
+"""Scratch folders on disk, for where a notebook cannot have one in memory: measured, and emptied.
+
+What a student leaves behind may be hostile: folders nested a hundred thousand deep, without
+permissions, links to elsewhere. Nothing here follows a link or recurses.
+"""
+
+import contextlib
+import os
+import secrets
+
+_FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
+
+
+def remove_folder(path):
+    """Remove a folder and all in it."""
+    top = os.open(path, _FOLDER)
+    try:
+        while names := os.listdir(top):
+            for name in names:
+                if _unlinked(name, top):
+                    continue
+                # A folder: empty it of files, move its folders up here, and remove it.
+                inner = _opened(name, top)
+                try:
+                    for child in os.listdir(inner):
+                        if not _unlinked(child, inner):
+                            os.chmod(child, 0o700, dir_fd=inner)
+                            os.rename(child, secrets.token_hex(16), src_dir_fd=inner, dst_dir_fd=top)
+                finally:
+                    os.close(inner)
+                os.rmdir(name, dir_fd=top)
+    finally:
+        os.close(top)
+    os.rmdir(path)
+
+
+def _opened(name, folder):
+    os.chmod(name, 0o700, dir_fd=folder)
+    return os.open(name, _FOLDER, dir_fd=folder)
+
+
+def _unlinked(name, folder):
+    try:
+        os.unlink(name, dir_fd=folder)
+    except IsADirectoryError:
+        return False
+    return True
+
+
+def used_bytes(path, most):
+    """The space that the files under `path` take; counting stops when it is more than `most`."""
+    total, folders = 0, [path]
+    while folders and total <= most:
+        with contextlib.suppress(OSError), os.scandir(folders.pop()) as entries:
+            for entry in entries:
+                total += 512  # a file of no length takes room too
+                with contextlib.suppress(OSError):
+                    total += entry.stat(follow_symlinks=False).st_blocks * 512
+                    if entry.is_dir(follow_symlinks=False):
+                        folders.append(entry.path)
+                if total > most:
+                    break
+    return total

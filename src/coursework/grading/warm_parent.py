@@ -1,0 +1,341 @@
+"""The warm parent: a process that has loaded the libraries and forks one child for each notebook.
+
+It is started by `exec` with an empty environment. It holds no answer and no student's work: the
+notebook goes to the child, and the records come back, through handles that this process passes on
+without reading, so a child that searches its memory finds nothing of its neighbours.
+
+It speaks with the process that started it in JSON, one message each:
+
+    in   {"start": {...}}                      once: how to isolate, what to try
+    out  {"ready": report}
+    in   {"run": {"limits": {...}}}            with two handles: the job, and where records go
+    out  {"ended": {"signal": n} or {"code": n}, "scratch full": bool}
+    in   {"kill": true}                        while a notebook runs
+"""
+
+import contextlib
+import errno
+import gc
+import json
+import os
+import select
+import signal
+import socket
+import sys
+from pathlib import Path
+
+from coursework.grading import isolation, scratch
+from coursework.grading.isolation import LAYERS, LIMITS, NAMESPACES, PRIVILEGES, IsolationError
+
+JOB, RECORDS = 3, 4  # the handles that a notebook's process has, beside input and output to nowhere
+NOT_CONFINED = 120
+LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on disk is
+LONGEST_MESSAGE = 1 << 16
+
+
+def into_namespaces(control, readable):
+    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot be."""
+    reading, writing = os.pipe()
+    outer = os.getpid()
+    if os.fork() == 0:
+        try:
+            isolation.die_with_parent()
+            if os.getppid() != outer:
+                os._exit(1)
+            isolation.unshare_all()
+            inner = os.fork()
+            if inner == 0:
+                isolation.die_with_parent()
+                isolation.enter_own_root(readable)
+                os.write(writing, b"in")
+                os.close(writing)
+                os.close(reading)
+                return None
+            control.close()
+            os.close(writing)
+            _, status = os.waitpid(inner, 0)
+            os._exit(0 if status == 0 else 1)
+        except OSError as error:
+            os.write(writing, str(error).encode())
+            os._exit(1)
+    os.close(writing)
+    said = b""
+    while part := os.read(reading, 1000):
+        said += part
+    os.close(reading)
+    if said == b"in":
+        control.close()  # the process inside has its own handle
+        os.wait()
+        os._exit(0)
+    os.wait()
+    return said.decode(errors="replace") or "it ended without a word"
+
+
+def load_libraries():
+    """Import what notebooks import, once for all of them."""
+    import numpy
+    import sympy
+    import sympy.physics.mechanics as mechanics
+
+    from coursework.grading import notebook
+
+    with contextlib.suppress(ImportError):
+        import orientation  # noqa: F401
+    with contextlib.suppress(ImportError):
+        import matplotlib.pyplot  # noqa: F401
+    # What SymPy and the answers' reader import only when first used.
+    angle = sympy.Symbol("angle")
+    one, other = mechanics.ReferenceFrame("N"), mechanics.ReferenceFrame("A")
+    other.orient_axis(one, one.z, angle)
+    sympy.simplify(sympy.trigsimp(other.dcm(one) * other.dcm(one).T))
+    sympy.lambdify(angle, sympy.sin(angle), "numpy")(numpy.zeros(1))
+    notebook.warm_up()
+    sympy.core.cache.clear_cache()
+
+
+def about_itself(processes, name):
+    """A file of this process's own in /proc, which is a handle here: the folder may be out of sight."""
+    with open(os.open(f"self/{name}", os.O_RDONLY, dir_fd=processes)) as file:
+        return file.read()
+
+
+class WarmParent:
+    """What the children need to be started, and how they are tried out, watched and ended."""
+
+    def __init__(self, control, processes, start, readable, made_by, why_no_namespaces):
+        self.control = control
+        self.off = set(start["without"])
+        self.target = start["target"]
+        self.readable = readable
+        self.made_by = made_by
+        self.why_no_namespaces = why_no_namespaces
+        self.first_of_its_namespace = made_by is not None and os.getpid() == 1
+        self.base = isolation.SCRATCH if made_by else start["base"]
+        self.threads_in_use = start["threads in use"]
+        self.user = isolation.user_for_students(start["user"], about_itself(processes, "uid_map"))
+        if not self.first_of_its_namespace:
+            isolation.adopt_orphans()
+        os.environ["MPLCONFIGDIR"] = self.base
+        load_libraries()
+        self.memory_in_use = int(about_itself(processes, "statm").split()[0]) * os.sysconf("SC_PAGE_SIZE")
+        os.close(processes)
+        self.own_scratch = made_by is not None
+        self.layers = []
+        self.count = 0
+
+    # -- one child
+
+    def new_scratch(self, layers):
+        """The next child's scratch folder: memory that it mounts over the base, or a folder in it."""
+        if self.own_scratch and NAMESPACES in layers:
+            return self.base
+        self.count += 1
+        folder = os.path.join(self.base, f"{self.count}")
+        os.mkdir(folder, 0o700)
+        if os.geteuid() == 0:
+            os.chown(folder, self.user, self.user)
+        return folder
+
+    def remove_scratch(self, folder):
+        if folder != self.base:  # memory went with its process
+            scratch.remove_folder(folder)
+
+    def confine(self, layers, limits, folder):
+        isolation.confine(
+            layers, limits=limits, readable=self.readable, scratch=folder, own_scratch=self.own_scratch,
+            user=self.user, memory_in_use=self.memory_in_use, threads_in_use=self.threads_in_use)
+
+    def end_all(self, child):
+        """Kill the child and everything it may have left behind. The only one who reaps."""
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(child, signal.SIGKILL)
+        status = os.waitpid(child, 0)[1]
+        while True:
+            if self.first_of_its_namespace:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(-1, signal.SIGKILL)  # all of this namespace, at one stroke
+            else:
+                for orphan in self.children():
+                    with contextlib.suppress(ProcessLookupError):
+                        os.kill(orphan, signal.SIGKILL)
+            try:
+                os.waitpid(-1, 0)
+            except ChildProcessError:
+                return status
+
+    @staticmethod
+    def children():
+        path = Path(f"/proc/self/task/{os.getpid()}/children")
+        return [int(number) for number in path.read_text().split()] if path.exists() else []
+
+    # -- trying the layers
+
+    def tried(self, layers, attempts, target):
+        """Confine a child by `layers`; give the names of the attempts that succeeded there."""
+        folder = self.new_scratch(layers)
+        reading, writing = os.pipe()
+        child = os.fork()
+        if child == 0:
+            try:
+                os.close(reading)
+                self.confine(layers, target["limits"], folder)
+                answer = {"succeeded": isolation.attempt_all(target, attempts)}
+                if attempts is None:
+                    answer["succeeded"] += self.cannot_work()
+            except Exception as error:
+                answer = {"failed": str(error) or type(error).__name__}
+            os.write(writing, json.dumps(answer).encode())
+            os._exit(0)
+        os.close(writing)
+        said = b""
+        while select.select([reading], [], [], 20)[0] and (part := os.read(reading, 4096)):
+            said += part
+        os.close(reading)
+        self.end_all(child)
+        self.remove_scratch(folder)
+        answer = json.loads(said) if said else {"failed": "the process that tried it ended early"}
+        if "failed" in answer:
+            raise IsolationError(errno.EPERM, answer["failed"])
+        return answer["succeeded"]
+
+    @staticmethod
+    def cannot_work():
+        """What a notebook needs and does not have under all layers together."""
+        import sympy
+
+        problems = []
+        try:
+            Path(sympy.__file__).read_bytes()
+        except OSError as error:
+            problems.append(f"the isolated process cannot read Python's own libraries ({error}); "
+                            "start grading as the user who owns them")
+        try:
+            Path("trial").write_bytes(b"x" * 100)
+        except OSError as error:
+            problems.append(f"the isolated process cannot write in its scratch folder ({error})")
+        return problems
+
+    def report(self):
+        """Try every layer alone, then all that are in force together."""
+        outside = os.path.join(self.base, "outside")
+        os.mkdir(outside, 0o777)
+        own = os.path.join(outside, "file")
+        Path(own).write_text("a file outside")
+        os.chmod(own, 0o666)
+        os.chmod(outside, 0o777)
+        everywhere = self.target | {"files": [*self.target["files"], own]}
+        layers = {}
+        for layer in LAYERS:
+            why_not = self.why_not(layer, self.target if layer == NAMESPACES else everywhere)
+            layers[layer] = {"in force": why_not is None, "why not": why_not or ""}
+            if why_not is None:
+                self.layers.append(layer)
+        layers[NAMESPACES]["made by"] = self.made_by if layers[NAMESPACES]["in force"] else ""
+        try:
+            not_stopped = self.tried(self.layers, None, everywhere)
+        except IsolationError as error:
+            not_stopped = [f"the layers do not work together: {error}"]
+        scratch.remove_folder(outside)
+        return {"layers": layers, "not stopped": not_stopped, "landlock version": isolation.landlock_version(),
+                "scratch in memory": self.own_scratch}
+
+    def why_not(self, layer, target):
+        if layer in self.off:
+            return "switched off"
+        if layer == NAMESPACES and self.made_by is None:
+            return self.why_no_namespaces
+        # A limit binds users, and root is none: it is tried as the user it is for.
+        alone = [LIMITS, PRIVILEGES] if layer == LIMITS else [layer]
+        try:
+            succeeded = self.tried(alone, isolation.must_stop(layer), target)
+        except IsolationError as error:
+            if layer == NAMESPACES and self.own_scratch:
+                self.own_scratch = False
+                return self.why_not(layer, target)
+            return error.strerror
+        return f"it did not stop these attempts: {', '.join(succeeded)}" if succeeded else None
+
+    # -- serving
+
+    def serve(self):
+        while True:
+            message, handles = receive(self.control)
+            if message is None:
+                return
+            if "run" not in message:
+                continue  # a late "kill": what it was meant for has ended
+            job, records = handles
+            send(self.control, self.run(message["run"], job, records))
+
+    def run(self, run, job, records):
+        folder = self.new_scratch(self.layers)
+        child = os.fork()
+        if child == 0:
+            self.be_notebook(run, job, records, folder)
+        os.close(job)
+        os.close(records)
+        full = self.wait(child, None if folder == self.base else folder, run["limits"]["scratch_bytes"])
+        status = self.end_all(child)
+        self.remove_scratch(folder)
+        how = {"signal": os.WTERMSIG(status)} if os.WIFSIGNALED(status) else {"code": os.WEXITSTATUS(status)}
+        return {"ended": how, "scratch full": full}
+
+    def wait(self, child, folder, most_bytes):
+        """Wait until the child has ended, must be killed, or has filled its folder on disk (then: True)."""
+        handle = os.pidfd_open(child)
+        try:
+            while True:
+                ready, _, _ = select.select([handle, self.control], [], [], LOOK_EVERY if folder else None)
+                if ready:
+                    return False  # it ended, or whatever came in, or nobody is there: it is to end
+                if scratch.used_bytes(folder, most_bytes) > most_bytes:
+                    return True
+        finally:
+            os.close(handle)
+
+    def be_notebook(self, run, job, records, folder):
+        """In the child: give up all that a notebook must not have, and run it. Does not return."""
+        code = NOT_CONFINED
+        try:
+            # Away from the low numbers first, so that neither is written over.
+            job, records = os.dup2(job, 200, False), os.dup2(records, 201, False)
+            os.dup2(job, JOB, False)
+            os.dup2(records, RECORDS, False)
+            os.dup2(1, 2)
+            os.closerange(RECORDS + 1, 1 << 20)
+            self.confine(self.layers, run["limits"], folder)
+            os.environ.update(HOME=folder, TMPDIR=folder, MPLCONFIGDIR=folder)
+            code = 1
+            from coursework.grading import notebook
+
+            notebook.run(JOB, RECORDS, run["limits"], folder)
+            code = 0
+        finally:
+            os._exit(code)
+
+
+def receive(control):
+    """The next message and its handles; (None, []) when the other side is gone."""
+    data, handles, _, _ = socket.recv_fds(control, LONGEST_MESSAGE, 2)
+    return (json.loads(data) if data else None), handles
+
+
+def send(control, message):
+    control.send(json.dumps(message).encode())
+
+
+def main():
+    control = socket.socket(fileno=int(sys.argv[1]))
+    start = receive(control)[0]["start"]
+    readable = isolation.readable_paths()
+    made_by, why_not = start["namespaces made by"], start["why no namespaces"]
+    if made_by == "unshare":
+        why_not = into_namespaces(control, readable)
+        made_by = None if why_not else "unshare"
+    server = WarmParent(control, int(sys.argv[2]), start, readable, made_by, why_not)
+    report = server.report()
+    gc.collect()
+    gc.freeze()
+    send(control, {"ready": report})
+    with contextlib.suppress(ConnectionError, BrokenPipeError):
+        server.serve()

@@ -1,0 +1,106 @@
+"""The sealed questions that come with this package, found by name.
+
+A name is ``'notebook/question'``; the questions of one notebook lie in one file.
+"""
+
+import difflib
+import functools
+import json
+from importlib import resources
+
+from . import sealing
+from .kinds import Blank, Fault, Reading, Undecidable, fault, fingerprint, read
+from .mistakes import message
+from .reply import Reply
+
+FORMAT = 1
+
+
+class NoSuchQuestion(KeyError):
+    """There is no question of that name; the message names the nearest one."""
+
+    def __str__(self):
+        return self.args[0]
+
+
+@functools.cache
+def notebook_questions(notebook):
+    """The public parts and the lockers of all questions of a notebook, by full name."""
+    file = resources.files(__package__) / 'sealed' / f'{notebook}.json'
+    if not notebook.replace('-', '').isalnum() or not file.is_file():
+        return {}
+    data = json.loads(file.read_text('utf8'))
+    if data['format'] != FORMAT:
+        raise RuntimeError(f'The questions of {notebook} need another version of this package: install the one '
+                           'that came with the notebook.')
+    return data['questions']
+
+
+def find_question(name):
+    """Give a question by its full name.
+
+    Raises
+    ------
+    NoSuchQuestion
+    """
+    notebook, _, _ = name.partition('/')
+    questions = notebook_questions(notebook)
+    if name in questions:
+        return questions[name]
+    folder = resources.files(__package__) / 'sealed'
+    notebooks = sorted(file.name.removesuffix('.json') for file in folder.iterdir() if file.name.endswith('.json'))
+    near = difflib.get_close_matches(name, [*questions, *notebooks], 1, 0.5)
+    raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ''))
+
+
+def judge(name, question, plain):
+    """Compare an answer, as plain data, with what is sealed. Gives the reply and the key it earned."""
+    try:
+        reading = read(question, plain)
+        text = fingerprint(question, reading)
+    except Blank:
+        return Reply(name, 'not attempted', '', ['Put your answer in place of the `...` and run the cells again.']), None
+    except Fault as found:
+        return Reply(name, 'invalid', found.note, [found.message]), None
+    except Undecidable as found:
+        return Reply(name, 'undecided', 'undecidable', [f'{found} Try another form, or ask your instructor to '
+                                                        'look at it.']), None
+    key = sealing.slow_key(question['salt'], text)
+    sealed = question['lockers'].get(sealing.locker(key))
+    if sealed is None:
+        found = fault(question, reading)
+        if found:
+            return Reply(name, 'invalid', found.note, [found.message]), None
+        return Reply(name, 'wrong', '', [what_can_be_said(question, plain, reading)]), None
+    content = sealing.unseal(sealed, key)
+    if content['outcome'] == 'correct':
+        return Reply(name, 'correct'), key
+    notes = content['notes']
+    messages = [message(question, note, details) for note, details in notes]
+    if len(messages) > 1:
+        messages = [messages[0], *(f'It may also be this, which comes to the same here. {text}' for text in messages[1:])]
+    return Reply(name, 'wrong', notes[0][0], messages), key
+
+
+def opened(question, key, purpose):
+    """Open what lies beside a locker: the worked solution, or hints; ``None`` where there is nothing."""
+    sealed = question.get('beside', {}).get(sealing.locker(key, purpose))
+    return None if sealed is None else sealing.unseal(sealed, key, purpose)
+
+
+def what_can_be_said(question, plain, reading: Reading):
+    """What a wrong answer has right, so that its author does not look for the fault there."""
+    kind = question.get('result', question['kind'])
+    said = {
+        'direction cosine matrix': 'This is a direction cosine matrix, but not the one that is asked for.',
+        'quaternion': 'This is a quaternion of unit length, but not the one that is asked for.',
+        'Euler angles': 'These angles give another orientation than the one that is asked for.',
+        'axis and angle': 'This axis and angle give another orientation than the one that is asked for.',
+    }.get(kind, 'The form is right, the value is not.')
+    named = {node[1] for node in plain['nodes'] if node[0] == 'symbol'}
+    missing = [symbol for symbol in question.get('symbols', {}) if symbol not in named]
+    if question.get('symbols') and named and missing:
+        said += f' It holds no {" and no ".join(f"`{symbol}`" for symbol in missing)}.'
+    if any(node[0] == 'float' for node in plain['nodes']) and question.get('tolerance') is None and reading.text is None:
+        said += ' It holds decimal fractions; where an exact answer is asked for, write `sm.Rational(1, 2)` and `sm.sqrt(3)`.'
+    return said
