@@ -1,7 +1,7 @@
 import { AXES, IDENTITY, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromBodyFixed, dcmFromQuaternion, dot, gimbalLockMargin,
   length, multiply, nearestDcm, scale, times, transpose, unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, follow, liveText, onceAFrame, open, player, put, slider,
-  stage, words } from './shared.js';
+  stage, write, writeWords } from './shared.js';
 
 // As in motion.py.
 const MOMENTS = { racket: [1.2, 16, 17], book: [0.8424, 1.7748, 2.5524] };
@@ -237,7 +237,7 @@ export function render({ model, el }) {
   // Beside the drawing, so that on a phone it stays in view with it.
   const left = stage(sheet, text);
   left.append(element('div', { class: 'clock' }, clock.element, reset));
-  open(el, left,
+  const figure = open(el, left,
     element('div', { class: 'readouts' }, plot.svg,
       element('table', { class: 'runs' }, element('thead', {}, element('tr', {}, ...heads)), element('tbody', {}, ...rows.map((row) => row.element))), aside),
     element('div', { class: 'controls pairs' },
@@ -259,15 +259,13 @@ export function render({ model, el }) {
       return;
     }
     // The rest is computed in the next frames, and drawn as it grows.
+    put(figure, 'aria-busy', String(run.last < wanted));
     if (run.last < wanted) redraw();
     const k = Math.min(wanted, run.last);
 
-    if (clock.time !== time) clock.set(time);
+    clock.at(time);
     body.show(settings.body);
-    if (aside.dataset.body !== settings.body) {
-      aside.dataset.body = settings.body;
-      aside.replaceChildren(...words(`Dashed: the reference, with steps ten times finer. $\\mathbf{H}$: angular momentum of the ${settings.body}, fixed in $N$.`));
-    }
+    writeWords(aside, `Dashed: the reference, with steps ten times finer. $\\mathbf{H}$: angular momentum of the ${settings.body}, fixed in $N$.`);
     axis.show(settings.axis);
     method.show(settings.method);
     step.show(settings.step);
@@ -276,7 +274,7 @@ export function render({ model, el }) {
     const values = Object.fromEntries(rows.map((row) => {
       const value = [run.faultAt(k, row.name), run.errorAt(k, row.name)];
       row.pick.checked = row.name === name;
-      [row.faulty, row.wrong].forEach((cell, i) => { if (cell.textContent !== power(value[i])) cell.textContent = power(value[i]); });
+      [row.faulty, row.wrong].forEach((cell, i) => write(cell, power(value[i])));
       return [row.name, value];
     }));
     const matrix = MATRICES[name](run.states[k]);

@@ -1,7 +1,7 @@
 import { AXES, IDENTITY, add, axisAngleFromDcm, dcmFromBodyFixed, dcmFromQuaternion, dot, length, multiply,
   nearestDcm, quaternionFromAxisAngle, quaternionFromDcm, scale, slerp, subtract, times, transpose, unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, glide,
-  group, liveText, numberField, numberTable, onceAFrame, open, plain, player, put, radians, slider, stage } from './shared.js';
+  group, liveText, numberField, numberTable, onceAFrame, open, plain, player, put, radians, readout, slider, stage } from './shared.js';
 
 // As in quaternion.py: pixels, places on the sheet, seconds.
 const SIZE = 96, KNOB = 1.32, MIDDLE = [142, 130], RADIUS = 70, SECONDS = 4, BALL = 104, SAMPLES = 60;
@@ -31,8 +31,6 @@ export function render({ model, el }) {
   draw();
   return follow(model, ['view', 'axis', 'angle', 'first', 'second', 'unit_vector', 'share'], redraw);
 }
-
-const readout = (title, ...parts) => element('div', { class: 'readout' }, element('div', { class: 'title' }, element('span', {}, title)), ...parts);
 
 // ---- q and -q ------------------------------------------------------------------------------------------
 
@@ -65,8 +63,6 @@ function doubleView(model) {
       const follower = followTurn(sheet, { axis, arm: IDENTITY[part], angle, at });
       return (to) => turnTo(follower(to));
     } });
-  // Inside a drawing touch-action has no effect: a finger on a grip would scroll the page.
-  sheet.svg.addEventListener('touchstart', (event) => { if (event.target.dataset.part) event.preventDefault(); });
   const bearing = (at) => Math.atan2(MIDDLE[1] - at[1], at[0] - MIDDLE[0]);
 
   const angle = slider({ symbol: '$\\theta$', name: 'theta', min: 0, max: 720, change: turnTo });
@@ -96,8 +92,8 @@ function doubleView(model) {
     element('div', { class: 'controls' }, angle.element, element('div', { class: 'row-of-controls' }, once, back),
       group('Axis', 'row-of-controls', element('span', { class: 'symbol', 'aria-hidden': 'true' }, '$\\hat{e}$'),
         ...fields.map((field) => field.element), ...presets)),
-    element('div', { class: 'readouts' }, readout('Two quaternions of one orientation', quaternions.element),
-      readout('${}^A\\mathbf{C}^N$, from either of them', matrix.element))];
+    element('div', { class: 'readouts' }, readout(['Two quaternions of one orientation'], quaternions.element),
+      readout(['${}^A\\mathbf{C}^N$, from either of them'], matrix.element))];
 
   self.draw = () => {
     const axis = model.get('axis'), theta = model.get('angle'), q = quaternionFromAxisAngle(axis, theta), dcm = dcmFromQuaternion(q);
@@ -202,7 +198,7 @@ function wayView(model) {
   const self = { redraw() {} };
   const sheet = new Sheet({ bounds: [-180, -142, 180, 222], size: BALL, changed: () => self.redraw(),
     name: 'The sphere that the tip of a unit vector moves on, its three ways from A to B, and below it their speeds.' });
-  let edited = 'second', kept = {}, begun = false;
+  let edited = 'second', kept = {};
   const ends = choice({ name: 'Set the angles z-x-y of', options: [['first', 'A, the start'], ['second', 'B, the end']], change(value) {
     edited = value;
     self.redraw();
@@ -220,8 +216,8 @@ function wayView(model) {
   self.parts = [stage(sheet, text),
     element('div', { class: 'controls' }, way.element, element('div', { class: 'row-of-controls' }, tip.element, ends.element),
       ...angles.map((angle) => angle.element)),
-    element('div', { class: 'readouts' }, readout('Now', table.element),
-      readout('Row lengths of the blended entries', lengths.element))];
+    element('div', { class: 'readouts' }, readout(['Now'], table.element),
+      readout(['Row lengths of the blended entries'], lengths.element))];
   [...table.element.querySelectorAll('.head-of-row')].slice(1).forEach((head, k) => head.classList.add(WAYS[k]));
 
   self.draw = () => {
@@ -231,10 +227,7 @@ function wayView(model) {
     ends.show(edited);
     angles.forEach((angle, n) => angle.show(model.get(edited)[n]));
     tip.show(AXES[k]);
-    if (!begun || Math.abs(way.time - share * SECONDS) > 1e-6) {
-      begun = true;
-      way.set(share * SECONDS);
-    }
+    way.at(share * SECONDS);
     const now = kept.dcms.map((at) => at(share)), speeds = kept.dcms.map((at) => speedAt(at, share)), raw = kept.raw(share);
     table.show(now.map((dcm, n) => (dcm ? [`${fixed(degrees(between(kept.from, dcm)), 1)}°`,
       Number.isNaN(speeds[n]) ? '–' : `${fixed(degrees(speeds[n]), 1)} °/s`] : ['–', '–'])));

@@ -58,6 +58,19 @@ function formula(tex) {
 
 export const words = (text) => text.split('$').map((part, k) => (k % 2 ? formula(part) : part)).filter((part) => part !== '');
 
+// The text of an element, with $...$ in it. While only numbers change the formulas stay: setting them anew would be
+// most of the work of a drag.
+const written = new WeakMap();
+export function writeWords(target, text) {
+  const before = written.get(target) ?? [], parts = text.split('$');
+  written.set(target, parts);
+  if (parts.length === before.length && parts.every((part, k) => k % 2 === 0 || part === before[k])) {
+    parts.forEach((part, k) => { if (part !== before[k]) target.childNodes[k].data = part; });
+  } else {
+    target.replaceChildren(...parts.map((part, k) => (k % 2 ? formula(part) : document.createTextNode(part))));
+  }
+}
+
 // Numbers with a real minus and as much room for the sign of a positive one.
 export function fixed(value, digits = 3) {
   const text = Math.abs(value).toFixed(digits);
@@ -545,18 +558,11 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
 // Text under the figure. It changes at once for the eye, and is read aloud when it has rested.
 export function liveText() {
   const seen = element('p', { class: 'words', 'aria-hidden': 'true' }), heard = element('p', { class: 'unseen', role: 'status' });
-  let now = null, parts = [], wait = 0;
+  let now = null, wait = 0;
   return { element: element('div', {}, seen, heard), say(text) {
     if (text === now) return;
     now = text;
-    // While only numbers change the formulas stay: setting them anew is most of the work of a drag.
-    const next = text.split('$');
-    if (next.length === parts.length && next.every((part, k) => k % 2 === 0 || part === parts[k])) {
-      next.forEach((part, k) => { if (part !== parts[k]) seen.childNodes[k].data = part; });
-    } else {
-      seen.replaceChildren(...next.map((part, k) => (k % 2 ? formula(part) : document.createTextNode(part))));
-    }
-    parts = next;
+    writeWords(seen, text);
     clearTimeout(wait);
     wait = setTimeout(() => { heard.textContent = spoken(text); }, 600);
   } };
@@ -573,13 +579,17 @@ export function onceAFrame(draw) {
 // A button and a slider for something that runs from 0 to `seconds`. It starts only when asked; where the
 // reader wants less motion it goes on in steps of half a second.
 export function player({ name, seconds, step = 0.05, show }) {
-  let now = 0, before = 0, frame = 0;
+  let now = 0, before = null, frame = 0;
   const time = slider({ symbol: '$t$', name, unit: 'seconds', sign: 's', factor: 1, min: 0, max: seconds, step, more: () => '',
     change: (value) => { pause(); set(value); } });
   const press = button('Play', () => (frame ? pause() : play()));
-  function set(value) {
+  // Where the state says that it stands.
+  function at(value) {
     now = value;
     time.show(value);
+  }
+  function set(value) {
+    at(value);
     show(value);
   }
   function pause() {
@@ -588,6 +598,8 @@ export function player({ name, seconds, step = 0.05, show }) {
     write(press, 'Play');
   }
   function tick(moment) {
+    // The time of a picture may lie before the click that asked for it: only pictures are compared.
+    before ??= moment;
     const passed = Math.min((moment - before) / 1000, 1);
     if (!press.isConnected) { pause(); return; }
     if (!calm() || passed >= 0.5) {
@@ -598,11 +610,11 @@ export function player({ name, seconds, step = 0.05, show }) {
   }
   function play() {
     if (now >= seconds) set(0);
-    before = performance.now();
+    before = null;
     write(press, 'Pause');
     frame = requestAnimationFrame(tick);
   }
-  return { element: group(name, 'player', press, time.element), set, pause, play, get time() { return now; } };
+  return { element: group(name, 'player', press, time.element), at, set, pause };
 }
 
 // Moves through a number from 0 to 1 in `seconds`, or jumps to the end for readers who want less motion.

@@ -1,7 +1,7 @@
 import { AXES, IDENTITY, add, axisAngleFromDcm, dot, multiply, scale, simpleDcm, subtract, times, transpose,
   unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, group, liveText,
-  numberTable, onceAFrame, open, player, put, slider, stage, words, wrapped } from './shared.js';
+  numberTable, onceAFrame, open, player, put, readout, slider, stage, wrapped, write, writeWords } from './shared.js';
 
 const REACH = 1.25, BEFORE = 0.66, SIZE = 96, SECONDS = 6;   // as in successive.py
 const LETTERS = 'NABCD';
@@ -36,7 +36,7 @@ function compared(turns, fixed, compare) {
 }
 
 export function render({ model, el }) {
-  let lit = null, begun = false;
+  let lit = null;
   const state = () => ({ turns: model.get('turns'), kind: model.get('fixed'), compare: model.get('compare'), share: model.get('share') });
   const setTurn = (k, turn) => change(model, { turns: state().turns.map((old, n) => (n === k ? turn : old)) });
 
@@ -49,8 +49,6 @@ export function render({ model, el }) {
       const follower = followTurn(sheet, { axis: axisOf(frames, now, kind, k), arm: frames[k][part], angle, at });
       return (to) => setTurn(k, [axis, wrapped(follower(to))]);
     } });
-  // Inside a drawing touch-action has no effect: a finger on a grip would scroll the page.
-  sheet.svg.addEventListener('touchstart', (event) => { if (event.target.dataset.part) event.preventDefault(); });
   const redraw = onceAFrame(draw);
 
   const rows = LETTERS.slice(1).split('').map((letter, k) => {
@@ -83,8 +81,7 @@ export function render({ model, el }) {
 
   const factors = LETTERS.slice(1).split('').map(factor);
   const product = element('div', { class: 'factors', role: 'group', 'aria-label': 'The product, factor by factor' }, ...factors.map((one) => one.element));
-  const title = element('span', {}), ends = element('span', {});
-  const titled = (span) => element('div', { class: 'title' }, span);
+  const title = element('span', {});
   const result = numberTable({ name: 'Direction cosine matrix of the end', kind: 'bracket', rows: ['', '', ''], columns: AXES.map((axis) => hat('n', axis)),
     names: AXES.map((i) => AXES.map((j) => `row ${i}, column n ${j}`)),
     light(i, j) {
@@ -97,8 +94,7 @@ export function render({ model, el }) {
       element('div', { class: 'row-of-controls' }, about.element, compare.element), ...rows.map((row) => row.element),
       element('div', { class: 'row-of-controls' }, more, fewer)),
     element('div', { class: 'readouts' },
-      element('div', { class: 'readout' }, titled(title), product),
-      element('div', { class: 'readout' }, titled(ends), result.element)));
+      readout([title], product), readout(['Multiplied out'], result.element)));
   const heads = [...result.element.querySelectorAll('.head-of-row')].slice(-3);
 
   function draw() {
@@ -108,7 +104,7 @@ export function render({ model, el }) {
     about.show(kind);
     compare.show(comparison);
     PAIRS.forEach((_, k) => { options[k + 1].hidden = options[k + 1].disabled = k > turns.length - 2; });
-    say(options.at(-1), kind === 'body' ? 'the same turns, space fixed' : 'the same turns, body fixed');
+    write(options.at(-1), kind === 'body' ? 'the same turns, space fixed' : 'the same turns, body fixed');
     rows.forEach((row, k) => {
       row.element.hidden = k >= turns.length;
       if (k >= turns.length) return;
@@ -118,14 +114,10 @@ export function render({ model, el }) {
     });
     more.disabled = turns.length === 4;
     fewer.disabled = turns.length === 1;
-    if (!begun || Math.abs(chain.time - share * SECONDS) > 1e-6) {
-      begun = true;
-      chain.set(share * SECONDS);
-    }
+    chain.at(share * SECONDS);
     factors.forEach((one, k) => one.show(now[k] ?? turns[k], k < now.length, kind, turns.length));
-    set(title, `${dcmName(end, 'N')} as a product, newest turn on the ${kind === 'body' ? 'left' : 'right'}`);
-    set(ends, `Multiplied out`);
-    heads.forEach((head, k) => set(head, hat(end, AXES[k])));
+    writeWords(title, `${dcmName(end, 'N')} as a product, newest turn on the ${kind === 'body' ? 'left' : 'right'}`);
+    heads.forEach((head, k) => writeWords(head, hat(end, AXES[k])));
     result.show(dcm.map((row) => row.map((entry) => fixed(entry))));
     sheet.draw(() => picture(sheet, { turns, kind, share, other, lit }));
     text.say(sentence(end, kind, dcm, comparison, otherDcm, lit));
@@ -133,17 +125,6 @@ export function render({ model, el }) {
 
   draw();
   return follow(model, ['turns', 'fixed', 'compare', 'share'], redraw);
-}
-
-// Mathematics in a title is set anew only where the text is another.
-function set(target, text) {
-  if (target.dataset.text === text) return;
-  target.dataset.text = text;
-  target.replaceChildren(...words(text));
-}
-
-function say(target, text) {
-  if (target.textContent !== text) target.textContent = text;
 }
 
 // One simple matrix of the product with its frames, axis and angle.
@@ -158,11 +139,11 @@ function factor(letter, k) {
     const [axis, angle] = turn, body = kind === 'body', entries = simpleDcm(axis, angle).flat();
     // Body fixed turns stand to the left of those before, space fixed ones to the right.
     box.style.order = body ? count - k : k;
-    set(head, body ? dcmName(letter, LETTERS[k]) : `$\\mathbf{C}_${axis}$`);
-    set(foot, `${hat(body ? LETTERS[k] : 'N', axis)} ${angleText(angle)}`);
+    writeWords(head, body ? dcmName(letter, LETTERS[k]) : `$\\mathbf{C}_${axis}$`);
+    writeWords(foot, `${hat(body ? LETTERS[k] : 'N', axis)} ${angleText(angle)}`);
     cells.forEach((cell, n) => {
       const entry = entries[n], whole = Math.round(entry);
-      say(cell, Math.abs(entry - whole) < 1e-12 ? String(whole).replace('-', '\u2212') : fixed(entry, 2).trim());
+      write(cell, Math.abs(entry - whole) < 1e-12 ? String(whole).replace('-', '\u2212') : fixed(entry, 2).trim());
     });
     put(box, 'aria-label', `Turn ${k + 1}: ${angleText(angle)} about ${body ? LETTERS[k].toLowerCase() : 'n'} ${axis}`);
   } };

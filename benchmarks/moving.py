@@ -1,0 +1,93 @@
+"""What a drag in each moving figure costs, and what all of them weigh: ``python -m benchmarks.moving``.
+
+A figure stands alone on a page opened from disk. Its first slider is moved once for each picture, as a
+drag moves it, and what the page's main thread was busy for is divided by the number of pictures: scripts,
+style, layout and painting. The browser pretends to have a processor four times as slow. A picture that takes longer
+than 16 ms comes late.
+
+Weight is that of the scripts that a page loads, after gzip.
+"""
+
+import gzip
+import platform
+import shutil
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+from orientation import moving
+from orientation.moving import bundle
+
+from .pages import BROWSERS
+
+FIGURES = [getattr(moving, name) for name in moving.__all__ if name != 'MovingFigure']
+SLOWED, FRAME, HEAVIEST = 4, 16, 60_000   # times, milliseconds, bytes
+PICTURES, ROUNDS = 120, 5
+PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{kind}</title>
+<style>body {{ width: 714px; margin: auto; font: 16px/1.6 sans-serif; }} figure {{ margin: 0; }} {style}</style></head>
+<body>{still}<script>{shared}</script><script>{script}</script></body></html>"""
+DRAG = """async (pictures) => {
+  const range = document.querySelector('.live input[type=range], .live input');
+  const [low, high] = range.type === 'range' ? [Number(range.min), Number(range.max)] : [0, 1];
+  for (let k = 0; k < pictures; k += 1) {
+    await new Promise((done) => requestAnimationFrame(done));
+    range.value = String(low + (high - low) * (k + 0.5) / pictures);
+    range.dispatchEvent(new Event('input', { bubbles: true }));
+  }
+  await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+}"""
+
+
+def busy(session):
+    """Milliseconds that the main thread has worked for so far."""
+    metrics = session.send('Performance.getMetrics')['metrics']
+    return 1000 * next(metric['value'] for metric in metrics if metric['name'] == 'TaskDuration')
+
+
+def milliseconds(browser, figure, folder):
+    """Median over some drags of the main thread's time for one picture."""
+    page_file = Path(folder) / f'{figure.kind}.html'
+    page_file.write_text(PAGE.format(kind=figure.kind, style=bundle.style(), still=figure().still(),
+                                     shared=bundle.shared_script(), script=bundle.script(figure.kind)), 'utf8')
+    page = browser.new_context(viewport={'width': 1000, 'height': 900}).new_page()
+    session = page.context.new_cdp_session(page)
+    session.send('Performance.enable', {'timeDomain': 'timeTicks'})
+    session.send('Emulation.setCPUThrottlingRate', {'rate': SLOWED})
+    page.goto(page_file.as_uri())
+    page.wait_for_selector('.moving[data-ready]')
+    page.evaluate(DRAG, PICTURES)   # the first pictures also compile the scripts
+    spent = []
+    for _ in range(ROUNDS):
+        begin = busy(session)
+        page.evaluate(DRAG, PICTURES)
+        spent.append((busy(session) - begin) / PICTURES)
+    page.context.close()
+    return statistics.median(spent)
+
+
+def main():
+    executable = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if executable is None:
+        sys.exit('There is no Chromium on this machine to open the figures with.')
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        browser = playwright.chromium.launch(executable_path=executable, args=[
+            '--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+            '--no-first-run'])
+        print(f'Chromium {browser.version}, {platform.machine()}; {SLOWED} times slowed; {FRAME} ms are one picture.\n')
+        print('| figure | main thread, ms for each picture of a drag | kB after gzip |')
+        print('|---|---|---|')
+        weights = [len(gzip.compress(bundle.shared_script().encode(), 6))]
+        for figure in FIGURES:
+            weights.append(len(gzip.compress(bundle.script(figure.kind).encode(), 6)))
+            spent = milliseconds(browser, figure, folder)
+            print(f'| {figure.kind} | {spent:.1f} | {weights[-1] / 1000:.1f} |', flush=True)
+        browser.close()
+    print(f'| what they share | | {weights[0] / 1000:.1f} |')
+    print(f'| all of our own JavaScript | | {sum(weights) / 1000:.1f}, of {HEAVIEST // 1000} at most |')
+
+
+if __name__ == '__main__':
+    main()
