@@ -32,6 +32,7 @@ All of it is standard library and system calls; nothing here knows about noteboo
 
 import contextlib
 import ctypes
+import encodings.idna  # noqa: F401  an attempt needs it where its file can no longer be read
 import errno
 import mmap
 import os
@@ -125,8 +126,13 @@ OUTSIDER = 65534
 SCRATCH = "/scratch"
 
 
-def _names(path):
-    return dict.fromkeys((path, os.path.realpath(path)))
+def _places(readable):
+    """Where each readable path must be found: where it is named, and where its links lead."""
+    places = {}
+    for path in readable:
+        for name in (path, os.path.realpath(path)):
+            places.setdefault(name, path)
+    return places
 
 
 def bubblewrap_command(bubblewrap, readable):
@@ -140,9 +146,13 @@ def bubblewrap_command(bubblewrap, readable):
     # it is root; the notebook's process gives all of it up.
     for capability in ("SYS_ADMIN", "SETUID", "SETGID", "KILL", "CHOWN", "DAC_OVERRIDE", "FOWNER"):
         command += ["--cap-add", f"CAP_{capability}"]
-    for path in readable:
-        for name in _names(path):
-            command += ["--ro-bind", path, name]
+    places = _places(readable)
+    # Folders on the way would be closed to the user that root gives the code to.
+    on_the_way = {str(parent) for name in places for parent in Path(name).parents} - {"/"} - set(places)
+    for folder in sorted(on_the_way):
+        command += ["--perms", "0755", "--dir", folder]
+    for name, path in places.items():
+        command += ["--ro-bind", path, name]
     for device in DEVICES:
         command += ["--dev-bind", device, device]
     command += ["--tmpfs", SCRATCH, "--symlink", SCRATCH, "/dev/shm"]
@@ -169,13 +179,12 @@ def enter_own_root(readable):
     """Change to a root folder that holds `readable`, a few devices and a scratch folder, and is read only."""
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
     trees = []
-    for path in [*readable, *DEVICES]:
-        for name in _names(path):
-            # The first flag: a copy that can be mounted elsewhere.
-            tree = _system_call("open_tree", OPEN_TREE, AT_FDCWD, path.encode(), 1 | os.O_CLOEXEC | AT_RECURSIVE)
-            attributes = READ_ONLY | NO_SETUID | (0 if path in DEVICES else NO_DEVICES)
-            _set_attributes(tree, b"", AT_EMPTY_PATH | AT_RECURSIVE, attributes)
-            trees.append((tree, name, os.path.isdir(path)))
+    for name, path in _places([*readable, *DEVICES]).items():
+        # The first flag: a copy that can be mounted elsewhere.
+        tree = _system_call("open_tree", OPEN_TREE, AT_FDCWD, path.encode(), 1 | os.O_CLOEXEC | AT_RECURSIVE)
+        attributes = READ_ONLY | NO_SETUID | (0 if path in DEVICES else NO_DEVICES)
+        _set_attributes(tree, b"", AT_EMPTY_PATH | AT_RECURSIVE, attributes)
+        trees.append((tree, name, os.path.isdir(path)))
     new = "/tmp"
     _mount_memory(new, "size=1m,mode=0755")
     mask = os.umask(0o022)
@@ -375,7 +384,8 @@ def _tcp(target):
 def _udp(target):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
         udp.connect(("127.0.0.1", target["udp"]))
-        udp.send(b"x")
+        for _ in range(2):  # the second hears that nobody received the first
+            udp.send(b"x")
 
 
 def _local(target):

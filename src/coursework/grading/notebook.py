@@ -162,13 +162,14 @@ class _Notebook:
                 found["plain"] = to_plain(answer, self.calls(question))
             except NotPlain as error:
                 found["unreadable"] = str(error)[:LONGEST_ERROR]
+            self.emit(found)
 
-        outcome = self.step(["answer", question], read, self.limits["answer"])
-        if outcome["outcome"] != "done":
-            found["unreadable"] = outcome["error"]
-        if "plain" in found:
+        end = self.step(["answer", question], read, self.limits["answer"])
+        if end["outcome"] != "done":
+            found.pop("plain", None)
+            self.emit(found | {"unreadable": end["error"]})
+        elif "plain" in found:
             self.answered.add(question)
-        self.emit(found)
 
     def calls(self, question):
         calls = self.job["calls"].get(question)
@@ -193,6 +194,7 @@ class _Notebook:
                 self.start_timers(seconds["processor"], seconds["wall"])
                 action()
             finally:
+                sys.setrecursionlimit(self.recursion_limit)
                 self.stop_timers()
         except OutOfTime:
             end |= {"outcome": "timeout", "error": "It took longer than it may."}
@@ -200,7 +202,6 @@ class _Notebook:
             end |= {"outcome": "memory", "error": "It took more memory than it may."}
         except BaseException as error:
             end |= {"outcome": "error", **self.described(error)}
-        sys.setrecursionlimit(self.recursion_limit)
         if step[0] == "cell" and threading.active_count() > 1:
             end["threads"] = True
         self.emit(end)
@@ -209,8 +210,10 @@ class _Notebook:
         return end
 
     def start_timers(self, processor, wall):
+        # Afresh each time: an earlier cell may have ignored or blocked them.
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, self.time_is_up)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGPROF, signal.SIGALRM))
         signal.setitimer(signal.ITIMER_PROF, processor)
         signal.setitimer(signal.ITIMER_REAL, wall)
 

@@ -205,7 +205,8 @@ class WarmParent:
 
         problems = []
         try:
-            Path(sympy.__file__).read_bytes()
+            for module in (os, sympy):
+                Path(module.__file__).read_bytes()
         except OSError as error:
             problems.append(f"the isolated process cannot read Python's own libraries ({error}); "
                             "start grading as the user who owns them")
@@ -217,7 +218,8 @@ class WarmParent:
 
     def report(self):
         """Try every layer alone, then all that are in force together."""
-        outside = os.path.join(self.base, "outside")
+        # Namespaces hide the file that it is tried on from all; the other layers get one within.
+        outside = os.path.join(self.base, "inside namespaces")
         os.mkdir(outside, 0o777)
         own = os.path.join(outside, "file")
         Path(own).write_text("a file outside")

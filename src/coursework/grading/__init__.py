@@ -1,0 +1,1 @@
+"""Safe grading: students' notebooks in, their answers out as plain data, marks and reports from those."""

@@ -1,0 +1,95 @@
+"""The records of a notebook's process, read as what they are: bytes that a student may have written.
+
+What does not have exactly the form of a record is counted and dropped. Nothing is repaired.
+"""
+
+import json
+
+from coursework.plain import NotPlain, read_plain
+
+LONGEST_LINE = 4 << 20
+MOST_BYTES = 16 << 20  # of all records of one run
+LONGEST_NAME = 200
+LONGEST_TEXT = 1000
+OUTCOMES = ("done", "error", "timeout", "memory")
+
+
+class Records:
+    """Takes bytes as they come and gives the records that are whole and well formed."""
+
+    def __init__(self, number_of_cells):
+        self.number_of_cells = number_of_cells
+        self.unfinished = bytearray()
+        self.received = 0
+        self.damaged = 0
+
+    @property
+    def too_many(self):
+        """Whether more came than any honest notebook sends."""
+        return self.received > MOST_BYTES or len(self.unfinished) > LONGEST_LINE
+
+    def feed(self, data):
+        self.received += len(data)
+        self.unfinished += data
+        if self.too_many or b"\n" not in data:
+            return []
+        *lines, rest = self.unfinished.split(b"\n")
+        self.unfinished = rest
+        records = [self.record(bytes(line)) for line in lines]
+        self.damaged += records.count(None)
+        return [record for record in records if record is not None]
+
+    def record(self, line):
+        """One line as a record, or None."""
+        try:
+            record = json.loads(line.decode("utf-8"), parse_constant=_refuse)
+            if b"\\u" in line:
+                json.dumps(record, ensure_ascii=False).encode("utf-8")  # half characters fail here
+            return record if isinstance(record, dict) and self.well_formed(record) else None
+        except (ValueError, RecursionError, NotPlain):
+            return None
+
+    def well_formed(self, record):
+        keys = set(record)
+        if keys == {"done"}:
+            return record["done"] is True
+        if keys == {"begin"}:
+            return self.is_step(record["begin"])
+        if "end" in keys:
+            return (
+                keys <= {"end", "outcome", "error", "line", "threads"}
+                and self.is_step(record["end"])
+                and record.get("outcome") in OUTCOMES
+                and is_text(record.get("error", ""), LONGEST_TEXT)
+                and is_count(record.get("line", 1), 1, 10**6)
+                and record.get("threads", True) is True
+            )
+        if keys in ({"answer", "from", "cell", "plain"}, {"answer", "from", "cell", "unreadable"}):
+            if "plain" in keys:
+                read_plain(record["plain"])
+            return (
+                is_text(record["answer"], LONGEST_NAME)
+                and record["from"] in ("check", "variable")
+                and (record["cell"] is None or is_count(record["cell"], 0, self.number_of_cells))
+                and is_text(record.get("unreadable", ""), LONGEST_TEXT)
+            )
+        return False
+
+    def is_step(self, step):
+        if not isinstance(step, list) or len(step) != 2:
+            return False
+        if step[0] == "cell":
+            return is_count(step[1], 0, self.number_of_cells)
+        return step[0] == "answer" and is_text(step[1], LONGEST_NAME)
+
+
+def is_text(value, longest):
+    return isinstance(value, str) and len(value) <= longest
+
+
+def is_count(value, first, end):
+    return type(value) is int and first <= value < end
+
+
+def _refuse(constant):
+    raise ValueError(f"{constant} is not JSON")

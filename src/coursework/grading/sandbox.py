@@ -1,0 +1,583 @@
+"""Runs students' notebooks in isolation and hands back their answers as plain data.
+
+:func:`run_notebooks` takes jobs and gives results, both plain JSON. Three kinds of process take part:
+
+- this one, which is trusted: it starts warm parents, keeps the time, reads the records strictly
+  (:mod:`coursework.grading.records`) and puts the results together. It never runs or unpickles
+  anything of a student's, and never repeats it to the console;
+- a warm parent for each worker (:mod:`coursework.grading.warm_parent`), which only forks;
+- a child for each notebook, confined (:mod:`coursework.grading.isolation`), in which the cells run
+  (:mod:`coursework.grading.notebook`).
+
+No verdict is made here, and no right answer is here: marks are decided elsewhere, from the results.
+
+A cell that ends or hangs its process costs only itself: what was recorded before is kept, and the
+notebook is run again without that cell, a limited number of times.
+"""
+
+import contextlib
+import dataclasses
+import json
+import os
+import queue
+import random
+import select
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+from coursework.grading import isolation, records, scratch
+from coursework.grading.isolation import LAYERS, NAMESPACES
+from coursework.grading.warm_parent import NOT_CONFINED
+
+WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
+WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
+ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
+
+
+class WeakIsolation(RuntimeError):
+    """This machine cannot keep student code apart well enough; says what is missing and how to get it."""
+
+
+class WorkerDied(RuntimeError):
+    """The warm parent is gone."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Limits:
+    """What one notebook may use. Seconds are of processor time unless they say wall.
+
+    Wall times are for code that waits; they are longer, so that a busy machine costs nobody an answer.
+    """
+
+    cell_seconds: float = 20
+    cell_wall_seconds: float = 60
+    answer_seconds: float = 10
+    answer_wall_seconds: float = 30
+    notebook_seconds: float = 60
+    notebook_wall_seconds: float = 180  # for all runs of the notebook together
+    grace_seconds: float = 1  # wall, after a limit, before the process is killed
+    memory_bytes: int = 1 << 30  # beyond the libraries
+    file_bytes: int = 32 << 20
+    scratch_bytes: int = 64 << 20
+    open_files: int = 256
+    threads: int = 64
+    runs: int = 8  # of one notebook, in each order
+
+    def for_child(self):
+        """The limits in the words of the process that they bind."""
+        return {
+            "cell": {"processor": self.cell_seconds, "wall": self.cell_wall_seconds},
+            "answer": {"processor": self.answer_seconds, "wall": self.answer_wall_seconds},
+            "processor_seconds": max(1, round(self.notebook_seconds)),
+            "memory_bytes": self.memory_bytes,
+            "file_bytes": self.file_bytes,
+            "scratch_bytes": self.scratch_bytes,
+            "open_files": self.open_files,
+            "threads": self.threads,
+        }
+
+
+class Sandbox:
+    """One warm parent, isolated and tried, that runs one notebook at a time.
+
+    Parameters
+    ----------
+    limits : Limits, optional
+    allow_weak_isolation : bool
+        Run student code although some of what must be stopped is not. Every result says so.
+    without : collection of str
+        Layers to leave out, of :data:`coursework.grading.isolation.LAYERS`; then the isolation is weak.
+    namespaces_by : collection of str
+        Which makers of namespaces to try, in order.
+
+    Raises
+    ------
+    WeakIsolation
+        The layers in force do not stop every attempt.
+    """
+
+    def __init__(self, limits=None, *, allow_weak_isolation=False, without=(), namespaces_by=("bubblewrap", "unshare")):
+        unknown = set(without) - set(LAYERS)
+        if unknown:
+            raise ValueError(f"there are no layers {sorted(unknown)}; the layers are {', '.join(LAYERS)}")
+        if not sys.platform.startswith("linux"):
+            raise WeakIsolation("Student code is isolated with means of Linux. Elsewhere, use WSL or a container.")
+        self.limits = limits or Limits()
+        self.allow_weak_isolation = allow_weak_isolation
+        self.without = frozenset(without)
+        self.namespaces_by = () if NAMESPACES in self.without else tuple(namespaces_by)
+        self.process = None
+        self.control = None
+        self.base = None
+        self.report = None
+        self.start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.close()
+
+    # -- the warm parent
+
+    def start(self):
+        """Start the warm parent and try its isolation."""
+        self.base = tempfile.mkdtemp(prefix="coursework-")
+        os.chmod(self.base, 0o755)
+        try:
+            with contextlib.ExitStack() as stack:
+                target = self.target(stack)
+                why_not = "switched off"
+                for made_by in (*self.namespaces_by, None):
+                    bubblewrap = shutil.which("bwrap")
+                    if made_by == "bubblewrap" and bubblewrap is None:
+                        why_not = "bubblewrap is not installed"
+                        continue
+                    command = []
+                    if made_by == "bubblewrap":
+                        command = isolation.bubblewrap_command(bubblewrap, isolation.readable_paths())
+                    try:
+                        self.report = self.launched(command, made_by, why_not, target)
+                        break
+                    except WorkerDied as error:
+                        self.end_process()
+                        if made_by is None:
+                            raise
+                        why_not = str(error)
+        except BaseException:
+            self.close()
+            raise
+        lacking = isolation.lacking(self.report)
+        if lacking and not self.allow_weak_isolation:
+            self.close()
+            raise WeakIsolation(
+                "This machine does not keep student code apart well enough, so none is run:\n"
+                + "\n".join(f"- {line}" for line in lacking))
+
+    def target(self, stack):
+        """What the isolation is tried on: a file, two ports and a local socket, all of our own."""
+        outside = Path(self.base, "outside")
+        outside.mkdir()
+        file = outside / "file"
+        file.write_text("a file outside")
+        file.chmod(0o666)
+        outside.chmod(0o777)
+        tcp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
+        udp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        local = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
+        for inet in (tcp, udp):
+            inet.bind(("127.0.0.1", 0))
+        name = f"coursework-{os.path.basename(self.base)}"
+        local.bind("\0" + name)
+        for listener in (tcp, local):
+            listener.listen(64)
+        return {
+            "files": [str(file)], "tcp": tcp.getsockname()[1], "udp": udp.getsockname()[1], "local": name,
+            "limits": self.limits.for_child(),
+        }
+
+    def launched(self, command, made_by, why_not, target):
+        """Start the warm parent behind `command`; give its report."""
+        self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
+        errors = Path(self.base, "errors")
+        try:
+            with other, errors.open("wb") as stderr:
+                handles = (other.fileno(), processes)
+                self.process = subprocess.Popen(
+                    [*command, sys.executable, "-s", "-P", "-B", "-X", "utf8", "-c",
+                     "from coursework.grading.warm_parent import main; main()", *map(str, handles)],
+                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=stderr, cwd="/",
+                    pass_fds=handles, start_new_session=True, env={
+                        "LANG": "C.UTF-8", "TZ": "UTC", "PYTHONHASHSEED": "0", "MPLBACKEND": "Agg",
+                        "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"})
+        finally:
+            os.close(processes)
+        start = {
+            "without": sorted(self.without), "target": target, "base": self.base,
+            "namespaces made by": made_by, "why no namespaces": why_not,
+            # Root gives the code to a user that nobody else is; its limit of threads counts only these.
+            "user": 1_900_000_000 + random.SystemRandom().randrange(10**8),
+            "threads in use": 0 if os.geteuid() == 0 else threads_of(os.geteuid()),
+        }
+        self.send({"start": start})
+        try:
+            message = self.receive(WAIT_FOR_START)
+        except WorkerDied:
+            self.process.wait(WAIT_FOR_END)
+            lines = errors.read_text(errors="replace").strip().splitlines()
+            raise WorkerDied(lines[-1][:500] if lines else "the warm parent ended without a word") from None
+        return message["ready"]
+
+    def send(self, message, handles=()):
+        try:
+            socket.send_fds(self.control, [json.dumps(message).encode()], handles)
+        except OSError as error:
+            raise WorkerDied(str(error)) from None
+
+    def receive(self, seconds):
+        if not select.select([self.control], [], [], seconds)[0]:
+            raise WorkerDied(f"the warm parent said nothing for {seconds} seconds")
+        try:
+            data = self.control.recv(1 << 20)
+        except OSError as error:
+            raise WorkerDied(str(error)) from None
+        if not data:
+            raise WorkerDied("the warm parent is gone")
+        return json.loads(data)
+
+    def end_process(self):
+        """End the warm parent; with it ends all that it started."""
+        if self.control is not None:
+            self.control.close()
+        if self.process is not None:
+            try:
+                self.process.wait(5)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        self.control = self.process = None
+
+    def close(self):
+        self.end_process()
+        if self.base is not None:
+            scratch.remove_folder(self.base)
+            self.base = None
+
+    # -- one notebook
+
+    def run(self, job):
+        """Run one notebook; give its result. A worker that dies is replaced, and the job tried again."""
+        for attempt in range(ATTEMPTS_OF_A_JOB):
+            try:
+                if self.process is None:
+                    self.start()
+                return _Run(self, job).result()
+            except WorkerDied:
+                self.close()
+        raise WorkerDied(f"the worker died {ATTEMPTS_OF_A_JOB} times while it ran notebook {job['id']!r}")
+
+    def isolation_in_force(self):
+        """The isolation, as every result records it."""
+        layers = self.report["layers"]
+        return {
+            "layers": [layer for layer in LAYERS if layers[layer]["in force"]],
+            "namespaces made by": layers[NAMESPACES]["made by"],
+            "weak": bool(self.report["not stopped"]),
+            "not stopped": self.report["not stopped"],
+        }
+
+
+class _Run:
+    """All runs of one notebook, and what came of them."""
+
+    def __init__(self, sandbox, job):
+        self.sandbox = sandbox
+        self.limits = sandbox.limits
+        self.job = job
+        self.questions = job["questions"]
+        self.deadline = time.monotonic() + self.limits.notebook_wall_seconds
+        self.number_of_runs = 0
+        self.damaged = 0
+        self.unknown = {}
+        self.notes = []
+        if not isinstance(job["id"], str) or not all(isinstance(cell["source"], str) for cell in job["cells"]):
+            raise TypeError("a job has an id and cells with sources, all texts")
+
+    def result(self):
+        number = len(self.job["cells"])
+        cells, answers, finished = self.in_order(list(range(number)))
+        if any(self.has_not(answers, question) for question in self.questions) and any(
+                cell.get("error", "").startswith("NameError") for cell in cells.values()):
+            self.try_order_of_execution(answers)
+        if self.damaged:
+            self.notes.append("wrote into the records")
+        return {
+            "id": self.job["id"],
+            "finished": finished,
+            "cells": [cells.get(index, {"outcome": "not run"}) for index in range(number)],
+            "answers": {question: answers.get(question, {"outcome": "missing"}) for question in self.questions},
+            "unknown questions": list(self.unknown),
+            "notes": self.notes,
+            "runs": self.number_of_runs,
+            "seed": self.job.get("seed", 0),
+            "isolation": self.sandbox.isolation_in_force(),
+        }
+
+    @staticmethod
+    def has_not(answers, question):
+        answer = answers.get(question, {})
+        return answer.get("outcome") != "recorded" or answer["plain"]["value"] == ["blank"]
+
+    def try_order_of_execution(self, answers):
+        """Fill in the answers that the notebook gives only in the order in which its cells once ran."""
+        cells = self.job["cells"]
+        counts = [cell.get("execution_count") for cell in cells]
+        ran = sorted((index for index in range(len(cells)) if counts[index]), key=lambda index: counts[index])
+        order = ran + [index for index in range(len(cells)) if not counts[index]]
+        if order == list(range(len(cells))):
+            return
+        _, others, _ = self.in_order(order)
+        gained = [q for q in self.questions if self.has_not(answers, q) and not self.has_not(others, q)]
+        for question in gained:
+            answers[question] = others[question]
+        if gained:
+            self.notes.append("works only out of order")
+
+    def in_order(self, order):
+        """Run in one order, without the cells that end the process, until it comes through."""
+        cells, answers, skip, finished = {}, {}, [], False
+        for number in range(self.limits.runs):
+            once = _Once(self, order, skip)
+            self.number_of_runs += 1
+            once.watch()
+            self.damaged += once.records.damaged
+            cells |= {index: cell for index, cell in once.cells.items() if ["cell", index] not in skip}
+            for question, answer in once.answers.items():
+                if question not in self.questions:
+                    if len(self.unknown) < 20:
+                        self.unknown[question] = True
+                elif "plain" in answer or answers.get(question, {}).get("outcome") != "recorded":
+                    answers[question] = answer
+            if once.finished:
+                finished = True
+                break
+            culprit = next((step for step in reversed(once.steps) if step not in skip), None)
+            if number and once.left_threads:
+                # Twice, in different cells: the blame is with threads that an earlier cell left.
+                skip, culprit = [], ["cell", once.left_threads[0]]
+            if culprit is None:
+                break
+            if culprit[0] == "cell":
+                cells[culprit[1]] = once.ending
+            elif culprit[1] in self.questions and answers.get(culprit[1], {}).get("outcome") != "recorded":
+                answers[culprit[1]] = once.ending
+            if time.monotonic() >= self.deadline:
+                break
+            skip = [*skip, culprit]
+        return cells, answers, finished
+
+
+class _Once:
+    """One child, from its start to its end."""
+
+    def __init__(self, run, order, skip):
+        self.sandbox = run.sandbox
+        self.limits = run.limits
+        self.notebook_deadline = run.deadline
+        job = run.job
+        self.job = json.dumps({
+            "cells": [cell["source"] for cell in job["cells"]],
+            "order": order,
+            "skip": skip,
+            "seed": job.get("seed", 0),
+            "variables": {q: about["variable"] for q, about in job["questions"].items() if about.get("variable")},
+            "calls": {q: about["calls"] for q, about in job["questions"].items() if about.get("calls")},
+        }).encode()
+        self.records = records.Records(len(job["cells"]))
+        self.steps = []  # begun and not ended, outermost first
+        self.deadlines = []
+        self.cells = {}
+        self.answers = {}
+        self.left_threads = []
+        self.finished = False
+        self.killed_for = None
+        self.ending = None
+
+    def watch(self):
+        """Start the child, take its records, keep its time; return when all of it is gone."""
+        job = os.memfd_create("job")
+        reading, writing = os.pipe()
+        try:
+            os.write(job, self.job) if len(self.job) < 1 << 20 else _write_all(job, self.job)
+            os.lseek(job, 0, os.SEEK_SET)
+            self.sandbox.send({"run": {"limits": self.limits.for_child()}}, [job, writing])
+            os.close(writing)
+            writing = None
+            ended = self.follow(reading)
+        finally:
+            os.close(job)
+            os.close(reading)
+            if writing is not None:
+                os.close(writing)
+        self.conclude(ended)
+
+    def follow(self, reading):
+        control = self.sandbox.control
+        waiting = select.poll()
+        waiting.register(reading, select.POLLIN)
+        waiting.register(control, select.POLLIN)
+        last_moment = None
+        while True:
+            now = time.monotonic()
+            if self.killed_for is None:
+                deadline, reason = self.next_deadline()
+                if now >= deadline or self.records.too_many:
+                    self.killed_for = "output" if self.records.too_many else reason
+                    self.sandbox.send({"kill": True})
+                    last_moment = deadline = now + WAIT_FOR_END
+            else:
+                deadline = last_moment
+                if now >= deadline:
+                    raise WorkerDied("a killed notebook did not end")
+            for handle, _ in waiting.poll(max(1, (deadline - now) * 1000)):
+                if handle == reading and not self.take(reading):
+                    waiting.unregister(reading)
+                elif handle == control.fileno():
+                    ended = self.sandbox.receive(0)
+                    while self.take(reading):  # what it wrote last; nobody is left to write more
+                        pass
+                    return ended
+
+    def take(self, reading):
+        """Take what the child has written; False when there is no more to come."""
+        data = os.read(reading, 1 << 18)
+        if not self.records.too_many:
+            for record in self.records.feed(data):
+                self.note(record)
+        return bool(data)
+
+    def next_deadline(self):
+        if self.finished:  # it only has to exit now
+            return self.done_by, None
+        if self.deadlines and self.deadlines[-1] < self.notebook_deadline:
+            return self.deadlines[-1], "timeout"
+        return self.notebook_deadline, "timeout"
+
+    def note(self, record):
+        now = time.monotonic()
+        if "begin" in record:
+            step = record["begin"]
+            wall = self.limits.cell_wall_seconds if step[0] == "cell" else self.limits.answer_wall_seconds
+            self.steps.append(step)
+            self.deadlines.append(now + wall + self.limits.grace_seconds)
+            self.steps, self.deadlines = self.steps[:10], self.deadlines[:10]
+        elif "end" in record:
+            if self.steps and self.steps[-1] == record["end"]:
+                self.steps.pop()
+                self.deadlines.pop()
+            if record["end"][0] == "cell":
+                index = record["end"][1]
+                self.cells[index] = {
+                    name: record[name] for name in ("outcome", "error", "line") if name in record}
+                if "threads" in record:
+                    self.left_threads.append(index)
+        elif "answer" in record:
+            question = record["answer"]
+            if len(self.answers) > 1000 and question not in self.answers:
+                return
+            answer = {"outcome": "recorded", "plain": record["plain"]} if "plain" in record else {
+                "outcome": "unreadable", "why": record["unreadable"]}
+            answer |= {"from": record["from"], "cell": record["cell"]}
+            if "plain" in record or "plain" not in self.answers.get(question, {}):
+                self.answers[question] = answer
+        elif "done" in record and not self.finished:
+            self.finished = True
+            self.done_by = now + self.limits.grace_seconds
+
+    def conclude(self, ended):
+        """Name how the child ended."""
+        how = ended["ended"]
+        if how.get("code") == NOT_CONFINED and not self.records.received:
+            raise WeakIsolation("A notebook's process could not be confined, so it did not run.")
+        if self.finished:
+            return
+        outcome, error = "exited", f"The process was left with code {how.get('code')}."
+        if ended["scratch full"]:
+            outcome, error = "disk", "It filled its scratch folder."
+        elif self.killed_for == "output":
+            outcome, error = "output", "It wrote more than may be handed in."
+        elif self.killed_for == "timeout" or how.get("signal") == signal.SIGXCPU:
+            outcome, error = "timeout", "It took longer than it may."
+        elif "signal" in how:
+            outcome, error = "killed", f"The process was ended by {signal.Signals(how['signal']).name}."
+        self.ending = {"outcome": outcome, "error": error}
+
+
+def _write_all(handle, data):
+    view = memoryview(data)
+    while view:
+        view = view[os.write(handle, view):]
+
+
+def threads_of(user):
+    """How many threads `user` has on this machine: they count against a limit of threads."""
+    total = 0
+    for status in Path("/proc").glob("[0-9]*/status"):
+        with contextlib.suppress(OSError, ValueError, KeyError):
+            fields = dict(line.split(":", 1) for line in status.read_text().splitlines())
+            if int(fields["Uid"].split()[0]) == user:
+                total += int(fields["Threads"])
+    return total
+
+
+def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, without=()):
+    """Run notebooks on several workers; give the results as they come.
+
+    Parameters
+    ----------
+    jobs : iterable of dict
+        Each plain JSON::
+
+            {"id": text,
+             "cells": [{"source": text, "execution_count": number or None}, ...],   # code cells
+             "questions": {name: {"variable": text or None,
+                                  "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or None}},
+             "seed": number}                                                        # optional, 0
+    workers : int
+        How many notebooks run at a time; each worker is a warm parent of its own.
+    limits, allow_weak_isolation, without
+        As for :class:`Sandbox`.
+
+    Yields
+    ------
+    dict
+        One result for each job, in the order in which they are ready; each names its job by `id` and
+        does not depend on the others or on the number of workers.
+
+    Raises
+    ------
+    WeakIsolation
+        Before any student code is run.
+    """
+    jobs = iter(jobs)
+    taking, stop = threading.Lock(), threading.Event()
+    results = queue.Queue()
+
+    def work():
+        try:
+            with Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without) as sandbox:
+                while not stop.is_set():
+                    with taking:
+                        job = next(jobs, None)
+                    if job is None:
+                        break
+                    results.put(sandbox.run(job))
+            results.put(None)
+        except BaseException as error:  # handed to the one who waits
+            results.put(error)
+
+    threads = [threading.Thread(target=work, daemon=True) for _ in range(workers)]
+    for thread in threads:
+        thread.start()
+    try:
+        running = len(threads)
+        while running:
+            result = results.get()
+            if isinstance(result, BaseException):
+                raise result
+            if result is None:
+                running -= 1
+            else:
+                yield result
+    finally:
+        stop.set()
+        for thread in threads:
+            thread.join()
