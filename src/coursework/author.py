@@ -24,7 +24,7 @@ from typing import NamedTuple
 from . import sealing
 from .evaluate import MP
 from .kinds import ENTRIES, WORDS, Blank, Fault, Undecidable, canonical, cell_of, cells, fingerprint, read
-from .mistakes import Mistake, mistakes, product_of
+from .mistakes import Mistake, mistakes as catalogued_mistakes, product_of
 from .plain import NotPlain, to_plain
 from .points import ANGLES
 from .check import calls_for
@@ -112,10 +112,10 @@ class Question:
 
     def _catalogued(self):
         if self.public['kind'] != 'function':
-            return mistakes(self.public, self.answer, self.turns, self.turned)
+            return catalogued_mistakes(self.public, self.answer, self.turns, self.turned)
         inner = {**self.public, 'kind': self.public['result']}
         results = [self.answer(*arguments) for arguments in calls_for(self.public)]
-        columns = [{(found.note, json.dumps(found.details)): found.answer for found in mistakes(inner, result)}
+        columns = [{(found.note, json.dumps(found.details)): found.answer for found in catalogued_mistakes(inner, result)}
                    for result in results]
         shared = [known for known in columns[0] if all(known in column for column in columns)]
         return [Mistake(note, json.loads(details), _replay([column[note, details] for column in columns]))
@@ -155,7 +155,7 @@ class Question:
 
     def sealed(self):
         """What a student receives of the question: its public part and its lockers."""
-        contents = {text: {'outcome': entry.outcome, 'notes': _brief(entry)} for text, entry in self.entries.items()}
+        contents = {text: {'outcome': entry.outcome, 'notes': entry.notes} for text, entry in self.entries.items()}
         keys = {text: sealing.slow_key(self.public['salt'], text) for text in contents}
         length = max(len(sealing.base64.b64decode(sealing.seal(content, keys[text]))) - 16
                      for text, content in contents.items())
@@ -208,11 +208,6 @@ def cells_near(public, number, order, distance):
     return [cells(near, [number + side * distance])[0] for side in (-1, 1)]
 
 
-def _brief(entry):
-    return [[note, {} if note == 'authored' else details] if note != 'authored' else [note, details]
-            for note, details in entry.notes]
-
-
 def _replay(results):
     """A function that gives prepared results, one for each call: what a mistaken function would return."""
     following = iter(itertools.cycle(results))
@@ -233,7 +228,7 @@ def to_page(markdown):
 
 def question(name, kind, answer, *, frames=None, symbols=None, unit=None, shape=None, length=None, sequence=None,
              options=None, tolerance=None, calls=None, takes='lists', result=None, quantity=None, either_sign=None,
-             unit_vector=None, **rest):
+             unit_vector=None, mistakes=None, **rest):
     """Build a :class:`Question` from what its author wrote.
 
     Raises
@@ -262,7 +257,7 @@ def question(name, kind, answer, *, frames=None, symbols=None, unit=None, shape=
     for needed, kinds in NEEDED.items():
         if kind in kinds and needed not in public:
             raise AuthorError(f'{name}: a question of kind {kind!r} needs {needed!r}.')
-    return Question(name, public, answer, **rest)
+    return Question(name, public, answer, authored=mistakes, **rest)
 
 
 NEEDED = {

@@ -1,0 +1,44 @@
+"""The command ``coursework``: what authors and instructors run."""
+
+import argparse
+import sys
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog='coursework', description=__doc__)
+    commands = parser.add_subparsers(dest='command', required=True)
+    release = commands.add_parser('release', help='make the exercises, the sealed questions and the archive for students')
+    release.add_argument('--sources', help='folder of the notebooks with solutions')
+    release.add_argument('--exercises', help='where the exercise notebooks go')
+    release.add_argument('--sealed', help='where the sealed questions go')
+    release.add_argument('--no-archive', action='store_true', help='leave the archive for students out')
+    update = commands.add_parser('update', help='unpack a newer archive beside your work, which stays as it is')
+    update.add_argument('archive')
+    update.add_argument('--folder', default='.')
+    options = vars(parser.parse_args(arguments))
+    return COMMANDS[options.pop('command')](**options)
+
+
+def _release(no_archive, **folders):
+    from . import release
+    from .author import AuthorError
+    try:
+        given = {name: folder for name, folder in folders.items() if folder}
+        # The notebooks are run with the questions of this package: sealed elsewhere, they are not there.
+        names = release.release(**given, run='sealed' not in given)
+    except AuthorError as error:
+        sys.exit(f'coursework release: {error}')
+    print(f'{len(names)} notebooks released.')
+    if not no_archive:
+        print(f'For students: {release.archive()}')
+
+
+def _update(archive, folder):
+    from .release import update
+    print(*update(archive, folder), sep='\n')
+
+
+COMMANDS = {'release': _release, 'update': _update}
+
+if __name__ == '__main__':
+    main()
