@@ -17,13 +17,23 @@ class Handler(SimpleHTTPRequestHandler):
         ".svg": "image/svg+xml",
     }
 
+    # Only an isolated page may share memory with its Python, which can then be interrupted and
+    # keep its names. Other servers may not send these headers; the page does without.
+    isolated = True
+
+    def end_headers(self):
+        if self.isolated:
+            self.send_header("Cross-Origin-Opener-Policy", "same-origin")
+            self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+        super().end_headers()
+
     def log_message(self, *arguments):
         """Say nothing about each request."""
 
 
-def server(folder="_build/html", port=0):
+def server(folder="_build/html", port=0, handler=Handler):
     """A server of ``folder``; port 0 takes any that is free."""
-    return ThreadingHTTPServer(("127.0.0.1", port), partial(Handler, directory=folder))
+    return ThreadingHTTPServer(("127.0.0.1", port), partial(handler, directory=folder))
 
 
 def main():

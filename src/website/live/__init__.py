@@ -1,19 +1,30 @@
 """Code that runs in the page, with no server: Python itself comes with the site.
 
-The site's folder ``runtime`` holds, and nothing else anywhere loads:
+The site's folder ``runtime`` holds all of it, and nothing there is loaded before the reader asks:
 
 - ``pyodide/``: the interpreter, as npm brings it (``pyodide.mjs`` and what it loads);
 - ``wheels/<hash>/*.whl``: SymPy, mpmath and our own packages, byte-compiled;
 - ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file names of
-  wheels in it are relative to the lock file. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says.
+  wheels in it are relative to the lock file. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says;
+- ``scripts-<hash>/``: what makes the cells of a page run in place (``js``, ``python``).
 
 Whatever else is to run Python in a browser (a notebook interface, say) needs only the address of
 ``pyodide/pyodide.mjs`` and that of ``pyodide-lock.json``.
 """
 
+import json
 from pathlib import Path
 
-from . import runtime
+from docutils import nodes
+
+from . import runtime, scripts
+from .cells import kinds_of_cells
+from .listing import NeedsMore
+
+
+def write_scripts(app):
+    if app.builder.format == "html":
+        scripts.write(Path(app.outdir))
 
 
 def write_runtime(app, exception):
@@ -21,6 +32,38 @@ def write_runtime(app, exception):
         runtime.write(Path(app.outdir), app.config.numpy_in_the_page)
 
 
+def has_code(doctree):
+    return doctree is not None and any(
+        node.get("nb_element") == "cell_code_source" for node in doctree.findall(nodes.container)
+    )
+
+
+def add_live_code(app, pagename, templatename, context, doctree):
+    """Give a page with code its buttons, and say what the build knows of its cells."""
+    if not has_code(doctree):
+        return
+    pathto = context["pathto"]
+    kinds = kinds_of_cells().get(pagename, [])
+    context["live_data"] = json.dumps(
+        {
+            "page": pagename,
+            "runtime": pathto(f"{runtime.FOLDER}/", 1),
+            "script": pathto(f"{scripts.folder_name()}/live.js", 1),
+            "cells": {
+                index: {key: kind[key] for key in ("needs", "skip") if kind[key]}
+                for index, kind in enumerate(kinds)
+                if kind["needs"]
+            },
+        },
+        separators=(",", ":"),
+    )
+    context["styles"] = [*context["styles"], "live.css"]
+    app.add_js_file("live.js", loading_method="defer")
+
+
 def setup(app):
     app.add_config_value("numpy_in_the_page", "official", "html", (str, bool))
+    app.add_directive("cells-that-need-more", NeedsMore)
+    app.connect("builder-inited", write_scripts)
+    app.connect("html-page-context", add_live_code, priority=970)  # after page.py has set the styles
     app.connect("build-finished", write_runtime, priority=900)  # after take_away.py has built the wheel

@@ -28,12 +28,17 @@ COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
 OUR_IMPORTS = ("orientation", "coursework")
-DEPENDS = {"sympy": ["mpmath"], "orientation-of-reference-frames": ["sympy"]}
+DISTRIBUTION = "orientation-of-reference-frames"
+DEPENDS = {"sympy": ["mpmath"], DISTRIBUTION: ["sympy"]}
 NUMERICAL = ("numpy", "matplotlib")  # not on PyPI for browsers; see the setting numpy_in_the_page
 
 
 def sha256(content):
     return hashlib.sha256(content).hexdigest()
+
+
+def size(path):
+    return path.stat().st_size
 
 
 def official_lock():
@@ -153,5 +158,8 @@ def write(site, setting):
     official = official_lock()
     packages = own_packages(compile_wheels(wheels), target)
     packages |= numerical_packages(setting, target, official, official_address())
-    lock = {"info": official["info"], "packages": packages}
+    first = with_dependencies([DISTRIBUTION], packages)
+    loaded = [target / "pyodide" / name for name in PYODIDE_FILES]
+    loaded += [target / packages[name]["file_name"] for name in first]
+    lock = {"info": official["info"], "packages": packages, "bytes": sum(map(size, loaded))}
     (target / LOCK).write_text(json.dumps(lock, indent=1), "utf8")

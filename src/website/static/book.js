@@ -12,6 +12,7 @@ const watch = new ResizeObserver((entries) => {
   }
 });
 for (const box of boxes) watch.observe(box);
+window.watchWidth = (box) => watch.observe(box); // for what a page puts out later
 
 // The take-away menu closes like any menu: by Escape, or by a press elsewhere.
 const menu = document.querySelector("details.take-away");

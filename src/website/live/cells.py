@@ -1,0 +1,182 @@
+"""Which cells of the book run in the page, found out by running them as the page does.
+
+Every notebook is run once, from top to bottom, by the Python side of the page (``python/session.py``) with
+nothing but the standard library, SymPy and our own packages to import. A cell that then fails, or gives
+another result than the stored one, needs more; what it needs is what it failed to import, or what an earlier
+cell failed to import from which it takes a name.
+"""
+
+import ast
+import json
+import re
+import shutil
+import subprocess
+import symtable
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+import nbformat
+
+from ..paths import REPOSITORY, fingerprint
+
+PYTHON = Path(__file__).parent / "python"
+RESULTS = REPOSITORY / "_build" / "runtime"
+ALONE = """
+import json, sys
+
+sys.path.insert(0, sys.argv[1])
+import session
+
+
+class OnlyThese(dict):
+    def __contains__(self, name):
+        return name not in sys.stdlib_module_names and name not in self.allowed
+
+    def __getitem__(self, name):
+        return f"No module named {name!r}"
+
+
+messages = []
+shell = session.start(lambda text: messages.append(json.loads(text)))
+OnlyThese.allowed = {"sympy", "mpmath", "orientation", "coursework", "IPython", "session", "__main__"}
+shell.missing.reasons = OnlyThese()
+told = []
+for number, code in enumerate(json.load(sys.stdin)):
+    outcome = json.loads(shell.run(code, f"cell {number + 1}"))
+    told.append({"outcome": outcome, "messages": messages[:]})
+    messages.clear()
+json.dump(told, sys.__stdout__)
+"""
+
+
+def write_python(folder):
+    """Write what the page's Python starts from: our files, and IPython's way of writing values as text."""
+    shutil.copytree(
+        PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True
+    )
+    (folder / "IPython" / "lib").mkdir(exist_ok=True)
+    (folder / "IPython" / "lib" / "__init__.py").touch()
+    root = find_spec("IPython").submodule_search_locations[0]
+    shutil.copyfile(Path(root, "lib", "pretty.py"), folder / "IPython" / "lib" / "pretty.py")
+
+
+def run_alone(codes):
+    """What the cells of a page put out, one after another, without NumPy."""
+    RESULTS.mkdir(parents=True, exist_ok=True)
+    write_python(RESULTS / "python")
+    done = subprocess.run(
+        [sys.executable, "-c", ALONE, RESULTS / "python"],
+        input=json.dumps(codes), capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def outputs_of_messages(messages):
+    """What a cell put out, as a list that can be compared: printed text, and the shown form of each value."""
+    outputs = []
+    for message in messages:
+        if message["type"] == "stream" and outputs and outputs[-1][0] == message["name"]:
+            outputs[-1] = (message["name"], outputs[-1][1] + message["text"])
+        elif message["type"] == "stream":
+            outputs.append((message["name"], message["text"]))
+        elif message["type"] == "clear":
+            outputs.clear()
+        else:
+            outputs.append(shown_form(message["data"]))
+    return outputs
+
+
+def stored_outputs(cell):
+    """The same for the outputs that a notebook stores."""
+    return [
+        (output.name, output.text) if output.output_type == "stream" else shown_form(output.data)
+        for output in cell.outputs
+    ]
+
+
+def shown_form(data):
+    """The form that a page shows, and its text, without what differs from one run to the next."""
+    form = next(
+        form for form in ("text/html", "image/svg+xml", "text/markdown", "text/latex", "text/plain") if form in data
+    )
+    return form, re.sub(r"0x[0-9a-f]+", "0x...", data[form])
+
+
+def names_bound(code):
+    """The names that a cell gives a meaning, at its top level."""
+    symbols = symtable.symtable(code, "cell", "exec").get_symbols()
+    return {symbol.get_name() for symbol in symbols if symbol.is_assigned() or symbol.is_imported()}
+
+
+def names_taken(code):
+    """The names that a cell may take from the cells before it: all it uses, but for what it imports."""
+    tree = ast.parse(code)
+    imported = {
+        alias.asname or alias.name.partition(".")[0]
+        for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom)) for alias in node.names
+    }  # fmt: skip
+    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - imported
+
+
+def classify(cells):
+    """For each code cell what it needs beyond SymPy, and whether a run of the page may leave it out.
+
+    A run leaves out a cell that only draws a figure, needs more for it, and gives names to other such cells
+    at most: its picture is there already.
+    """
+    codes = [cell.source for cell in cells]
+    kinds = []
+    for position, (cell, told) in enumerate(zip(cells, run_alone(codes))):
+        outcome = told["outcome"]
+        same = outcome["status"] == "ok" and outputs_of_messages(told["messages"]) == stored_outputs(cell)
+        needs = set()
+        if outcome["status"] == "missing":
+            needs = {outcome["package"]}
+        elif not same:
+            used = names_taken(cell.source)
+            for earlier in reversed(range(position)):
+                if kinds[earlier]["needs"] and used & names_bound(codes[earlier]):
+                    needs |= set(kinds[earlier]["needs"])
+            if not needs:
+                raise RuntimeError(
+                    f"cell {position + 1} gives another result in the page than the stored one:\n"
+                    f"{cell.source}\n{outcome.get('traceback', told['messages'])}"
+                )
+        kinds.append({"needs": sorted(needs), "figure": "hide-input" in cell.metadata.get("tags", [])})
+    wanted = set()  # the names that the cells below take, those that are left out not counted
+    for code, kind in zip(reversed(codes), reversed(kinds)):
+        kind["skip"] = bool(kind["figure"] and kind["needs"] and not names_bound(code) & wanted)
+        if not kind["skip"]:
+            wanted = (wanted - names_bound(code)) | names_taken(code)
+    return kinds
+
+
+@cache
+def kinds_of_cells():
+    """The kinds of the code cells of every notebook, by the names of the pages."""
+    from ..notebooks import all_notebooks
+
+    notebooks = all_notebooks(REPOSITORY)
+    inputs = fingerprint(
+        Path(__file__), PYTHON, *notebooks, REPOSITORY / "constraints.txt",
+        REPOSITORY / "src" / "orientation", REPOSITORY / "src" / "coursework",
+    )  # fmt: skip
+    kept = RESULTS / f"cells-{inputs}.json"
+    if not kept.exists():
+        def classify_page(path):
+            notebook = nbformat.read(path, as_version=4)
+            try:
+                return classify([cell for cell in notebook.cells if cell.cell_type == "code"])
+            except RuntimeError as error:
+                raise RuntimeError(f"{path}: {error}") from None
+
+        with ThreadPoolExecutor(max_workers=2) as pool:
+            kinds = list(pool.map(classify_page, notebooks))
+        for outdated in RESULTS.glob("cells-*.json"):
+            outdated.unlink()
+        names = [str(path.relative_to(REPOSITORY).with_suffix("")) for path in notebooks]
+        kept.write_text(json.dumps(dict(zip(names, kinds))), "utf8")
+    return json.loads(kept.read_text("utf8"))

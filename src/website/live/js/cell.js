@@ -1,0 +1,147 @@
+// One cell of the page: its editor, its buttons, and what stands below it.
+import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
+import { python } from "@codemirror/lang-python";
+import { bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
+import { EditorState, Prec } from "@codemirror/state";
+import { EditorView, keymap } from "@codemirror/view";
+import { classHighlighter } from "@lezer/highlight";
+import { element, preformatted, shown, wake } from "./output.js";
+
+export class Cell {
+  // ``box`` is the cell's element, ``number`` counts from 1, ``kind`` is what the build found out about it.
+  constructor(box, number, kind, page) {
+    Object.assign(this, { box, number, kind, page, name: `cell ${number}`, ran: false });
+    this.input = box.querySelector(".cell_input");
+    this.original = this.input.querySelector("pre").textContent.trimEnd();
+    this.button = this.input.querySelector("button.run-cell");
+    this.findOutput();
+  }
+
+  // A figure keeps its caption: only what stands before it is a result.
+  findOutput() {
+    let output = this.box.querySelector(":scope > .cell_output");
+    if (!output) {
+      output = element("div", "cell_output docutils container");
+      this.box.append(output);
+    }
+    this.output = output.querySelector(":scope > figure:has(> figcaption)") ?? output;
+    this.built = [...this.output.children].filter((child) => child.tagName !== "FIGCAPTION");
+    this.current = this.built;
+  }
+
+  get code() {
+    return this.editor ? this.editor.state.doc.toString() : this.original;
+  }
+
+  get edited() {
+    return this.code.trimEnd() !== this.original;
+  }
+
+  edit() {
+    if (this.editor) return;
+    const old = this.input.querySelector(":scope > div");
+    old.querySelector("button.copybtn")?.remove();
+    const run = () => (this.page.run(this), true);
+    const leave = () => (this.button.focus(), true);
+    const changed = EditorView.updateListener.of(({ docChanged }) => docChanged && this.changed());
+    this.editor = new EditorView({
+      state: EditorState.create({
+        doc: this.original,
+        extensions: [
+          history(), indentOnInput(), indentUnit.of("    "), bracketMatching(), python(),
+          syntaxHighlighting(classHighlighter), changed,
+          Prec.high(keymap.of([
+            { key: "Shift-Enter", run }, { key: "Mod-Enter", run }, { key: "Escape", run: leave },
+          ])),
+          keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
+          EditorView.contentAttributes.of({
+            "aria-label": `Code of ${this.name}`, "aria-describedby": "live-keys", spellcheck: "false",
+          }),
+        ],
+      }),
+    });
+    this.editor.dom.classList.add("highlight");
+    old.hidden = true;
+    old.after(this.editor.dom);
+    this.back = element("button", "to-original", "Book’s code");
+    this.back.type = "button";
+    this.back.hidden = true;
+    this.back.setAttribute("aria-label", `Bring back the book’s code of ${this.name}`);
+    this.back.addEventListener("click", () => (this.write(this.original), this.editor.focus()));
+    this.button.before(this.back);
+  }
+
+  changed() {
+    this.back.hidden = !this.edited;
+    this.box.classList.toggle("edited", this.edited);
+    this.page.keep();
+  }
+
+  write(code) {
+    this.edit();
+    this.editor.dispatch({ changes: { from: 0, to: this.editor.state.doc.length, insert: code } });
+  }
+
+  // --- results ---------------------------------------------------------------------------------
+
+  replace(nodes) {
+    for (const node of this.current) node.remove();
+    this.output.prepend(...nodes);
+    this.current = nodes;
+    wake(this.output);
+  }
+
+  restore() {
+    this.replace(this.built);
+    this.box.classList.remove("waiting", "running", "failed");
+    this.ran = false;
+  }
+
+  begin() {
+    this.fresh = [];
+    this.words = [];
+    this.box.classList.remove("failed", "waiting");
+    this.box.classList.add("running");
+  }
+
+  // One message of the running cell.
+  take(message) {
+    const last = this.fresh.at(-1);
+    if (message.type === "clear") {
+      this.fresh = [];
+    } else if (message.type === "stream") {
+      if (last?.classList.contains("stream") && last.dataset.name === message.name) {
+        last.querySelector("pre").append(message.text);
+      } else {
+        const box = preformatted("stream", message.text);
+        box.dataset.name = message.name;
+        if (message.name === "stderr") box.classList.add("stderr");
+        this.fresh.push(box);
+      }
+      this.words.push(message.text);
+    } else {
+      const [box, words] = shown(message.data, this.name);
+      this.fresh.push(box);
+      this.words.push(words);
+    }
+    if (message.type === "stream") this.replace([...this.fresh]); // what is printed is seen at once
+  }
+
+  // ``note`` is a box with what went wrong; the book's own result stays beside it.
+  end(note) {
+    this.box.classList.remove("running", "waiting");
+    this.box.classList.toggle("failed", Boolean(note));
+    const nodes = [...this.fresh];
+    if (note) {
+      nodes.push(note);
+      if (this.built.length && !this.edited) {
+        nodes.push(element("p", "live-built", "The book’s result:"), ...this.built);
+      } else if (this.built.length) {
+        const fold = element("details", "live-built", element("summary", "", "The result of the book’s code"), ...this.built);
+        nodes.push(fold);
+      }
+    }
+    this.replace(nodes);
+    this.ran = true;
+  }
+}

@@ -1,0 +1,242 @@
+// Loaded when the reader first asks for code to run: the page's cells, the bar below, and the order of runs.
+import { Cell } from "./cell.js";
+import { fingerprint, load, save } from "./edits.js";
+import { named } from "./names.js";
+import { element, preformatted } from "./output.js";
+import { Python } from "./python.js";
+
+const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
+
+class Page {
+  constructor({ data, boxes, bar }) {
+    this.runtime = new URL(data.runtime, location.href).href;
+    this.key = `code of ${data.page}`;
+    this.bar = bar;
+    this.cells = boxes.map((box, index) => new Cell(box, index + 1, data.cells[index] ?? {}, this));
+    this.queue = [];
+    this.buttons = bar.buttons({
+      "Run the page": () => this.run(),
+      Stop: () => this.stop(),
+      "Start afresh": () => this.reset(),
+      "Book’s code": () => this.undoEdits(),
+    });
+    for (const cell of this.cells) cell.edit();
+    this.bring();
+    this.show();
+  }
+
+  // --- the reader's edits ----------------------------------------------------------------------
+
+  keep() {
+    const edits = this.cells.filter((cell) => cell.edited)
+      .map(({ number, original, code }) => ({ number, original: fingerprint(original), code }));
+    const kept = save(this.key, [...edits, ...(this.unplaced ?? [])]);
+    if (!kept && edits.length) this.bar.say("This browser does not keep your edits: they last until you leave the page.");
+    this.show();
+  }
+
+  // Put kept edits back where the book's code is still the same; elsewhere ask.
+  bring() {
+    const edits = load(this.key);
+    this.unplaced = [];
+    for (const edit of edits) {
+      const same = (cell) => fingerprint(cell.original) === edit.original && !cell.edited;
+      const cell = [this.cells[edit.number - 1], ...this.cells].find((cell) => cell && same(cell));
+      if (cell) cell.write(edit.code);
+      else this.unplaced.push(edit);
+    }
+    for (const edit of this.unplaced) this.offer(edit);
+    if (edits.length) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
+  }
+
+  offer(edit) {
+    const cell = this.cells[Math.min(edit.number, this.cells.length) - 1];
+    const choose = (text, action) => {
+      const button = element("button", "", text);
+      button.type = "button";
+      button.addEventListener("click", () => {
+        box.remove();
+        this.unplaced = this.unplaced.filter((other) => other !== edit);
+        action();
+        this.keep();
+      });
+      return button;
+    };
+    const box = element("div", "live-note live-choice",
+      element("p", "", "The book’s code here has changed since you edited it. This was yours:"),
+      preformatted("stream", edit.code),
+      choose("Use mine", () => cell.write(edit.code)), " ", choose("Keep the book’s", () => {}));
+    box.setAttribute("role", "group");
+    box.setAttribute("aria-label", `An older edit of ${cell.name}`);
+    cell.input.after(box);
+  }
+
+  undoEdits() {
+    for (const cell of this.cells.filter((cell) => cell.edited)) cell.write(cell.original);
+    this.bar.say("All cells hold the book’s code again.");
+  }
+
+  // --- what is to run --------------------------------------------------------------------------
+
+  // The picture of such a cell is there already, and nothing else comes of running it.
+  leftOut(cell) {
+    return cell.kind.skip && !cell.edited;
+  }
+
+  // Run one cell, and before it what has not run yet; without a cell, the whole page.
+  run(cell) {
+    const upTo = cell ? cell.number : this.cells.length;
+    const before = this.cells.slice(0, upTo).filter((other) =>
+      other !== cell && !(cell && other.ran) && !(this.leftOut(other) && !(cell?.kind.skip)));
+    for (const next of cell ? [...before, cell] : before) {
+      if (!this.queue.includes(next)) {
+        this.queue.push(next);
+        next.box.classList.add("waiting");
+      }
+    }
+    if (!cell || before.length) this.tally = { ran: 0, failed: [], missing: new Set(), alone: false };
+    else this.tally ??= { ran: 0, failed: [], missing: new Set(), alone: true };
+    if (!this.busy) this.work();
+  }
+
+  async work() {
+    this.busy = true;
+    this.show();
+    try {
+      if (!this.python) await this.load();
+      while (this.queue.length) await this.next(this.queue.shift());
+      this.report();
+    } catch (error) {
+      this.empty();
+      this.bar.say(`Python could not be started: ${error.message}.`);
+    }
+    this.busy = false;
+    this.tally = null;
+    this.show();
+  }
+
+  async load() {
+    this.bar.say("Python is being loaded ...");
+    this.python = new Python(this.runtime, (message, cell) => this.hear(message, cell));
+    const { python } = this;
+    try {
+      this.has = await python.ready;
+    } catch (error) {
+      if (this.python === python) this.python = null;
+      throw error;
+    }
+    this.bar.progress(null);
+  }
+
+  hear(message, cell) {
+    if (message.type === "progress") this.bar.progress(message.bytes, message.all);
+    else if (message.type === "fetching") this.bar.say(`${named(message.name)} is being fetched from ${message.place} ...`);
+    else if (message.type === "output") cell.take(message.message);
+  }
+
+  async next(cell) {
+    const needs = cell.edited ? [] : cell.kind.needs ?? [];
+    const lacking = needs.filter((module) => !this.has.numerical.includes(module));
+    cell.begin();
+    if (lacking.length) {
+      return this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
+    }
+    if (this.unreachable && needs.length) return this.leave(cell, this.unreachable);
+    if (!this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
+    const outcome = await this.python.run(cell.code, cell.name, needs, cell);
+    this.settle(cell, outcome);
+  }
+
+  leave(cell, reason) {
+    this.tally.missing.add(cell.number);
+    const note = element("div", "live-note", element("p", "", `Not run here: ${reason}.`));
+    cell.end(note);
+    cell.ran = false;
+    this.last = `${cell.name} was not run: ${reason}.`;
+  }
+
+  settle(cell, outcome) {
+    const { status } = outcome;
+    if (status === "ok") {
+      cell.end();
+      this.tally.ran += 1;
+      const words = cell.words.join(" ").trim();
+      this.last = `${cell.name} ran${words ? `. Result: ${words.length > 200 ? `${words.slice(0, 200)} ...` : words}` : ", without a result to show"}`;
+    } else if (status === "missing") {
+      if (!cell.edited) this.unreachable = outcome.reason;
+      this.leave(cell, outcome.reason);
+    } else if (status === "error") {
+      const text = preformatted("stream", outcome.traceback);
+      text.classList.add("stderr", "live-error");
+      cell.end(text);
+      cell.ran = true;
+      this.tally.failed.push(cell.number);
+      this.last = `${cell.name} raised an error: ${outcome.traceback.split("\n").at(-1)}`;
+      if (this.queue.length) this.last += " The cells after it were not run.";
+      this.empty();
+    } else {
+      const lost = status === "ended";
+      const why = outcome.reason === "interrupted" || !lost ? "Stopped." : `Python broke off: ${outcome.reason}.`;
+      const then = lost ? " Python starts anew at the next run, and the page’s earlier cells run again first." : " What the cells before it have defined is still there.";
+      cell.end(element("div", "live-note", element("p", "", why + then)));
+      cell.ran = false;
+      this.empty();
+      if (lost) this.forget();
+      this.last = `${cell.name}: ${why}${then}`;
+      this.tally.stopped = true;
+    }
+  }
+
+  report() {
+    const { ran, failed, missing, alone, stopped } = this.tally;
+    const parts = [`${plural(ran, "cell")} ran.`];
+    if (missing.size) parts.push(`${plural(missing.size, "cell was", "cells were")} not run; the reason stands below each.`);
+    this.bar.say(alone || stopped || failed.length ? `${this.last[0].toUpperCase()}${this.last.slice(1)}` : parts.join(" "));
+  }
+
+  empty() {
+    for (const cell of this.queue) cell.box.classList.remove("waiting");
+    this.queue = [];
+  }
+
+  // --- stopping --------------------------------------------------------------------------------
+
+  stop() {
+    this.empty();
+    this.python?.interrupt();
+    if (this.python?.ended) this.forget();
+  }
+
+  // Python is gone, and with it every name: the next run begins with the first cell.
+  forget() {
+    this.python = null;
+    this.unreachable = null;
+    for (const cell of this.cells) cell.ran = false;
+  }
+
+  reset() {
+    this.empty();
+    this.python?.end("interrupted");
+    this.forget();
+    for (const cell of this.cells) cell.restore();
+    this.bar.progress(null);
+    this.bar.say("All is as the book has it, except for your edits. Python starts anew at the next run.");
+  }
+
+  show() {
+    const [all, stop, afresh, book] = this.buttons;
+    all.hidden = this.busy;
+    stop.hidden = !this.busy;
+    afresh.hidden = this.busy || !this.python;
+    book.hidden = this.busy || !this.cells.some((cell) => cell.edited);
+    document.documentElement.classList.toggle("live-busy", Boolean(this.busy));
+  }
+}
+
+export function open(parts) {
+  const style = element("link");
+  style.rel = "stylesheet";
+  style.href = new URL("./live.css", import.meta.url);
+  document.head.append(style);
+  return new Page(parts);
+}

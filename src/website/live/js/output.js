@@ -1,0 +1,91 @@
+// What cells put out, made to look as the build makes it look.
+import katex from "katex";
+
+const ORDER = ["text/html", "image/svg+xml", "image/png", "text/markdown", "text/latex", "text/plain"];
+
+function element(tag, className, ...children) {
+  const made = document.createElement(tag);
+  if (className) made.className = className;
+  made.append(...children);
+  return made;
+}
+
+function preformatted(kind, text) {
+  const box = element("div", `output ${kind} highlight-myst-ansi notranslate`);
+  box.append(element("div", "highlight", element("pre", "", text)));
+  return box;
+}
+
+// The delimiters come off, and all is set in display style, as the build does it.
+function bare(tex) {
+  for (const [start, end] of [["\\(", "\\)"], ["\\[", "\\]"], ["$$", "$$"], ["$", "$"]]) {
+    if (tex.startsWith(start) && tex.endsWith(end)) return tex.slice(start.length, -end.length);
+  }
+  return tex;
+}
+
+function formula(text) {
+  const tex = bare(text.trim()).trim();
+  const box = element("div", "math-box");
+  try {
+    box.innerHTML = katex.renderToString(tex, {
+      displayMode: true, output: "htmlAndMathml", throwOnError: true, strict: "ignore",
+      macros: { "\\arraystretch": tex.includes("\\frac") ? "1.6" : "1.15" },
+    });
+  } catch {
+    return preformatted("text_plain", text);
+  }
+  window.watchWidth?.(box);
+  return element("div", "output text_latex math display", box);
+}
+
+function picture(form, data, name) {
+  const image = element("img");
+  image.src = form === "image/png" ? `data:image/png;base64,${data}`
+    : `data:image/svg+xml;charset=utf-8,${encodeURIComponent(data)}`;
+  image.alt = `The picture that ${name} has drawn`;
+  return element("div", "output image_svg", image);
+}
+
+function html(text) {
+  const box = element("div", "output text_html");
+  box.innerHTML = text;
+  // Scripts that are set in as text do not run; a copy does.
+  for (const script of box.querySelectorAll("script")) {
+    const copy = element("script");
+    for (const { name, value } of script.attributes) copy.setAttribute(name, value);
+    copy.textContent = script.textContent;
+    script.replaceWith(copy);
+  }
+  box.querySelectorAll("figure.orientation-figure").forEach((figure) => window.watchWidth?.(figure));
+  return box;
+}
+
+// One value in the best of its forms, and in a few words for those who hear the page.
+export function shown(data, name) {
+  const form = ORDER.find((known) => known in data);
+  if (form === "text/html") {
+    const box = html(data[form]);
+    return [box, box.querySelector("figure, svg, img") ? "a figure" : box.textContent.trim()];
+  }
+  if (form === "text/latex") return [formula(data[form]), data["text/plain"]?.includes("\n") ? "a formula" : data["text/plain"] ?? "a formula"];
+  if (form?.startsWith("image/")) return [picture(form, data[form], name), "a picture"];
+  const text = data[form] ?? "a value without a form that can be shown";
+  return [preformatted("text_plain", text), text];
+}
+
+// A figure that moves is brought to life by the page's own script for its kind.
+export function wake(root) {
+  const kinds = new Set([...root.querySelectorAll(".moving[data-figure]:not([data-ready])")].map((f) => f.dataset.figure));
+  for (const kind of kinds) {
+    const loader = document.querySelector(`script[src*="moving/${kind}.js"]`);
+    if (loader) {
+      const again = element("script");
+      again.src = loader.src;
+      document.head.append(again);
+      again.addEventListener("load", () => again.remove());
+    }
+  }
+}
+
+export { element, preformatted };

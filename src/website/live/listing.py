@@ -1,0 +1,54 @@
+"""The directive ``cells-that-need-more``: which cells do not run with SymPy alone, page by page, and why."""
+
+from docutils import nodes
+from docutils.statemachine import StringList
+from sphinx.util.docutils import SphinxDirective
+
+from .cells import kinds_of_cells
+
+SOURCES = {
+    "official": "Here NumPy and Matplotlib are fetched from `cdn.jsdelivr.net` when a cell needs them.",
+    "off": "Here NumPy and Matplotlib are not offered: those cells keep their printed results.",
+    "folder": "Here NumPy and Matplotlib come with the pages, from the same place.",
+}
+COLUMNS = ("draw with NumPy", "compute with NumPy", "need SciPy", "need a notebook")
+
+
+def column(kind):
+    if "anywidget" in kind["needs"]:
+        return "need a notebook"
+    if "scipy" in kind["needs"]:
+        return "need SciPy"
+    return "draw with NumPy" if kind["figure"] else "compute with NumPy"
+
+
+def row(page, kinds):
+    cells = {name: [] for name in COLUMNS}
+    for number, kind in enumerate(kinds, start=1):
+        if kind["needs"]:
+            cells[column(kind)].append(str(number))
+    numbers = " | ".join(", ".join(cells[name]) for name in COLUMNS)
+    return f"| {{doc}}`/{page}` | {sum(not kind['needs'] for kind in kinds)} of {len(kinds)} | {numbers} |"
+
+
+class NeedsMore(SphinxDirective):
+    def run(self):
+        pages = kinds_of_cells()
+        order = list(self.config.external_site_map)
+        setting = self.config.numpy_in_the_page or "off"
+        every = [kind for kinds in pages.values() for kind in kinds]
+        lines = [
+            SOURCES.get(setting, SOURCES["folder"]),
+            f"Of {len(every)} cells, {sum(not kind['needs'] for kind in every)} need nothing but SymPy and this",
+            "book's own packages, and run in the page with the results printed here. The others, by their numbers",
+            "from the top of each page, are these; a cell that takes a name from one of them needs the same.",
+            "",
+            f"| page | run | {' | '.join(COLUMNS)} |",
+            "|---|---|" + "---|" * len(COLUMNS),
+            *(row(page, pages[page]) for page in sorted(pages, key=order.index)),
+        ]
+        for page in pages:
+            self.env.note_dependency(self.env.doc2path(page))
+        container = nodes.Element()
+        self.state.nested_parse(StringList(lines, self.env.docname), self.content_offset, container)
+        return container.children

@@ -1,0 +1,53 @@
+"""``from IPython.display import display, HTML, ...`` for code in the page."""
+
+import base64
+
+
+def display(*values, **ignored):
+    """Show each of ``values`` as the value of a cell's last line is shown."""
+    import session
+
+    for value in values:
+        session.shell.show(value)
+
+
+def clear_output(wait=False):
+    """Take away what the cell has put out so far."""
+    import session
+
+    session.shell.clear()
+
+
+class _Content:
+    def __init__(self, data):
+        self.data = data
+
+
+class HTML(_Content):
+    def _repr_html_(self):
+        return self.data
+
+
+class Markdown(_Content):
+    def _repr_markdown_(self):
+        return self.data
+
+
+class SVG(_Content):
+    def _repr_svg_(self):
+        return self.data
+
+
+class Latex(_Content):
+    def _repr_latex_(self):
+        return self.data
+
+
+class Math(_Content):
+    def _repr_latex_(self):
+        return "$\\displaystyle " + self.data.strip("$") + "$"
+
+
+class Image(_Content):
+    def _repr_png_(self):
+        return base64.b64encode(self.data).decode()

@@ -1,0 +1,45 @@
+"""The scripts of the page, put together by esbuild: a small one for every page with code, and what it loads."""
+
+import os
+import shutil
+import subprocess
+
+from ..page import NODE
+from ..paths import NODE_MODULES, fingerprint
+from .cells import PYTHON, RESULTS, write_python
+from .runtime import FOLDER, HERE
+
+JS = HERE / "js"
+ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
+
+
+def folder_name():
+    """Its scripts have the same names in every version of the book: the folder tells them apart."""
+    return f"{FOLDER}/scripts-{fingerprint(JS, PYTHON, NODE_MODULES.parent / 'package-lock.json')}"
+
+
+def esbuild(*arguments):
+    command = [NODE, ESBUILD, "--minify", "--log-level=warning", "--legal-comments=none", *arguments]
+    subprocess.run(command, check=True, env=os.environ | {"NODE_PATH": str(NODE_MODULES)})
+
+
+def write(site):
+    """Write the scripts into the folder ``site``."""
+    target = site / folder_name()
+    for outdated in (site / FOLDER).glob("scripts-*"):
+        if outdated != target:
+            shutil.rmtree(outdated)
+    workshop = RESULTS / "workshop"
+    shutil.rmtree(workshop, ignore_errors=True)
+    shutil.copytree(JS, workshop / "js")
+    write_python(workshop / "python")
+    target.mkdir(parents=True, exist_ok=True)
+    esbuild(
+        workshop / "js" / "live.js", workshop / "js" / "worker.js", "--bundle", "--format=esm",
+        "--loader:.py=text", f"--outdir={target}",
+    )  # fmt: skip
+    shutil.copyfile(JS / "live.css", target / "live.css")
+    static = site / "_static"
+    static.mkdir(exist_ok=True)
+    esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
+    shutil.copyfile(JS / "page.css", static / "live.css")
