@@ -12,6 +12,9 @@ def main(arguments=None):
     release.add_argument('--exercises', help='where the exercise notebooks go')
     release.add_argument('--sealed', help='where the sealed questions go')
     release.add_argument('--no-archive', action='store_true', help='leave the archive for students out')
+    selftest = commands.add_parser('selftest', help='try every question as students will, and look for leaks')
+    selftest.add_argument('--sources', help='folder of the notebooks with solutions')
+    selftest.add_argument('--page', default='_build/selftest.html', help='where the page for the author goes')
     update = commands.add_parser('update', help='unpack a newer archive beside your work, which stays as it is')
     update.add_argument('archive')
     update.add_argument('--folder', default='.')
@@ -33,12 +36,21 @@ def _release(no_archive, **folders):
         print(f'For students: {release.archive()}')
 
 
+def _selftest(page, sources):
+    from .selftest import selftest
+    faults = selftest(**({'sources': sources} if sources else {}), page=page)
+    print(f'The page: {page}')
+    if faults:
+        sys.exit('\n'.join(faults))
+    print('Every question passed.')
+
+
 def _update(archive, folder):
     from .release import update
     print(*update(archive, folder), sep='\n')
 
 
-COMMANDS = {'release': _release, 'update': _update}
+COMMANDS = {'release': _release, 'selftest': _selftest, 'update': _update}
 
 if __name__ == '__main__':
     main()

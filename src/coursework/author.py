@@ -134,7 +134,7 @@ class Question:
                 continue   # on this question the mistake makes no difference
             for text in fingerprints:
                 known = entries.setdefault(text, Entry('mistake', [], plain))
-                if len(known.notes) < 2 and [mistake.note, mistake.details] not in known.notes:
+                if [mistake.note, mistake.details] not in known.notes:
                     known.notes.append([mistake.note, mistake.details])
         return entries
 

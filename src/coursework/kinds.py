@@ -91,8 +91,13 @@ def cells(question, numbers):
 
 
 def cell_of(question):
+    """Size of a cell: an answer that is off by no more than the tolerance stays in its cell."""
     tolerance = question.get('tolerance')
-    return EXACT_CELL if tolerance is None else 4 * MP.mpf(str(tolerance))
+    if tolerance is None:
+        return EXACT_CELL
+    # An entry of a matrix that is built of three numbers is off by what all three are.
+    parts = 3 if _kind_of_values(question) in ('Euler angles', 'axis and angle') else 1
+    return 4 * parts * MP.mpf(str(tolerance))
 
 
 def canonical(question, reading):

@@ -128,7 +128,7 @@ class _Writer:
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
         if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(answer, sympy.MatrixBase):
-            if not all(getattr(size, 'is_Integer', False) for size in answer.shape):
+            if not all(sympy.sympify(size).is_Integer for size in answer.shape):
                 raise NotPlain('The matrix has no definite size.')
             answer = answer.doit().as_explicit()
         if isinstance(answer, sympy.MatrixBase):

@@ -76,9 +76,9 @@ def judge(name, question, plain):
     if content['outcome'] == 'correct':
         return Reply(name, 'correct'), key
     notes = content['notes']
-    messages = [message(question, note, details) for note, details in notes]
+    messages = [message(question, note, details) for note, details in notes[:2]]
     if len(messages) > 1:
-        messages = [messages[0], *(f'It may also be this, which comes to the same here. {text}' for text in messages[1:])]
+        messages[1] = f'Or, which comes to the same here: {messages[1]}'
     return Reply(name, 'wrong', notes[0][0], messages), key
 
 
