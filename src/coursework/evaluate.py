@@ -15,6 +15,9 @@ MP.dps = 40
 #: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
 ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
+#: Work on one answer at one point, in additions of real numbers; others cost as many as they take. An
+#: honest answer of thousands of nodes stays far below; a hostile one would take a minute.
+MOST_WORK = 400_000
 
 
 class Undefined(ArithmeticError):
@@ -46,9 +49,12 @@ def values(nodes, point):
     An error is kept as the value of its node and is raised by :func:`number`, since a branch that is
     not taken may be undefined.
     """
-    results = []
+    results, work = [], 0
     for node in nodes:
         try:
+            work += _work(node, results)
+            if work > MOST_WORK:
+                raise TooLarge('it is made of too many operations')
             results.append(_value(node, results, point))
         except (Undefined, TooLarge, NotSupported, UnknownSymbol) as error:
             results.append(error)
@@ -76,6 +82,16 @@ def real(result):
             raise ValueError('complex')
         return result.real
     return result
+
+
+def _work(node, results):
+    operation, *children = node
+    if operation in ('symbol', 'constant', 'integer', 'rational', 'float'):
+        return 4
+    complex_ones = sum(isinstance(results[child], MP.mpc) for child in children)
+    if operation in ('Add', 'Mul'):
+        return 2 + len(children) + 7 * complex_ones
+    return 10 + len(children) + 90 * complex_ones
 
 
 def _value(node, results, point):

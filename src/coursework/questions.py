@@ -55,31 +55,55 @@ def find_question(name):
 
 def judge(name, question, plain):
     """Compare an answer, as plain data, with what is sealed. Gives the reply and the key it earned."""
+    earned = None
+
+    def open_locker(text):
+        nonlocal earned
+        key = sealing.slow_key(question['salt'], text)
+        sealed = question['lockers'].get(sealing.locker(key))
+        if sealed is None:
+            return None
+        earned = key
+        return sealing.unseal(sealed, key)
+
+    return compare(name, question, plain, open_locker), earned
+
+
+def compare(name, question, plain, find):
+    """Compare an answer, as plain data, with what is known of a question. Gives the reply.
+
+    Parameters
+    ----------
+    name : str
+    question : dict
+        The public part of the question.
+    plain : dict
+    find : function
+        What is known of a fingerprint: its outcome and notes, or ``None``.
+    """
     try:
         reading = read(question, plain)
         text = fingerprint(question, reading)
     except Blank:
-        return Reply(name, 'not attempted', '', ['Put your answer in place of the `...` and run the cells again.']), None
+        return Reply(name, 'not attempted', '', ['Put your answer in place of the `...` and run the cells again.'])
     except Fault as found:
-        return Reply(name, 'invalid', found.note, [found.message]), None
+        return Reply(name, 'invalid', found.note, [found.message])
     except Undecidable as found:
         return Reply(name, 'undecided', 'undecidable', [f'{found} Try another form, or ask your instructor to '
-                                                        'look at it.']), None
-    key = sealing.slow_key(question['salt'], text)
-    sealed = question['lockers'].get(sealing.locker(key))
-    if sealed is None:
+                                                        'look at it.'])
+    content = find(text)
+    if content is None:
         found = fault(question, reading)
         if found:
-            return Reply(name, 'invalid', found.note, [found.message]), None
-        return Reply(name, 'wrong', '', [what_can_be_said(question, plain, reading)]), None
-    content = sealing.unseal(sealed, key)
+            return Reply(name, 'invalid', found.note, [found.message])
+        return Reply(name, 'wrong', '', [what_can_be_said(question, plain, reading)])
     if content['outcome'] == 'correct':
-        return Reply(name, 'correct'), key
+        return Reply(name, 'correct')
     notes = content['notes']
     messages = [message(question, note, details) for note, details in notes[:2]]
     if len(messages) > 1:
         messages[1] = f'Or, which comes to the same here: {messages[1]}'
-    return Reply(name, 'wrong', notes[0][0], messages), key
+    return Reply(name, 'wrong', notes[0][0], messages)
 
 
 def opened(question, key, purpose):
