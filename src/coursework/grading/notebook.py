@@ -229,7 +229,8 @@ class _Notebook:
         raise OutOfTime
 
     def emit(self, record):
-        data = self.encode(record).encode() + b"\n"
+        # Each record has a line of its own even after other bytes that a student may have written.
+        data = b"\n" + self.encode(record).encode() + b"\n"
         self.writing = True
         try:
             while data:
@@ -240,7 +241,7 @@ class _Notebook:
     def described(self, error):
         """An error as text: its type, its message, and the line of the cell. May run student code."""
         try:
-            self.start_timers(1, 2)
+            self.start_timers(0.2, 0.4)
             try:
                 text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
                 line, trace = None, error.__traceback__

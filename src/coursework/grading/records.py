@@ -9,6 +9,7 @@ from coursework.plain import NotPlain, read_plain
 
 LONGEST_LINE = 4 << 20
 MOST_BYTES = 16 << 20  # of all records of one run
+MOST_RECORDS = 20_000
 LONGEST_NAME = 200
 LONGEST_TEXT = 1000
 OUTCOMES = ("done", "error", "timeout", "memory")
@@ -21,12 +22,14 @@ class Records:
         self.number_of_cells = number_of_cells
         self.unfinished = bytearray()
         self.received = 0
+        self.lines = 0
         self.damaged = 0
 
     @property
     def too_many(self):
         """Whether more came than any honest notebook sends."""
-        return self.received > MOST_BYTES or len(self.unfinished) > LONGEST_LINE
+        return (
+            self.received > MOST_BYTES or self.lines > MOST_RECORDS or len(self.unfinished) > LONGEST_LINE)
 
     def feed(self, data):
         self.received += len(data)
@@ -35,7 +38,9 @@ class Records:
             return []
         *lines, rest = self.unfinished.split(b"\n")
         self.unfinished = rest
-        records = [self.record(bytes(line)) for line in lines]
+        lines = [bytes(line) for line in lines if line]
+        self.lines += len(lines)
+        records = [self.record(line) for line in lines]
         self.damaged += records.count(None)
         return [record for record in records if record is not None]
 

@@ -38,6 +38,7 @@ from coursework.grading.warm_parent import NOT_CONFINED
 
 WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
 WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
+MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
 ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
 
 
@@ -57,9 +58,9 @@ class Limits:
     """
 
     cell_seconds: float = 20
-    cell_wall_seconds: float = 60
+    cell_wall_seconds: float = 40
     answer_seconds: float = 10
-    answer_wall_seconds: float = 30
+    answer_wall_seconds: float = 20
     notebook_seconds: float = 60
     notebook_wall_seconds: float = 180  # for all runs of the notebook together
     grace_seconds: float = 1  # wall, after a limit, before the process is killed
@@ -117,6 +118,7 @@ class Sandbox:
         self.control = None
         self.base = None
         self.report = None
+        self.abandoned = False
         self.start()
 
     def __enter__(self):
@@ -159,7 +161,9 @@ class Sandbox:
             self.close()
             raise WeakIsolation(
                 "This machine does not keep student code apart well enough, so none is run:\n"
-                + "\n".join(f"- {line}" for line in lacking))
+                + "\n".join(f"- {line}" for line in lacking)
+                + "\nTo run it all the same, on a machine that you can afford to lose, say "
+                "--allow-weak-isolation; every result will record it.")
 
     def target(self, stack):
         """What the isolation is tried on: a file, two ports and a local socket, all of our own."""
@@ -212,9 +216,13 @@ class Sandbox:
             message = self.receive(WAIT_FOR_START)
         except WorkerDied:
             self.process.wait(WAIT_FOR_END)
-            lines = errors.read_text(errors="replace").strip().splitlines()
-            raise WorkerDied(lines[-1][:500] if lines else "the warm parent ended without a word") from None
+            raise WorkerDied(self.last_error()) from None
         return message["ready"]
+
+    def last_error(self):
+        """The last line that the warm parent, never a student, wrote on its error stream."""
+        lines = Path(self.base, "errors").read_text(errors="replace").strip().splitlines()
+        return lines[-1][:500] if lines else "the warm parent ended without a word"
 
     def send(self, message, handles=()):
         try:
@@ -223,7 +231,9 @@ class Sandbox:
             raise WorkerDied(str(error)) from None
 
     def receive(self, seconds):
-        if not select.select([self.control], [], [], seconds)[0]:
+        waiting = select.poll()
+        waiting.register(self.control, select.POLLIN)
+        if not waiting.poll(seconds * 1000):
             raise WorkerDied(f"the warm parent said nothing for {seconds} seconds")
         try:
             data = self.control.recv(1 << 20)
@@ -251,6 +261,12 @@ class Sandbox:
             scratch.remove_folder(self.base)
             self.base = None
 
+    def abandon(self):
+        """Stop at once what another thread is running here."""
+        self.abandoned = True
+        with contextlib.suppress(AttributeError, OSError):
+            self.control.shutdown(socket.SHUT_RDWR)
+
     # -- one notebook
 
     def run(self, job):
@@ -261,6 +277,8 @@ class Sandbox:
                     self.start()
                 return _Run(self, job).result()
             except WorkerDied:
+                if self.abandoned:
+                    raise
                 self.close()
         raise WorkerDied(f"the worker died {ATTEMPTS_OF_A_JOB} times while it ran notebook {job['id']!r}")
 
@@ -304,7 +322,7 @@ class _Run:
             "finished": finished,
             "cells": [cells.get(index, {"outcome": "not run"}) for index in range(number)],
             "answers": {question: answers.get(question, {"outcome": "missing"}) for question in self.questions},
-            "unknown questions": list(self.unknown),
+            "unknown questions": list(self.unknown)[:MOST_UNKNOWN],
             "notes": self.notes,
             "runs": self.number_of_runs,
             "seed": self.job.get("seed", 0),
@@ -320,8 +338,9 @@ class _Run:
         """Fill in the answers that the notebook gives only in the order in which its cells once ran."""
         cells = self.job["cells"]
         counts = [cell.get("execution_count") for cell in cells]
-        ran = sorted((index for index in range(len(cells)) if counts[index]), key=lambda index: counts[index])
-        order = ran + [index for index in range(len(cells)) if not counts[index]]
+        ran = [index for index in range(len(cells)) if type(counts[index]) is int and counts[index] > 0]
+        order = sorted(ran, key=lambda index: counts[index])
+        order += [index for index in range(len(cells)) if index not in set(ran)]
         if order == list(range(len(cells))):
             return
         _, others, _ = self.in_order(order)
@@ -340,16 +359,14 @@ class _Run:
             once.watch()
             self.damaged += once.records.damaged
             cells |= {index: cell for index, cell in once.cells.items() if ["cell", index] not in skip}
+            self.unknown |= once.unknown
             for question, answer in once.answers.items():
-                if question not in self.questions:
-                    if len(self.unknown) < 20:
-                        self.unknown[question] = True
-                elif "plain" in answer or answers.get(question, {}).get("outcome") != "recorded":
+                if "plain" in answer or answers.get(question, {}).get("outcome") != "recorded":
                     answers[question] = answer
             if once.finished:
                 finished = True
                 break
-            culprit = next((step for step in reversed(once.steps) if step not in skip), None)
+            culprit = next((step for step in reversed(once.blamed or once.steps) if step not in skip), None)
             if number and once.left_threads:
                 # Twice, in different cells: the blame is with threads that an earlier cell left.
                 skip, culprit = [], ["cell", once.left_threads[0]]
@@ -385,10 +402,13 @@ class _Once:
         self.steps = []  # begun and not ended, outermost first
         self.deadlines = []
         self.cells = {}
+        self.questions = job["questions"]
         self.answers = {}
+        self.unknown = {}
         self.left_threads = []
         self.finished = False
         self.killed_for = None
+        self.blamed = []  # the steps that were under way when it was killed
         self.ending = None
 
     def watch(self):
@@ -396,7 +416,8 @@ class _Once:
         job = os.memfd_create("job")
         reading, writing = os.pipe()
         try:
-            os.write(job, self.job) if len(self.job) < 1 << 20 else _write_all(job, self.job)
+            with open(job, "wb", closefd=False) as file:
+                file.write(self.job)
             os.lseek(job, 0, os.SEEK_SET)
             self.sandbox.send({"run": {"limits": self.limits.for_child()}}, [job, writing])
             os.close(writing)
@@ -421,6 +442,7 @@ class _Once:
                 deadline, reason = self.next_deadline()
                 if now >= deadline or self.records.too_many:
                     self.killed_for = "output" if self.records.too_many else reason
+                    self.blamed = list(self.steps)
                     self.sandbox.send({"kill": True})
                     last_moment = deadline = now + WAIT_FOR_END
             else:
@@ -446,7 +468,7 @@ class _Once:
 
     def next_deadline(self):
         if self.finished:  # it only has to exit now
-            return self.done_by, None
+            return self.done_by, "done"
         if self.deadlines and self.deadlines[-1] < self.notebook_deadline:
             return self.deadlines[-1], "timeout"
         return self.notebook_deadline, "timeout"
@@ -471,7 +493,9 @@ class _Once:
                     self.left_threads.append(index)
         elif "answer" in record:
             question = record["answer"]
-            if len(self.answers) > 1000 and question not in self.answers:
+            if question not in self.questions:
+                if len(self.unknown) < MOST_UNKNOWN:
+                    self.unknown[question] = True
                 return
             answer = {"outcome": "recorded", "plain": record["plain"]} if "plain" in record else {
                 "outcome": "unreadable", "why": record["unreadable"]}
@@ -486,7 +510,8 @@ class _Once:
         """Name how the child ended."""
         how = ended["ended"]
         if how.get("code") == NOT_CONFINED and not self.records.received:
-            raise WeakIsolation("A notebook's process could not be confined, so it did not run.")
+            raise WeakIsolation("A notebook's process could not be confined, so it did not run: "
+                                + self.sandbox.last_error())
         if self.finished:
             return
         outcome, error = "exited", f"The process was left with code {how.get('code')}."
@@ -499,12 +524,6 @@ class _Once:
         elif "signal" in how:
             outcome, error = "killed", f"The process was ended by {signal.Signals(how['signal']).name}."
         self.ending = {"outcome": outcome, "error": error}
-
-
-def _write_all(handle, data):
-    view = memoryview(data)
-    while view:
-        view = view[os.write(handle, view):]
 
 
 def threads_of(user):
@@ -550,10 +569,12 @@ def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, w
     jobs = iter(jobs)
     taking, stop = threading.Lock(), threading.Event()
     results = queue.Queue()
+    sandboxes = []
 
     def work():
         try:
             with Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without) as sandbox:
+                sandboxes.append(sandbox)
                 while not stop.is_set():
                     with taking:
                         job = next(jobs, None)
@@ -579,5 +600,7 @@ def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, w
                 yield result
     finally:
         stop.set()
+        for sandbox in sandboxes:
+            sandbox.abandon()
         for thread in threads:
             thread.join()

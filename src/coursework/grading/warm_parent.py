@@ -271,9 +271,10 @@ class WarmParent:
 
     def run(self, run, job, records):
         folder = self.new_scratch(self.layers)
+        parent = os.getpid()
         child = os.fork()
         if child == 0:
-            self.be_notebook(run, job, records, folder)
+            self.be_notebook(parent, run, job, records, folder)
         os.close(job)
         os.close(records)
         full = self.wait(child, None if folder == self.base else folder, run["limits"]["scratch_bytes"])
@@ -295,7 +296,7 @@ class WarmParent:
         finally:
             os.close(handle)
 
-    def be_notebook(self, run, job, records, folder):
+    def be_notebook(self, parent, run, job, records, folder):
         """In the child: give up all that a notebook must not have, and run it. Does not return."""
         code = NOT_CONFINED
         try:
@@ -303,15 +304,19 @@ class WarmParent:
             job, records = os.dup2(job, 200, False), os.dup2(records, 201, False)
             os.dup2(job, JOB, False)
             os.dup2(records, RECORDS, False)
-            os.dup2(1, 2)
             os.closerange(RECORDS + 1, 1 << 20)
             self.confine(self.layers, run["limits"], folder)
+            os.dup2(1, 2)  # from here on nothing is heard of it but records
+            if os.getppid() != parent:
+                raise ProcessLookupError("the warm parent ended before it could be watched")
             os.environ.update(HOME=folder, TMPDIR=folder, MPLCONFIGDIR=folder)
             code = 1
             from coursework.grading import notebook
 
             notebook.run(JOB, RECORDS, run["limits"], folder)
             code = 0
+        except Exception as error:
+            os.write(2, f"{type(error).__name__}: {error}\n".encode(errors="replace"))
         finally:
             os._exit(code)
 

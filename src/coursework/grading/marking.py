@@ -1,0 +1,173 @@
+"""Verdicts: from a student's answers, as plain data, to outcomes and points.
+
+Only here are right answers held. What is judged came out of the sandbox as JSON and is checked again; no code
+that a student wrote runs in this process, and the verdict is the one that the student's own check gives,
+reached by the same functions. An answer that cannot be decided is put aside for a person and never counted
+as wrong; nothing is earned by default.
+"""
+
+import concurrent.futures
+import hashlib
+import json
+import multiprocessing
+from pathlib import Path
+
+from .. import release
+from ..evaluate import MP
+from ..kinds import Blank, Fault, Undecidable, canonical, read
+from ..plain import NotPlain, read_plain
+from ..questions import compare
+from ..reply import Reply
+
+#: An exact question is not decided by an answer that is off by less than this: it may be rounded.
+NEARLY = MP.mpf('1.5e-3')
+#: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
+CUT_SHORT = ('It took longer than it may.', 'It took more memory than it may.')
+
+
+# --- what is known of each question -------------------------------------------------------------
+
+def names_asked(path):
+    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
+    import nbformat
+    return release._checked_names(nbformat.read(path, as_version=4))
+
+
+def questions_of(path):
+    """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
+    found = {}
+    for name, question in release.read_source(path).questions.items():
+        about = {
+            'title': question.title, 'variable': question.variable, 'worth': question.worth,
+            'credit': question.credit, 'public': question.public,
+            'known': {text: {'outcome': entry.outcome, 'notes': entry.notes} for text, entry in question.entries.items()},
+            'right': _canonical_of(question),
+        }
+        about = json.loads(json.dumps(about))
+        found[name] = {**about, 'version': hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]}
+    return found
+
+
+def _canonical_of(question):
+    reading = read(question.public, question.plain)
+    if reading.text is not None or question.public.get('tolerance') is not None:
+        return None
+    return [MP.nstr(number, 30) for number in canonical(question.public, reading)]
+
+
+def load_questions(paths, kept):
+    """The questions of several notebooks with solutions, by name.
+
+    A source takes a second or two to be worked out; what came of it is kept in the folder ``kept`` under a
+    name that follows from its bytes and from ours.
+    """
+    kept = Path(kept)
+    kept.mkdir(parents=True, exist_ok=True)
+    ours = _digest_of_package()
+    places = {path: kept / f'{Path(path).stem}-{hashlib.sha256(ours + Path(path).read_bytes()).hexdigest()[:16]}.json'
+              for path in paths}
+    missing = [path for path in paths if not places[path].exists()]
+    if missing:
+        context = multiprocessing.get_context('spawn')
+        with concurrent.futures.ProcessPoolExecutor(min(len(missing), 4), mp_context=context) as pool:
+            for path, questions in zip(missing, pool.map(questions_of, missing)):
+                from .store import write
+                write(places[path], json.dumps(questions, ensure_ascii=False))
+    found = {}
+    for path in paths:
+        found.update(json.loads(places[path].read_text('utf8')))
+    return found
+
+
+def _digest_of_package():
+    import orientation
+    import sympy
+    digest = hashlib.sha256(sympy.__version__.encode())
+    for package in (Path(__file__).parents[1], Path(orientation.__file__).parent):
+        for path in sorted(package.glob('*.py')):
+            digest.update(path.read_bytes())
+    return digest.digest()
+
+
+def asked_of_sandbox(questions):
+    """What the sandbox is told of each question: the answer's name and the calls of a function, no more."""
+    return {name: {'variable': about['variable'], 'calls': None if about['public']['kind'] != 'function' else {
+        'arguments': about['public']['calls'], 'as': about['public']['takes']}} for name, about in questions.items()}
+
+
+# --- one answer ---------------------------------------------------------------------------------
+
+def mark(name, question, answer, finished=True):
+    """Judge what the sandbox says of an answer.
+
+    Parameters
+    ----------
+    name : str
+    question : dict
+        As :func:`questions_of` gives it.
+    answer : dict
+        As :mod:`coursework.grading.sandbox` gives it.
+    finished : bool
+        Whether the notebook came to its end; if not, an answer that is missing may be due to that.
+
+    Returns
+    -------
+    dict
+        ``outcome``, ``note``, ``messages``, ``points``, ``worth``, and ``group``: the same for identical answers.
+    """
+    reply, text = judge(name, question, answer, finished)
+    share = {'correct': 1, 'wrong': question['credit'].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
+    return {
+        'outcome': reply.outcome, 'note': reply.note, 'messages': reply.messages,
+        'points': round(question['worth'] * share, 4), 'worth': question['worth'],
+        'group': hashlib.sha256(text.encode()).hexdigest()[:16] if text else '', 'version': question['version'],
+    }
+
+
+def judge(name, question, answer, finished=True):
+    """Give the :class:`Reply` to an answer, and its fingerprint if it has one."""
+    state = answer['outcome']
+    if state == 'missing':
+        if not finished:
+            return _undecided(name, 'not reached', 'The notebook did not come to its end, and this answer was not '
+                                                   'reached.'), ''
+        variable = f' under the name `{question["variable"]}`' if question['variable'] else ''
+        return Reply(name, 'not attempted', 'missing', [f'No answer was found{variable}.']), ''
+    if state == 'unreadable' and answer['why'] not in CUT_SHORT:
+        return Reply(name, 'invalid', 'unreadable', [answer['why']]), ''
+    if state != 'recorded':
+        return _undecided(name, 'stopped while it was read',
+                          f'Reading this answer was stopped. {answer.get("why") or answer.get("error", "")}'.strip()), ''
+    found = []
+
+    def look_up(text):
+        found.append(text)
+        return question['known'].get(text)
+
+    try:
+        plain = read_plain(answer['plain'])
+        reply = compare(name, question['public'], plain, look_up)
+        if reply.outcome == 'wrong' and not reply.note and _nearly_right(question, plain):
+            reply = _undecided(name, 'nearly right', 'The value agrees with the right one to about three digits: it '
+                                                     'may have been rounded where an exact answer is asked for.')
+    except NotPlain as error:
+        reply = Reply(name, 'invalid', 'unreadable', [str(error)])
+    except Exception as error:   # a fault of ours costs no student a mark
+        reply = _undecided(name, 'not worked out', f'This answer could not be worked out ({type(error).__name__}).')
+    return reply, ''.join(found)
+
+
+def _undecided(name, note, message):
+    return Reply(name, 'undecided', note, [message])
+
+
+def _nearly_right(question, plain):
+    if question['right'] is None:
+        return False
+    try:
+        numbers = canonical(question['public'], read(question['public'], plain))
+    except (Blank, Fault, Undecidable):
+        return False
+    right = [MP.mpf(number) for number in question['right']]
+    return len(numbers) == len(right) and all(
+        abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right))

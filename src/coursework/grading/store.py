@@ -1,0 +1,102 @@
+"""The folder of results: every file whole or not there at all, and one run at a time.
+
+``records/student/assignment.json`` is written the moment a student's work is graded and holds all that came of
+it; every other file is made from the records and can be made again.
+"""
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import re
+import secrets
+from pathlib import Path
+
+FORMAT = 1
+
+
+class InUse(RuntimeError):
+    """Another run works on the same folder."""
+
+
+class Store:
+    """The results of a class.
+
+    Parameters
+    ----------
+    folder : path
+    """
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.records = self.folder / 'records'
+
+    @contextlib.contextmanager
+    def locked(self):
+        """Keep other runs away; what a run that was killed left half done is removed."""
+        self.records.mkdir(parents=True, exist_ok=True)
+        with open(self.folder / 'lock', 'w') as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise InUse(f'Another run is at work in {self.folder}.') from None
+            for path in self.folder.rglob('.half-*'):
+                path.unlink()
+            yield
+
+    def place(self, student, assignment):
+        return self.records / file_name(student) / f'{file_name(assignment)}.json'
+
+    def read(self, student, assignment):
+        """A student's record, or ``None``."""
+        try:
+            return json.loads(self.place(student, assignment).read_text('utf8'))
+        except FileNotFoundError:
+            return None
+
+    def save(self, record):
+        write(self.place(record['student'], record['assignment']), as_text(record))
+
+    def all(self):
+        """All records, by student and assignment, one at a time."""
+        found = sorted(self.records.glob('*/*.json'), key=lambda path: (path.parent.name, path.name))
+        for path in found:
+            yield json.loads(path.read_text('utf8'))
+
+    def log(self, line):
+        """Write a line of what happened, with its time; nothing that is graded depends on it."""
+        import datetime
+        now = datetime.datetime.now().isoformat(' ', 'milliseconds')
+        with open(self.folder / 'run.log', 'a', encoding='utf8') as file:
+            file.write(f'{now}  {line}\n')
+
+
+def as_text(value):
+    return json.dumps(value, ensure_ascii=False, indent=1, sort_keys=True) + '\n'
+
+
+def file_name(name):
+    """A name for a file that a student's name cannot lead astray; different names stay different."""
+    plain = re.sub(r'[^A-Za-z0-9._-]+', '-', name).strip('.-')[:60]
+    # The letter's case counts too: some file systems do not tell a from A.
+    if plain == name and name == name.lower():
+        return plain
+    return f'{plain.lower() or "student"}-{hashlib.sha256(name.encode("utf8", "surrogatepass")).hexdigest()[:8]}'
+
+
+def write(path, text):
+    """Write a file so that it is there whole or not at all, also if the machine goes down."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    half = path.with_name(f'.half-{secrets.token_hex(8)}')
+    with open(half, 'wb') as file:
+        file.write(text.encode('utf8', 'backslashreplace') if isinstance(text, str) else text)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(half, path)
+    folder = os.open(path.parent, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
