@@ -20,6 +20,11 @@ unpickling or ``sympify``, runs no code that a student wrote.
 
 import numbers
 import re
+import sys
+
+import sympy
+from mpmath import libmp
+from sympy.core.function import AppliedUndef
 
 #: Largest number of nodes of one answer, and of parts of a list.
 MOST_NODES = 60_000
@@ -116,12 +121,12 @@ class _Writer:
         if not any(base.__module__.partition('.')[0] == 'sympy' for base in type(answer).__mro__):
             raise NotPlain(f'An answer of type `{type(answer).__name__[:40]}` cannot be read. '
                            'Give a SymPy expression, a matrix, a list of numbers or a text.')
-        import sympy
-        from sympy.physics.vector import ReferenceFrame, Vector
-        if isinstance(answer, ReferenceFrame):
+        # Mechanics is slow to import; whoever has a frame or a vector has imported it.
+        mechanics = sys.modules.get('sympy.physics.vector')
+        if mechanics and isinstance(answer, mechanics.ReferenceFrame):
             return ['frame', _text(answer.name), {
                 _text(other.name): self.value(answer.dcm(other), depth + 1) for other in _connected([answer])}]
-        if isinstance(answer, Vector):
+        if mechanics and isinstance(answer, mechanics.Vector):
             frames = _connected([frame for _, frame in answer.args])
             return ['vector', {
                 _text(frame.name): self.value(answer.to_matrix(frame), depth + 1) for frame in frames}]
@@ -198,8 +203,6 @@ class _Writer:
         return self.written[root]
 
     def children(self, part):
-        import sympy
-        from sympy.core.function import AppliedUndef
         if isinstance(part, (sympy.Number, sympy.NumberSymbol, sympy.Symbol, AppliedUndef)) or part is sympy.I:
             return ()
         if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
@@ -209,9 +212,6 @@ class _Writer:
         return part.args
 
     def operation(self, part, children):
-        import sympy
-        from mpmath import libmp
-        from sympy.core.function import AppliedUndef
         if isinstance(part, sympy.Rational):
             return self.rational(int(part.p), int(part.q))
         if isinstance(part, sympy.Float):
