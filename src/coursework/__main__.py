@@ -3,6 +3,8 @@
 import argparse
 import sys
 
+from .grading import commands as grading
+
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog='coursework', description=__doc__)
@@ -18,6 +20,7 @@ def main(arguments=None):
     update = commands.add_parser('update', help='unpack a newer archive beside your work, which stays as it is')
     update.add_argument('archive')
     update.add_argument('--folder', default='.')
+    grading.add_commands(commands)
     options = vars(parser.parse_args(arguments))
     return COMMANDS[options.pop('command')](**options)
 
@@ -50,7 +53,7 @@ def _update(archive, folder):
     print(*update(archive, folder), sep='\n')
 
 
-COMMANDS = {'release': _release, 'selftest': _selftest, 'update': _update}
+COMMANDS = {'release': _release, 'selftest': _selftest, 'update': _update, **grading.COMMANDS}
 
 if __name__ == '__main__':
     main()

@@ -97,79 +97,77 @@ def take_in(path, assignments=()):
     refused : list of Refused
     """
     notebooks, refused, files = [], [], []
-    for name, when, read in _files(os.fspath(path), refused):
-        if len(files) >= MOST_FILES:
-            refused.append(Refused(name, '', f'There are more than {MOST_FILES} files; the rest was not looked at.'))
-            break
-        files.append((name, when, read))
-    layout = _Layout([name for name, _, _ in files], assignments)
-    for name, when, read in files:
-        who = layout.who(name)
-        if not name.lower().endswith('.ipynb'):
-            if not layout.is_by_the_way(name):
-                refused.append(Refused(name, who.student, 'This is no notebook: its name does not end in .ipynb.'))
-            continue
-        try:
-            data = read()
-            cells, grade_ids = read_notebook(data)
-        except Unfit as found:
-            refused.append(Refused(name, who.student, str(found)))
-            continue
-        named = [found for cell in cells for found in CHECK.findall(cell['source'])]
-        notebooks.append(Notebook(
-            name, who.student, who.identity, hashlib.sha256(data).hexdigest(), cells, [*named, *grade_ids],
-            PurePosixPath(name).parent.name, (who.declared, when), who.late))
+    with contextlib.ExitStack() as stack:
+        for name, when, read in _files(os.fspath(path), refused, stack):
+            if len(files) >= MOST_FILES:
+                refused.append(Refused(name, '', f'There are more than {MOST_FILES} files; the rest was not looked at.'))
+                break
+            files.append((name, when, read))
+        layout = _Layout([name for name, _, _ in files], assignments)
+        for name, when, read in files:
+            who = layout.who(name)
+            if not name.lower().endswith('.ipynb'):
+                if not _is_by_the_way(name):
+                    refused.append(Refused(name, who.student, 'This is no notebook: its name does not end in .ipynb.'))
+                continue
+            try:
+                data = read()
+                cells, grade_ids = read_notebook(data)
+            except Unfit as found:
+                refused.append(Refused(name, who.student, str(found)))
+                continue
+            named = [found for cell in cells for found in CHECK.findall(cell['source'])]
+            notebooks.append(Notebook(
+                name, who.student, who.identity, hashlib.sha256(data).hexdigest(), cells, [*named, *grade_ids],
+                PurePosixPath(name).parent.name, (who.declared, when), who.late))
     return notebooks, refused
 
 
 # --- finding the files --------------------------------------------------------------------------
 
-def _files(path, refused):
-    """Give the name of each file, its time, and a function that reads it: in a fixed order."""
+def _files(path, refused, stack):
+    """Give the name of each file, its time, and a function that reads it while the stack is open: in a fixed order."""
     if os.path.isdir(path):
-        yield from _files_of_folder(path, refused)
+        yield from _files_of_folder(path, refused, stack)
     elif zipfile.is_zipfile(path):
-        yield from _files_of_archive(path, refused)
+        yield from _files_of_archive(path, refused, stack)
     elif path.lower().endswith('.zip'):
         raise Unfit(f'{path} is no zip archive, or a damaged one.')
     elif os.path.exists(path):
         folder, name = os.path.split(os.path.abspath(path))
         handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            yield name, os.stat(path).st_mtime_ns, lambda: _read_file(name, handle)
-        finally:
-            os.close(handle)
+        stack.callback(os.close, handle)
+        yield name, os.stat(path).st_mtime_ns, lambda: _read_file(name, handle)
     else:
         raise Unfit(f'There is nothing at {path}.')
 
 
-def _files_of_folder(root, refused):
+def _files_of_folder(root, refused, stack):
     # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
     top = os.open(root, os.O_RDONLY | os.O_DIRECTORY)
-    with contextlib.ExitStack() as stack:
-        stack.callback(os.close, top)
-        for folder, folders, files, handle in os.fwalk('.', dir_fd=top, follow_symlinks=False):
-            folders.sort()
-            inside = os.path.normpath(folder)
-            for name in sorted(files + folders):
-                full = name if inside == '.' else f'{inside}/{name}'
-                if _is_litter(full):
-                    continue
-                try:
-                    about = os.stat(name, dir_fd=handle, follow_symlinks=False)
-                except OSError as error:
-                    refused.append(Refused(_text(full), '', f'It cannot be read: {error.strerror}.'))
-                    continue
-                if stat.S_ISLNK(about.st_mode):
-                    refused.append(Refused(_text(full), '', 'This is a link to another place. It was not followed.'))
-                elif stat.S_ISREG(about.st_mode):
-                    yield _text(full), about.st_mtime_ns, lambda full=full: _read_below(top, full)
-                elif not stat.S_ISDIR(about.st_mode):
-                    refused.append(Refused(_text(full), '', 'This is no file but a device or a channel.'))
-            folders[:] = [name for name in folders if not _is_litter(name)]
-            if folders and inside.count('/') >= DEEPEST:
-                refused.append(Refused(_text(inside), '', 'Its folders are nested too deeply to be looked at.'))
-                folders.clear()
+    stack.callback(os.close, top)
+    for folder, folders, files, handle in os.fwalk('.', dir_fd=top, follow_symlinks=False):
+        folders.sort()
+        inside = os.path.normpath(folder)
+        for name in sorted(files + folders):
+            full = name if inside == '.' else f'{inside}/{name}'
+            if _is_litter(full):
+                continue
+            try:
+                about = os.stat(name, dir_fd=handle, follow_symlinks=False)
+            except OSError as error:
+                refused.append(Refused(_text(full), '', f'It cannot be read: {error.strerror}.'))
+                continue
+            if stat.S_ISLNK(about.st_mode):
+                refused.append(Refused(_text(full), '', 'This is a link to another place. It was not followed.'))
+            elif stat.S_ISREG(about.st_mode):
+                yield _text(full), about.st_mtime_ns, lambda full=full: _read_below(top, full)
+            elif not stat.S_ISDIR(about.st_mode):
+                refused.append(Refused(_text(full), '', 'This is no file but a device or a channel.'))
+        folders[:] = [name for name in folders if not _is_litter(name)]
+        if folders and inside.count('/') >= DEEPEST:
+            refused.append(Refused(_text(inside), '', 'Its folders are nested too deeply to be looked at.'))
+            folders.clear()
 
 
 def _text(name):
@@ -213,28 +211,28 @@ def _no_more_than(data):
     return data
 
 
-def _files_of_archive(path, refused):
-    with zipfile.ZipFile(path) as archive:
-        entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
-        times = {}
-        for entry in entries:
-            times[entry.filename] = times.get(entry.filename, 0) + 1
-        unpacked = 0
-        for entry in entries:
-            name = entry.filename
-            shown = name.encode('utf8', 'backslashreplace').decode('utf8')
-            if entry.is_dir() or _is_litter(name):
-                continue
-            why = _why_not_unpacked(entry, name)
-            if times[name] > 1:
-                why = 'The archive holds this name more than once.'
-            unpacked += min(entry.file_size, MOST_BYTES)
-            if not why and unpacked > MOST_UNPACKED:
-                why = f'The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not read any more.'
-            if why:
-                refused.append(Refused(shown, '', why))
-            else:
-                yield shown, entry.date_time, lambda entry=entry: _read_entry(archive, entry)
+def _files_of_archive(path, refused, stack):
+    archive = stack.enter_context(zipfile.ZipFile(path))
+    entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
+    times = {}
+    for entry in entries:
+        times[entry.filename] = times.get(entry.filename, 0) + 1
+    unpacked = 0
+    for entry in entries:
+        name = entry.filename
+        shown = name.encode('utf8', 'backslashreplace').decode('utf8')
+        if entry.is_dir() or _is_litter(name):
+            continue
+        why = _why_not_unpacked(entry, name)
+        if times[name] > 1:
+            why = 'The archive holds this name more than once.'
+        unpacked += min(entry.file_size, MOST_BYTES)
+        if not why and unpacked > MOST_UNPACKED:
+            why = f'The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not read any more.'
+        if why:
+            refused.append(Refused(shown, '', why))
+        else:
+            yield shown, entry.date_time, lambda entry=entry: _read_entry(archive, entry)
 
 
 def _why_not_unpacked(entry, name):
@@ -319,11 +317,12 @@ class _Layout:
                     return _clean(rest)
         return _clean(stem)
 
-    def is_by_the_way(self, name):
-        """Whether a file is none that a student handed in for marks: an index, a picture beside a notebook."""
-        path = PurePosixPath(name)
-        return path.name in ('index.html', 'timestamp.txt', 'feedback.html') or path.suffix.lower() in (
-            '.csv', '.png', '.jpg', '.jpeg', '.svg', '.md', '.json')
+
+def _is_by_the_way(name):
+    """Whether a file is none that a student handed in for marks: an index, a picture beside a notebook."""
+    path = PurePosixPath(name)
+    return path.name in ('index.html', 'timestamp.txt') or path.suffix.lower() in (
+        '.csv', '.png', '.jpg', '.jpeg', '.svg', '.md', '.json')
 
 
 def _clean(name):

@@ -113,19 +113,21 @@ def mark(name, question, answer, finished=True):
     Returns
     -------
     dict
-        ``outcome``, ``note``, ``messages``, ``points``, ``worth``, and ``group``: the same for identical answers.
+        ``outcome``, ``note`` with its ``details``, ``messages``, ``points``, ``worth``, the ``version`` of the
+        question, and ``group``, which identical answers have in common.
     """
     reply, text = judge(name, question, answer, finished)
+    notes = question['known'].get(text, {}).get('notes') if reply.outcome == 'wrong' else None
     share = {'correct': 1, 'wrong': question['credit'].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     return {
-        'outcome': reply.outcome, 'note': reply.note, 'messages': reply.messages,
+        'outcome': reply.outcome, 'note': reply.note, 'details': notes[0][1] if notes else {}, 'messages': reply.messages,
         'points': round(question['worth'] * share, 4), 'worth': question['worth'],
         'group': hashlib.sha256(text.encode()).hexdigest()[:16] if text else '', 'version': question['version'],
     }
 
 
 def judge(name, question, answer, finished=True):
-    """Give the :class:`Reply` to an answer, and its fingerprint if it has one."""
+    """Give the :class:`coursework.reply.Reply` to an answer, and its fingerprint if it has one."""
     state = answer['outcome']
     if state == 'missing':
         if not finished:

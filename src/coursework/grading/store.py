@@ -73,14 +73,19 @@ class Store:
 
 
 def as_text(value):
-    return json.dumps(value, ensure_ascii=False, indent=1, sort_keys=True) + '\n'
+    """JSON with a line for each entry of the outermost list or object: short, and still to be read."""
+    if isinstance(value, dict):
+        lines = [f'{json.dumps(name, ensure_ascii=False)}: {json.dumps(inner, ensure_ascii=False)}' for name, inner in value.items()]
+        return '{\n' + ',\n'.join(lines) + '\n}\n'
+    return '[\n' + ',\n'.join(json.dumps(inner, ensure_ascii=False) for inner in value) + '\n]\n'
 
 
 def file_name(name):
     """A name for a file that a student's name cannot lead astray; different names stay different."""
     plain = re.sub(r'[^A-Za-z0-9._-]+', '-', name).strip('.-')[:60]
-    # The letter's case counts too: some file systems do not tell a from A.
-    if plain == name and name == name.lower():
+    # The letter's case counts too: some file systems do not tell a from A. And what looks like a name with a
+    # digest gets one as well, or somebody could call himself what another is called here.
+    if plain == name and name == name.lower() and not re.search(r'-[0-9a-f]{8}$', name):
         return plain
     return f'{plain.lower() or "student"}-{hashlib.sha256(name.encode("utf8", "surrogatepass")).hexdigest()[:8]}'
 
