@@ -91,8 +91,14 @@ def _digest_of_package():
 
 def asked_of_sandbox(questions):
     """What the sandbox is told of each question: the answer's name and the calls of a function, no more."""
-    return {name: {'variable': about['variable'], 'calls': None if about['public']['kind'] != 'function' else {
-        'arguments': about['public']['calls'], 'as': about['public']['takes']}} for name, about in questions.items()}
+    variables = [question['variable'] for question in questions.values()]
+    return {name: {
+        # Two questions may call their answers the same, in two notebooks that were joined: then only the
+        # checks tell them apart.
+        'variable': question['variable'] if variables.count(question['variable']) == 1 else None,
+        'calls': None if question['public']['kind'] != 'function' else {
+            'arguments': question['public']['calls'], 'as': question['public']['takes']},
+    } for name, question in questions.items()}
 
 
 # --- one answer ---------------------------------------------------------------------------------

@@ -337,10 +337,12 @@ class _Run:
     def try_order_of_execution(self, answers):
         """Fill in the answers that the notebook gives only in the order in which its cells once ran."""
         cells = self.job["cells"]
-        counts = [cell.get("execution_count") for cell in cells]
-        ran = [index for index in range(len(cells)) if type(counts[index]) is int and counts[index] > 0]
-        order = sorted(ran, key=lambda index: counts[index])
-        order += [index for index in range(len(cells)) if index not in set(ran)]
+        moments, last = [], 0
+        for cell in cells:  # one that was never run goes with the one above it
+            count = cell.get("execution_count")
+            last = count if type(count) is int and count > 0 else last
+            moments.append(last)
+        order = sorted(range(len(cells)), key=lambda index: moments[index])
         if order == list(range(len(cells))):
             return
         _, others, _ = self.in_order(order)
