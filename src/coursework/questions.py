@@ -6,6 +6,7 @@ A name is ``'notebook/question'``; the questions of one notebook lie in one file
 import difflib
 import functools
 import json
+import re
 from importlib import resources
 
 from . import sealing
@@ -26,8 +27,10 @@ class NoSuchQuestion(KeyError):
 @functools.cache
 def notebook_questions(notebook):
     """The public parts and the lockers of all questions of a notebook, by full name."""
+    if not re.fullmatch('[a-z0-9-]{1,60}', notebook):
+        return {}
     file = resources.files(__package__) / 'sealed' / f'{notebook}.json'
-    if not notebook.replace('-', '').isalnum() or not file.is_file():
+    if not file.is_file():
         return {}
     data = json.loads(file.read_text('utf8'))
     if data['format'] != FORMAT:
