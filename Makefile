@@ -12,11 +12,12 @@ export IPYTHONDIR := $(CURDIR)/_build/ipython
 export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve test notebooks benchmark clean
+.PHONY: help setup book serve test take-away notebooks benchmark clean
 
 help:
 	@echo "make book       build the site into _build/html"
 	@echo "make serve      build it, serve it on a local address and print that"
+	@echo "make take-away  build it with the whole book as a PDF and as a zip to read offline"
 	@echo "make test       run every test"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make benchmark  compare with other libraries"
@@ -29,7 +30,7 @@ $(VENV)/ready: constraints.txt pyproject.toml
 	@echo "Setting up Python in $(VENV) (about a minute) ..."
 	@test -x $(RUN) || $(PYTHON) -m venv $(VENV)
 	@$(PIP) setuptools
-	@$(PIP) --editable '.[book,test,benchmark]'
+	@$(PIP) --editable '.[book,print,test,benchmark]'
 	@touch $@
 
 node_modules/ready: package-lock.json $(VENV)/ready
@@ -53,7 +54,12 @@ book: setup
 serve: book
 	@$(RUN) -m website.serve $(PORT)
 
+take-away: book
+	@$(RUN) -m website.whole_book
+
+# The PDF is printed by a browser; where there is none, the tests that need one are skipped.
 test: book
+	@if $(RUN) -m website.browser; then $(RUN) -m website.whole_book; fi
 	@$(RUN) -m pytest -n 2
 
 notebooks: setup

@@ -6,17 +6,8 @@ import sys
 import time
 from pathlib import Path
 
-import yaml
-
-BUILD = Path("_build")
-HTML = BUILD / "html"
-
-
-def pages():
-    """The names of the pages in ``_toc.yml``."""
-    contents = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
-    chapters = [chapter["file"] for part in contents["parts"] for chapter in part["chapters"]]
-    return [contents["root"], *chapters]
+from . import whole_book
+from .paths import BUILD, HTML, pages
 
 
 def missing_pages():
@@ -42,6 +33,7 @@ def main():
         for folder in (HTML, BUILD / ".doctrees"):
             shutil.rmtree(folder, ignore_errors=True)
         sys.exit("The book was not built: see the warnings above.")
+    whole_book.withdraw_outdated()
     print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
 
 

@@ -1,11 +1,45 @@
 """Where things are, and a fingerprint of what the pages are made from."""
 
 import hashlib
+import os
+import subprocess
+import tomllib
+from datetime import datetime, timezone
 from pathlib import Path
+
+import yaml
 
 WEBSITE = Path(__file__).resolve().parent
 REPOSITORY = WEBSITE.parent.parent
 NODE_MODULES = REPOSITORY / "node_modules"
+# Commands run in the folder of a book.
+BUILD = Path("_build")
+HTML = BUILD / "html"
+
+
+def parts():
+    """The parts of the book in ``_toc.yml``: the caption of each, and the names of its pages."""
+    contents = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
+    return [(part["caption"], [chapter["file"] for chapter in part["chapters"]]) for part in contents["parts"]]
+
+
+def pages():
+    """The names of all pages of the book, the front page first."""
+    return ["index", *(page for _, chapters in parts() for page in chapters)]
+
+
+def package():
+    """What pyproject.toml says of the package: its name, version and so on."""
+    return tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
+
+
+def moment_of_sources():
+    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else now."""
+    seconds = os.environ.get("SOURCE_DATE_EPOCH")
+    if seconds is None:
+        command = ["git", "-C", REPOSITORY, "log", "-1", "--format=%ct"]
+        seconds = subprocess.run(command, capture_output=True, text=True).stdout.strip()
+    return datetime.fromtimestamp(int(seconds), timezone.utc) if seconds else datetime.now(timezone.utc)
 
 
 def fingerprint(*paths):

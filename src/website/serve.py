@@ -1,8 +1,16 @@
-"""``python -m website.serve [port]``: show the built book on a local address."""
+"""Show the built book on a local address: ``python -m website.serve [port]``.
+
+In the offline book: ``python serve.py [port]``. Needs nothing but Python's standard library.
+"""
 
 import sys
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+# The offline book carries a copy of this file, with the pages beside it.
+BOOK = HERE if (HERE / "index.html").is_file() else Path("_build/html")
 
 
 class Handler(SimpleHTTPRequestHandler):
@@ -31,7 +39,7 @@ class Handler(SimpleHTTPRequestHandler):
         """Say nothing about each request."""
 
 
-def server(folder="_build/html", port=0, handler=Handler):
+def server(folder=BOOK, port=0, handler=Handler):
     """A server of ``folder``; port 0 takes any that is free."""
     return ThreadingHTTPServer(("127.0.0.1", port), partial(handler, directory=folder))
 

@@ -28,6 +28,11 @@ if (menu) {
   });
 }
 
+// A page opened from disk may not read other pages: the search then shows titles alone.
+if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined") {
+  DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
+}
+
 // Excerpts on the search page show the text only, and each formula once.
 if (typeof Search !== "undefined") {
   const toText = Search.htmlToText;

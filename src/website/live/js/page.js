@@ -42,7 +42,7 @@
   let page;
   const ask = async (number) => {
     if (location.protocol === "file:") {
-      tools.say("A page opened from disk cannot run code. In the book’s folder run: python -m http.server, and open the address that it prints.");
+      tools.say("A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints.");
       return;
     }
     try {

@@ -1,0 +1,46 @@
+"""The site as one zip, to be read from disk or from a USB stick, with the network off.
+
+Its bytes depend on what is in it and on nothing else: files stand in order, with one date.
+"""
+
+import io
+import zipfile
+
+from .paths import WEBSITE, moment_of_sources
+
+SERVER = WEBSITE / "serve.py"
+README = """{title}
+{line}
+
+This is the whole book, to be read without a network.
+
+Unpack the zip, then open index.html in a browser. Everything that you read
+works from there: the pages, the mathematics, the moving figures, the search
+and the downloads.
+
+Code that runs in the page is the one exception: browsers load Python only
+from a server. If Python is on your computer, start one in this folder with
+
+    python serve.py
+
+and open the address that it prints. It answers to your computer alone, and
+needs no network either. (Cells that use NumPy or Matplotlib may fetch these
+two from the network the first time, and say so.)
+
+Text: CC BY 4.0. Code: BSD 3-Clause.
+"""
+
+
+def pack(files, name, title):
+    """The zip of ``files``, contents by path, in a folder called ``name``."""
+    readme = README.format(title=title, line="=" * len(title))
+    files = {"README.txt": readme.encode(), "serve.py": SERVER.read_bytes(), **files}
+    date = moment_of_sources().timetuple()[:6]
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in sorted(files):
+            entry = zipfile.ZipInfo(f"{name}/{path}", date)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.create_system, entry.external_attr = 3, 0o644 << 16
+            archive.writestr(entry, files[path])
+    return packed.getvalue()

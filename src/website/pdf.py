@@ -1,0 +1,297 @@
+"""The whole book as one PDF: the built pages in one document, printed by Chromium.
+
+Nothing is set anew. Equations, figures and numbers are those of the pages; what
+only a screen can do is taken out, links between pages become links inside the
+document, and print.css lays it out on paper.
+"""
+
+import io
+import os
+import re
+from html import escape
+from pathlib import Path
+from urllib.parse import urldefrag
+
+import pikepdf
+from bs4 import BeautifulSoup, Comment, NavigableString
+
+from .browser import open_browser
+from .paths import NODE_MODULES, WEBSITE, moment_of_sources, package, parts
+
+FACES = (
+    # The typefaces of the site that are variable fonts, here in fixed weights: a PDF holds variable ones as
+    # drawings. And one for code, which on a screen is the reader's own.
+    ("Source Sans", "source-sans-3", 400),
+    ("Source Sans", "source-sans-3", 600),
+    ("Source Code Pro", "source-code-pro", 400),
+    ("Source Code Pro", "source-code-pro", 700),
+)
+SHORT = 30  # signs of a formula that need not be broken
+LONG = 14  # lines of code that need not stay on one page
+# What only a screen can do, or what stands in the way on paper: links to a place beside themselves, the
+# code that draws figures, controls, the list of links on the front page.
+ONLY_ON_SCREEN = "a.headerlink, script, details.hide, button, [hidden], .sd-container-fluid, .whole-book"
+WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
+# Attributes that name other elements.
+NAMES_OF_OTHERS = ("aria-labelledby", "aria-describedby", "for", "headers")
+NOTE = (
+    "<strong>On paper.</strong> In this PDF, figures that move on the book\u2019s web pages are stills, and the "
+    "code that draws the figures is left out. The web pages and the notebooks have both."
+)
+SMALLEST = 0.6  # of the size of the text; what is still too wide then stops the printing
+
+# Make what is wider than its column smaller; return what is still too wide. A page is as wide as the
+# document in a window of the same width, so both are laid out alike.
+FIT = """smallest => {
+  for (const box of document.querySelectorAll(".math-box")) {
+    const formula = box.querySelector(".katex");
+    const size = parseFloat(getComputedStyle(formula).fontSize);
+    // A formula shrinks with its font; a little less than all of the room allows for rounding.
+    const width = formula.getBoundingClientRect().width;
+    if (width > box.clientWidth)
+      formula.style.fontSize = Math.max((box.clientWidth - 6) / width, smallest) * size + "px";
+  }
+  const sheet = document.body.getBoundingClientRect();
+  const faults = [];
+  for (const element of document.querySelectorAll("article *")) {
+    // MathML is there for screen readers, one pixel large.
+    if (element.closest("svg, .katex-mathml") && element.tagName !== "svg") continue;
+    if (element.closest(".katex") && element.className !== "katex") continue;
+    const box = element.getBoundingClientRect();
+    if (box.width && (box.right > sheet.right + 1 || box.left < sheet.left - 30))
+      faults.push(`${element.tagName.toLowerCase()}.${element.className} in #${element.closest("[id]")?.id}: ` +
+                  `${Math.round(box.right - sheet.right)} px too wide: ${element.textContent.slice(0, 60)}`);
+  }
+  return faults;
+}"""
+
+FILL_IN = """numbers => {
+  for (const link of document.querySelectorAll(".list-of-contents a"))
+    link.querySelector(".page").textContent = numbers[link.hash.slice(1)];
+}"""
+HEADINGS = """() => [...document.querySelectorAll("h1, h2, h3, h4, h5, h6")].map(
+  heading => heading.textContent.replace(/\\s+/g, " ").trim())"""
+PAPER = {"prefer_css_page_size": True, "print_background": True}
+
+
+def place(page, fragment=""):
+    """The name of a place in the one document, which no two pages share."""
+    return f"{page.replace('/', '-')}--{fragment}" if fragment else page.replace("/", "-")
+
+
+def target(page, address):
+    """Where a link on ``page`` leads in the document; ``None`` if it leads to no page of the book."""
+    path, fragment = urldefrag(address)
+    if not path:
+        return place(page, fragment)
+    file = (Path("/") / page).parent / path
+    name = os.path.normpath(file).lstrip("/")
+    return place(name.removesuffix(".html"), fragment) if name.endswith(".html") else None
+
+
+def keep_punctuation(formula):
+    """Let no line begin with the full stop or comma after a short formula."""
+    after = formula.next_sibling
+    if isinstance(after, NavigableString) and after[:1] in set(".,;:!?)") and len(formula.get_text()) < SHORT:
+        together = BeautifulSoup('<span style="white-space: nowrap"></span>', "html.parser").span
+        formula.wrap(together)
+        together.append(after[:1])
+        after.replace_with(after[1:])
+
+
+def article(site, page):
+    """The text of a page, ready to stand in one document with the others."""
+    soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
+    text = soup.select_one("article")
+    for element in text.select(ONLY_ON_SCREEN):
+        element.decompose()
+    # A PDF has no MathML: screen readers get the formula as it is written in TeX.
+    for formula in text.select(".katex"):
+        tex = formula.select_one("annotation").get_text()
+        formula.select_one(".katex-mathml").decompose()
+        del formula.select_one(".katex-html")["aria-hidden"]
+        formula["role"], formula["aria-label"] = "img", re.sub(r"\s+", " ", tex)
+        keep_punctuation(formula.parent)
+    for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
+        comment.extract()
+    for paragraph in text.find_all("p"):
+        if paragraph.get_text().rstrip().endswith((":", ",")):
+            paragraph["class"] = [*paragraph.get("class", []), "leads-on"]
+    for code in text.select("div.cell_input"):
+        if len(code.get_text().splitlines()) > LONG:
+            code["class"].append("long")
+    for element in text.find_all(True):
+        if element.get("id"):
+            element["id"] = place(page, element["id"])
+        for name, value in list(element.attrs.items()):
+            if name == "href" and not re.match(r"\w+:", value):
+                if (found := target(page, value)) is None:
+                    element.unwrap()  # a download that does not come with the PDF
+                else:
+                    element["href"] = f"#{found}"
+            elif name in NAMES_OF_OTHERS:
+                names = value if isinstance(value, list) else value.split()
+                element[name] = " ".join(place(page, one) for one in names)
+            elif isinstance(value, str) and "url(#" in value:
+                element[name] = value.replace("url(#", f"url(#{place(page)}--")
+    text["id"] = place(page)
+    return text
+
+
+def share_styles(articles):
+    """Keep one of each style sheet that figures bring with them."""
+    seen = set()
+    for text in articles:
+        for style in text.find_all("style"):
+            if style.string in seen:
+                style.decompose()
+            else:
+                seen.add(style.string)
+
+
+def lower_headings(text):
+    """One level down: above the chapters stand the parts."""
+    for level in (5, 4, 3, 2, 1):
+        for heading in text.find_all(f"h{level}"):
+            heading.name = f"h{level + 1}"
+
+
+def heading(element):
+    return re.sub(r"\s+", " ", element.get_text()).strip()
+
+
+def contents_list(chapters):
+    """The list of contents, with room for the page numbers."""
+
+    def line(kind, where, title):
+        return (
+            f'<li class="{kind}"><a href="#{where}"><span class="entry">{escape(title)}</span>'
+            f'<span class="dots"></span><span class="page"></span></a></li>'
+        )
+
+    lines = []
+    for caption, page, text in chapters:
+        if caption:
+            lines.append(f'<li class="part">{escape(caption)}</li>')
+        lines.append(line("chapter", place(page), heading(text.h2)))
+        if page.startswith("chapters/"):
+            lines += [line("section", section.parent["id"], heading(section)) for section in text.find_all("h3")]
+    return "".join(lines)
+
+
+def running_heads(chapters):
+    """A named page for each chapter, with its title above."""
+    rules = []
+    for _, page, text in chapters:
+        title = heading(text.h2).replace("\\", "\\\\").replace('"', '\\"')
+        rules.append(f'@page {place(page)} {{ @top-right {{ content: "{title}"; }} }}')
+        rules.append(f"#{place(page)} {{ page: {place(page)}; }}")
+    return "\n".join(rules)
+
+
+def faces():
+    files = NODE_MODULES / "@fontsource"
+    return "".join(
+        f'@font-face {{ font-family: "{family}"; font-weight: {weight}; '
+        f"src: url({(files / name / 'files' / f'{name}-latin-{weight}-normal.woff2').as_uri()}); }}\n"
+        for family, name, weight in FACES
+    )
+
+
+def title_page(front, title):
+    """The title page, from the beginning of the front page; what remains is a preface."""
+    figure = front.select_one("figure.orientation-figure").extract()
+    words = front.section.find_all("p", recursive=False)
+    question, beginning = words[0].extract(), words[1].extract()
+    front.h1.string = "About this book"
+    front.section.append(BeautifulSoup(f"<p>{NOTE}</p>", "html.parser"))
+    project = package()
+    return (
+        f'<header class="title-page"><h1>{escape(title)}</h1><p class="question">{question.get_text()}</p>'
+        f"{figure}{beginning}"
+        f"<p class='edition'>Version {project['version']}, {moment_of_sources():%B %Y}<br>"
+        "Text: CC BY 4.0. Code: BSD 3-Clause.</p></header>"
+    )
+
+
+def document(site, title):
+    """The book as one HTML document."""
+    front = article(site, "index")
+    chapters = [
+        (caption if first else None, page, article(site, page))
+        for caption, pages in parts()
+        for first, page in zip([True, *[False] * len(pages)], pages)
+    ]
+    cover = title_page(front, title)
+    texts = [front, *(text for *_, text in chapters)]
+    share_styles(texts)
+    for *_, text in chapters:
+        lower_headings(text)
+    body = [cover]
+    body.append(
+        f'<nav class="list-of-contents" aria-label="Contents"><h1>Contents</h1><ol>{contents_list(chapters)}</ol></nav>'
+    )
+    body.append(str(front))
+    for caption, _, text in chapters:
+        if caption:
+            text.insert(0, BeautifulSoup(f'<h1 class="part">{escape(caption)}</h1>', "html.parser"))
+        body.append(str(text))
+    static = (site / "_static").resolve().as_uri()
+    styles = ["theme.css", "fonts/fonts.css", "book.css", "moving/moving.css"]
+    links = "".join(f'<link rel="stylesheet" href="{static}/{name}">' for name in styles)
+    own = (WEBSITE / "print.css").read_text("utf8")
+    return (
+        f'<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        f"{links}<style>{faces()}{own}{running_heads(chapters)}</style></head><body>{''.join(body)}</body></html>"
+    )
+
+
+def page_numbers(printed):
+    """The page on which each named place of a PDF stands, counted from 1."""
+    with pikepdf.open(io.BytesIO(printed)) as pdf:
+        pages = {page.objgen: number for number, page in enumerate(pdf.pages, start=1)}
+        return {name.removeprefix("/"): pages[place[0].objgen] for name, place in pdf.Root.Dests.items()}
+
+
+def in_order(bookmarks):
+    """All bookmarks, each before those under it."""
+    for bookmark in bookmarks:
+        yield bookmark
+        yield from in_order(bookmark.children)
+
+
+def finish(printed, headings, title, author):
+    """Say what the PDF is, and leave nothing in it of the hour and the machine that made it."""
+    date = moment_of_sources().strftime("D:%Y%m%d%H%M%SZ")
+    file = io.BytesIO()
+    with pikepdf.open(io.BytesIO(printed)) as pdf:
+        facts = {"/Title": title, "/Author": author, "/CreationDate": date, "/ModDate": date}
+        pdf.trailer.Info = pdf.make_indirect(pikepdf.Dictionary(facts))
+        with pdf.open_outline() as outline:
+            # Chromium makes the bookmarks, and some of their words twice.
+            for bookmark, words in zip(in_order(outline.root), headings, strict=True):
+                bookmark.title = words
+        pdf.Root.PageMode = pikepdf.Name.UseOutlines  # opened with the bookmarks beside it
+        pdf.save(file, object_stream_mode=pikepdf.ObjectStreamMode.generate, deterministic_id=True)
+    return file.getvalue()
+
+
+def make(site, file, title, author):
+    """The PDF of the built book in ``site``, printed from the document ``file``."""
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(document(site, title), "utf8")
+    with open_browser() as browser:
+        page = browser.new_page(viewport={"width": WIDTH, "height": 900})
+        page.emulate_media(media="print", color_scheme="light")
+        page.goto(file.resolve().as_uri())
+        page.evaluate("document.fonts.ready")
+        if faults := page.evaluate(FIT, SMALLEST):
+            raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
+        # The list of contents needs the page numbers: print, read them, print again.
+        numbers = page_numbers(page.pdf(**PAPER))
+        page.evaluate(FILL_IN, numbers)
+        headings = page.evaluate(HEADINGS)
+        printed = page.pdf(**PAPER, outline=True, tagged=True)
+    if page_numbers(printed) != numbers:
+        raise RuntimeError("the page numbers in the list of contents moved the pages they name")
+    return finish(printed, headings, title, author)

@@ -1,0 +1,379 @@
+"""The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk without a network."""
+
+import re
+import subprocess
+import sys
+import unicodedata
+import urllib.request
+import zipfile
+from functools import cache
+
+import pytest
+from bs4 import BeautifulSoup
+from conftest import BROWSER_REQUIRED, HTML, REPOSITORY
+from test_site import SIDEWAYS
+
+from website import browser as browser_module
+from website import offline, pdf, whole_book
+from website.paths import pages, parts
+
+pikepdf = pytest.importorskip("pikepdf")
+pdfium = pytest.importorskip("pypdfium2")
+
+PDF, ZIP = (REPOSITORY / path for path in (whole_book.PDF, whole_book.ZIP))
+CHAPTERS = [page for page in pages() if page.startswith("chapters/")]
+MARGIN = 20  # millimetres at either side that nothing may enter
+MILLIMETRE = 72 / 25.4
+
+
+@pytest.fixture(scope="module", autouse=True)
+def made():
+    """Both files, made by `make take-away` from the site as it stands."""
+    if not (PDF.exists() and ZIP.exists()):
+        reason = "the whole book was not made: run `make take-away`"
+        pytest.fail(reason) if browser_module.find() or BROWSER_REQUIRED else pytest.skip(reason)
+
+
+@cache
+def article(page):
+    """The text of a page of the site, without what stays on the screen."""
+    soup = BeautifulSoup((HTML / f"{page}.html").read_text("utf8"), "lxml").select_one("article")
+    for element in soup.select(pdf.ONLY_ON_SCREEN):
+        element.decompose()
+    return soup
+
+
+def plain(text):
+    """Text on one line, without what typesetting does to it: lines, joined letters."""
+    text = re.sub("\ufffe\\s*", "-", text)  # how PDFium gives a hyphen at the end of a line
+    return re.sub(r"\s+", " ", unicodedata.normalize("NFKC", text))
+
+
+@pytest.fixture(scope="module")
+def book():
+    with pikepdf.open(PDF) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def texts():
+    """The text of each page of the PDF, as a viewer's search finds it."""
+    document = pdfium.PdfDocument(PDF)
+    found = []
+    for page in document:
+        text = page.get_textpage()
+        found.append(plain(text.get_text_range()))
+        text.close()
+        page.close()
+    document.close()
+    return found
+
+
+@pytest.fixture(scope="module")
+def places(book):
+    """The page, counted from 0, of every named place."""
+    numbers = {page.objgen: number for number, page in enumerate(book.pages)}
+    return {name.removeprefix("/"): numbers[place[0].objgen] for name, place in book.Root.Dests.items()}
+
+
+@pytest.fixture(scope="module")
+def chapter_texts(places, texts):
+    """The text of the pages of each page of the site."""
+    starts = [(name, places[pdf.place(name)]) for name in pages() if name != "index"]
+    ends = [start for _, start in starts[1:]] + [len(texts)]
+    return {name: " ".join(texts[start:end]) for (name, start), end in zip(starts, ends)}
+
+
+def test_it_says_what_it_is(book):
+    assert str(book.docinfo.Title) == "Orientation of Reference Frames"
+    assert str(book.Root.Lang).startswith("en")
+    assert book.Root.MarkInfo.Marked
+    assert book.Root.PageMode == pikepdf.Name.UseOutlines
+
+
+def test_bookmarks_are_the_parts_chapters_and_sections(book):
+    with book.open_outline() as outline:
+        found = {item.title: item.children for item in outline.root}
+    headings = {page: [pdf.heading(h) for h in article(page).find_all(["h1", "h2"])] for page in pages()}
+    for caption, names in parts():
+        children = found.pop(caption)
+        assert [child.title for child in children] == [headings[name][0] for name in names]
+        for child, name in zip(children, names):
+            assert [section.title for section in child.children] == headings[name][1:]
+    assert list(found) == ["Orientation of Reference Frames", "Contents", "About this book"]
+
+
+def test_links_lead_somewhere(book, places):
+    """Each link of the pages is a link of the PDF, and each of those has a place to go."""
+    inside, outside = set(), set()
+    for page in book.pages:
+        for note in page.get("/Annots", []):
+            if "/Dest" in note:
+                inside.add(str(note.Dest).removeprefix("/"))
+            elif "/A" in note:
+                outside.add(str(note.A.URI))
+    assert inside <= set(places)
+    for name in pages():
+        links = [link["href"] for link in article(name).select("a[href]") if link.get_text(strip=True)]
+        for link in links:
+            if re.match(r"\w+:", link):
+                assert link in outside
+            elif (target := pdf.target(name, link)) is not None:
+                assert target in inside, f"{name}: {link}"
+
+
+def test_contents_list_has_the_right_page_numbers(places, texts):
+    listed = " ".join(texts[1 : places[pdf.place(pages()[1])]])
+    for name in pages()[1:]:
+        title = plain(pdf.heading(article(name).h1))
+        number = places[pdf.place(name)] + 1
+        assert re.search(rf"{re.escape(title)}[ .]* {number}\b", listed), title
+        assert title in texts[number - 1]
+        assert re.search(rf"(^|\D){number}(\D|$)", texts[number - 1]), "the page bears another number"
+
+
+@pytest.mark.parametrize("name", pages()[1:])
+def test_chapter_is_whole(name, chapter_texts):
+    """Its sentences can be searched for; its equations, figures and exercises have their numbers."""
+    text = chapter_texts[name]
+    for number in article(name).select(".eqno"):
+        assert number.get_text(strip=True) in text
+    for caption in article(name).select("figcaption .caption-number, table caption .caption-number"):
+        assert plain(caption.get_text(strip=True)) in text
+    paragraphs = [
+        plain(p.get_text()).strip() for p in article(name).find_all("p") if not p.find(["code", "span", "a", "math"])
+    ]
+    assert paragraphs or name == "appendix/reference"
+    for paragraph in paragraphs:
+        assert paragraph in text
+
+
+def structure(node):
+    """All elements of the PDF's structure, which screen readers follow."""
+    if isinstance(node, pikepdf.Array):
+        for child in node:
+            yield from structure(child)
+    elif isinstance(node, pikepdf.Dictionary) and "/S" in node:
+        yield node
+        if "/K" in node:
+            yield from structure(node.K)
+
+
+def test_every_figure_is_there_and_says_what_it_shows(book):
+    said = [str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node]
+    shown = [svg["aria-label"] for name in pages() for svg in article(name).select("svg[aria-label]")]
+    assert len(shown) > 40
+    assert sorted(set(shown) - set(said)) == []
+    assert sum(text in set(shown) for text in said) == len(shown)
+
+
+def test_formulas_are_there_and_are_read_as_tex(book):
+    said = {str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node}
+    for name in pages():
+        for formula in article(name).select(".katex annotation"):
+            assert re.sub(r"\s+", " ", formula.get_text()) in said
+
+
+def test_no_glyph_comes_from_elsewhere(book):
+    """Where our typefaces have no glyph, the browser would take one from the machine, or draw a box."""
+    fonts = {}
+    for page in book.pages:
+        for font in page.get("/Resources", {}).get("/Font", {}).values():
+            fonts[str(font.BaseFont) if "/BaseFont" in font else "drawn"] = font
+    names = {re.sub(r"^/[A-Z]{6}\+", "", name) for name in fonts}
+    assert all(re.match(r"SourceSerif4|SourceSans3|SourceCodePro|KaTeX_", name) for name in names), names
+    for font in fonts.values():
+        assert "/FontFile2" in font.DescendantFonts[0].FontDescriptor
+
+
+def test_nothing_reaches_into_the_margins():
+    document = pdfium.PdfDocument(PDF)
+    scale = 0.4
+    edge = int(MARGIN * MILLIMETRE * scale)
+    for number, page in enumerate(document, start=1):
+        picture = page.render(scale=scale, grayscale=True).to_numpy()
+        assert picture.min() < 200, f"page {number} is empty"
+        assert picture[:, :edge].min() > 200 and picture[:, -edge:].min() > 200, f"page {number} is too wide"
+        page.close()
+    document.close()
+
+
+def test_too_wide_a_line_stops_the_printing(browser):
+    katex = '<div class="math-box"><span class="katex" style="white-space: nowrap">{}</span></div>'
+    style = "<style>.katex { display: inline-block; font-size: 16px }</style>"
+    page = browser.new_page(viewport={"width": pdf.WIDTH, "height": 900})
+
+    def faults(inside):
+        page.set_content(f'{style}<body style="margin: 0"><article id="a">{inside}</article>')
+        return page.evaluate(pdf.FIT, pdf.SMALLEST)
+
+    assert faults("<p>Some words.</p>") == []
+    wide = katex.format("m" * 55)
+    assert faults(wide) == []
+    assert page.evaluate("parseFloat(getComputedStyle(document.querySelector('.katex')).fontSize)") < 15
+    (fault,) = faults(katex.format("m" * 200))
+    assert "px too wide: mmm" in fault
+    (fault,) = faults('<table><tr><td style="min-width: 900px">cell</td></tr></table>')[:1]
+    assert "too wide" in fault
+    page.close()
+
+
+def test_without_a_browser_it_says_so(monkeypatch):
+    monkeypatch.setattr(browser_module.shutil, "which", lambda name: None)
+    with pytest.raises(SystemExit, match="Chromium or Chrome, and neither is on this machine"):
+        with browser_module.open_browser():
+            pass
+
+
+def test_front_page_offers_both():
+    front = (HTML / "index.html").read_text("utf8")
+    (place,) = whole_book.PLACE.findall(front)
+    for path in (PDF, ZIP):
+        assert f'href="take-away/{path.name}"' in place
+        assert f"{path.stat().st_size / 1e6:.1f} MB" in place
+
+
+def test_offer_is_written_and_withdrawn():
+    front = "<h1>Book</h1><!-- whole-book --><p>Text</p>"
+    offered = whole_book.with_offer(front, ['<a href="x.pdf">PDF</a>'])
+    assert '<a href="x.pdf">' in offered and offered.endswith("<p>Text</p>")
+    assert whole_book.with_offer(offered, ["other"]).count("<p class") == 1
+    assert whole_book.with_offer(offered, []) == front
+    with pytest.raises(RuntimeError, match="one place"):
+        whole_book.with_offer("<h1>Book</h1>", [])
+
+
+# ---- the zip -------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def unpacked(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("a stick with spaces")
+    with zipfile.ZipFile(ZIP) as archive:
+        archive.extractall(folder)
+    (inside,) = folder.iterdir()
+    return inside
+
+
+def test_zip_holds_the_site_once():
+    with zipfile.ZipFile(ZIP) as archive:
+        entries = archive.infolist()
+    names = [entry.filename.partition("/")[2] for entry in entries]
+    assert names == sorted(set(names))
+    site = {str(path.relative_to(HTML)) for path in HTML.rglob("*") if path.is_file()}
+    assert set(names) == site - {f"take-away/{ZIP.name}"} | {"README.txt", "serve.py"}
+    assert [name for name in names if name.endswith((".pdf", ".zip"))].count(f"take-away/{PDF.name}") == 1
+    assert len({entry.date_time for entry in entries}) == 1
+
+
+def test_same_files_give_the_same_zip(monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    one = offline.pack({"b/page.html": b"words", "a.txt": b"more"}, "book", "A Book")
+    other = offline.pack({"a.txt": b"more", "b/page.html": b"words"}, "book", "A Book")
+    assert one == other
+
+
+def test_front_page_in_the_zip_offers_the_pdf_alone(unpacked):
+    front = (unpacked / "index.html").read_text("utf8")
+    (place,) = whole_book.PLACE.findall(front)
+    assert re.findall(r'href="([^"]*)"', place) == [f"take-away/{PDF.name}"]
+    assert (unpacked / "take-away" / PDF.name).read_bytes() == PDF.read_bytes()
+    assert "python serve.py" in (unpacked / "README.txt").read_text("utf8")
+
+
+@pytest.fixture
+def from_disk(browser, unpacked):
+    """A page without a network; all it says and asks for is noted, and none of it may fail."""
+    context = browser.new_context(viewport={"width": 1300, "height": 900}, offline=True)
+    page, faults = context.new_page(), []
+
+    def note_failure(request):
+        if request.failure != "net::ERR_ABORTED":  # what a page still asked for when the reader left it
+            faults.append(f"{request.failure}: {request.url}")
+
+    page.on("console", lambda message: message.type in ("error", "warning") and faults.append(message.text))
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("requestfailed", note_failure)
+    page.on("request", lambda r: r.url.startswith(("file:", "data:", "blob:")) or faults.append(f"asks: {r.url}"))
+    page.goto((unpacked / "index.html").as_uri())
+    yield page
+    assert faults == []
+    context.close()
+
+
+def settled(page):
+    page.wait_for_function("!document.documentElement.classList.contains('settling')")
+    return page
+
+
+def test_pages_open_from_disk(from_disk, unpacked):
+    for name in pages()[::4]:
+        from_disk.goto((unpacked / f"{name}.html").as_uri())
+        settled(from_disk)
+        assert from_disk.evaluate("document.fonts.check('1em \"Source Serif 4\"') && document.fonts.status") == "loaded"
+        assert from_disk.evaluate("getComputedStyle(document.querySelector('article')).fontFamily").startswith('"Source Serif')
+        assert from_disk.evaluate(SIDEWAYS) <= 0
+
+
+def test_reader_goes_through_the_book_from_disk(from_disk, unpacked):
+    page = settled(from_disk)
+    page.click("article .sd-card a >> nth=0")
+    assert "/chapters/" in page.url
+    page.click(".prev-next-footer a.right-next")
+    here = page.url
+    page.click("article a.reference.internal >> nth=0")
+    assert page.url != here and page.url.startswith(unpacked.as_uri())
+    page.click(".theme-switch-button")
+    assert page.evaluate("document.documentElement.dataset.mode") != "auto"
+
+
+def test_moving_figure_moves_from_disk(from_disk, unpacked):
+    name = next(name for name in CHAPTERS if 'data-figure="gimbal"' in (HTML / f"{name}.html").read_text("utf8"))
+    from_disk.goto((unpacked / f"{name}.html").as_uri())
+    figure = from_disk.locator('[data-figure="gimbal"][data-ready]').first
+    drawn = "figure => [...figure.querySelectorAll('.sheet .marks *')].map(m => m.getAttribute('d')).join()"
+    before = figure.evaluate(drawn)
+    slider = figure.locator("input[type=range]").first
+    slider.focus()
+    slider.press("ArrowRight")
+    from_disk.wait_for_function(
+        f"before => ({drawn})(document.querySelector('[data-figure=gimbal]')) !== before", arg=before
+    )
+
+
+def test_search_finds_a_word_from_disk(from_disk):
+    page = settled(from_disk)
+    page.keyboard.press("Control+k")
+    page.keyboard.type("gimbal")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#search-results .search li a")
+    found = page.eval_on_selector_all("#search-results li a", "links => links.map(a => a.href)")
+    assert any("gimbal-lock.html" in address for address in found)
+    page.click("#search-results li a >> nth=0")
+    page.wait_for_selector("article h1")
+
+
+def test_run_says_what_to_do_from_disk(from_disk, unpacked):
+    from_disk.goto((unpacked / f"{CHAPTERS[1]}.html").as_uri())
+    from_disk.click("button.run-page")
+    from_disk.wait_for_selector("text=python serve.py")
+
+
+def test_small_server_of_the_zip(unpacked, tmp_path):
+    """Started from anywhere, it serves its own folder, with the types that modules and WebAssembly need."""
+    process = subprocess.Popen(
+        [sys.executable, "-I", unpacked / "serve.py", "0"], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+    )
+    try:
+        address = re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
+        for kind, expected in ((".html", "text/html"), (".js", "text/javascript"), (".css", "text/css"),
+                               (".mjs", "text/javascript"), (".wasm", "application/wasm")):  # fmt: skip
+            files = sorted(path.relative_to(unpacked) for path in unpacked.rglob(f"*{kind}"))
+            assert files or kind in (".mjs", ".wasm")
+            for file in files[:1]:
+                with urllib.request.urlopen(address + file.as_posix()) as answer:
+                    assert answer.headers["Content-Type"].startswith(expected)
+    finally:
+        process.terminate()
+        process.wait()
+        process.stdout.close()
