@@ -7,19 +7,20 @@ they cannot be old. The package that the code imports lies beside them.
 """
 
 import shutil
-import subprocess
-import sys
-import tempfile
 import tomllib
 from pathlib import Path
 
 import jupytext
 import nbformat
 
+from coursework import release
+
 from .markdown import MarkdownWriter
 from .paths import REPOSITORY
 
 FOLDER = "take-away"
+ARCHIVE = "exercises.zip"
+EXERCISES = REPOSITORY / "exercises"
 PACKAGES = ("orientation", "coursework")
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
@@ -73,6 +74,9 @@ def write_page(app, pagename, templatename, context, doctree):
     context["downloads"] = []
     if doctree is None or not str(app.env.doc2path(pagename)).endswith(".ipynb"):
         return
+    if pagename.startswith("exercises/"):
+        context["downloads"] = exercise_downloads(app, pagename)
+        return
     notebook = make_notebook(app, pagename, doctree)
     target = Path(app.outdir) / FOLDER / pagename.rsplit("/", 1)[-1]
     target.parent.mkdir(exist_ok=True)
@@ -90,31 +94,46 @@ def write_page(app, pagename, templatename, context, doctree):
     ]
 
 
+def exercise_downloads(app, pagename):
+    """An exercise is taken away as it was released: graders know its cells by their metadata."""
+    target = Path(app.outdir) / FOLDER / f"{pagename}.ipynb"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(app.env.doc2path(pagename), target)
+    return [
+        {"path": f"{FOLDER}/{pagename}.ipynb", "text": "Notebook", "note": "to answer in Jupyter and hand in"},
+        {"path": f"{FOLDER}/{ARCHIVE}", "text": "All exercises", "note": "with the package and how to start"},
+    ]
+
+
+def pack_exercises(app, exception):
+    """Put the archive of all exercises into the site, if what it holds has changed."""
+    if exception or app.builder.format != "html":
+        return
+    archive = Path(app.outdir) / FOLDER / ARCHIVE
+    newest = max(path.stat().st_mtime for path in [*wheel_sources(), *EXERCISES.glob("*.ipynb")])
+    if not archive.exists() or archive.stat().st_mtime < newest:
+        release.archive(archive)
+
+
 def build_wheel(app, exception):
     """Build our packages into the site, as one wheel, from a copy: setuptools leaves files behind."""
     wheel = Path(app.outdir) / FOLDER / wheel_name()
     if exception or app.builder.format != "html":
         return
-    sources = [REPOSITORY / name for name in ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")]
-    packages = [REPOSITORY / "src" / name for name in PACKAGES]
-    files = [path for package in packages for path in package.rglob("*") if "__pycache__" not in path.parts]
-    newest = max(path.stat().st_mtime for path in [*sources, *files])
+    newest = max(path.stat().st_mtime for path in wheel_sources())
     if wheel.exists() and wheel.stat().st_mtime > newest:
         return
-    with tempfile.TemporaryDirectory() as copy:
-        for path in sources:
-            shutil.copy(path, copy)
-        for package in packages:
-            shutil.copytree(
-                package, Path(copy, "src", package.name), ignore=shutil.ignore_patterns("__pycache__")
-            )
-        subprocess.run(
-            [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check",
-             "--no-deps", "--no-build-isolation", "--wheel-dir", wheel.parent, copy],
-            check=True,
-        )  # fmt: skip
+    release.build_wheel(wheel.parent)
+
+
+def wheel_sources():
+    """The files that the wheel is made of."""
+    sources = [REPOSITORY / name for name in ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")]
+    packages = [REPOSITORY / "src" / name for name in PACKAGES]
+    return sources + [path for package in packages for path in package.rglob("*") if "__pycache__" not in path.parts]
 
 
 def setup(app):
     app.connect("html-page-context", write_page)
     app.connect("build-finished", build_wheel)
+    app.connect("build-finished", pack_exercises)
