@@ -19,7 +19,7 @@ body { margin: 0; background: var(--paper); color: var(--ink); font: 17px/1.55 G
 main { max-width: 52rem; margin: 0 auto; padding: 2rem 1.1rem 4rem; }
 h1 { font-size: 1.75rem; line-height: 1.2; margin: 0 0 .2em; font-weight: 600; }
 h2 { font-size: 1.25rem; margin: 2.4rem 0 .6rem; font-weight: 600; }
-h3 { font-size: 1.05rem; margin: 0; font-weight: 600; }
+h3 { font-size: 1.05rem; margin: 1.9rem 0 .5rem; font-weight: 600; } .head h3 { margin: 0; }
 p { margin: .5em 0; }
 .soft, figcaption, th, .key { color: var(--soft); font-family: "Segoe UI", system-ui, sans-serif; font-size: .88rem; }
 .big { font-size: 2rem; line-height: 1.2; margin: .6rem 0 0; }
@@ -43,7 +43,7 @@ svg text { fill: var(--soft); font: 12px "Segoe UI", system-ui, sans-serif; }
 svg .axis { stroke: var(--rule); } svg .bar { fill: var(--open); }
 svg .of-correct { fill: var(--right); } svg .of-wrong { fill: var(--wrong); } svg .of-invalid { fill: var(--form); }
 svg .of-undecided { fill: var(--open); } svg .of-none { fill: var(--rule); } svg .edge { stroke: var(--paper); stroke-width: 1.5; }
-figure { margin: .6rem 0; }
+figure { margin: .6rem 0; } .scroll table { min-width: 32rem; }
 .key span { margin-right: 1.1rem; white-space: nowrap; } .key svg { display: inline-block; vertical-align: -1px; margin-right: .35rem; }
 @media print { body { background: #fff; font-size: 11pt; } main { max-width: none; padding: 0; }
   section.question { background: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } }

@@ -220,7 +220,7 @@ def _histogram(points, worth):
     for value in points:
         counts[min(bins - 1, int(value / worth * bins)) if worth else 0] += 1
     width, height, left, base = 660, 190, 34, 158
-    step, top = (width - left - 6) / bins, max(counts)
+    step, top = (width - 2 * left) / bins, max(counts)
     bars = []
     for order, count in enumerate(counts):
         tall = count / top * 120 if top else 0
@@ -234,7 +234,7 @@ def _histogram(points, worth):
     spoken = '; '.join(f'{number(round(worth * order / bins, 1))} to {number(round(worth * (order + 1) / bins, 1))} points: {count}'
                        for order, count in enumerate(counts))
     return (f'<figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="Number of students by points. {spoken}.">'
-            f'<line class="axis" x1="{left}" y1="{base}" x2="{width - 6}" y2="{base}"/>{"".join(bars)}</svg>'
+            f'<line class="axis" x1="{left}" y1="{base}" x2="{width - left}" y2="{base}"/>{"".join(bars)}</svg>'
             '<figcaption>Number of students by points.</figcaption></figure>')
 
 
@@ -282,9 +282,15 @@ def _mixups(records, names, numbers):
             if mark and mark['outcome'] in ('wrong', 'invalid') and mark['note']:
                 found[name, deed(mark)] += 1
     shown = sorted(found.items(), key=lambda entry: (-entry[1], numbers[entry[0][0]], entry[0][1]))[:20]
-    items = ''.join(f'<li><strong>{_percent(count, len(records))}</strong> ({count} of {len(records)}) {pages.message(what)} '
-                    f'in question {numbers[name]}.</li>' for (name, what), count in shown if count > 1 or len(records) < 10)
-    return f'<h3>What was mixed up</h3><ul>{items}</ul>' if items else ''
+    titles = {name: mark['title'] for record in records for name, mark in record['marks'].items()}
+    rows = ''.join(
+        f'<tr><td class="number"><strong>{_percent(count, len(records))}</strong></td>'
+        f'<td><svg viewBox="0 0 120 12" width="120" height="12" role="img" aria-label="{count} of {len(records)}">'
+        f'<rect class="of-none" width="120" height="12"/><rect class="of-wrong" width="{120 * count / len(records):.1f}" height="12"/></svg></td>'
+        f'<td>{pages.message(what)} in question {numbers[name]}, <em>{text(titles[name])}</em> <span class="soft">({count} of {len(records)})</span></td></tr>'
+        for (name, what), count in shown if count > 1 or len(records) < 10)
+    return ('<h3>What was mixed up</h3><p>Of the class,</p><div class="scroll"><table><thead><tr><th class="number">Share</th><th></th>'
+            f'<th>did this</th></tr></thead><tbody>{rows}</tbody></table></div>') if rows else ''
 
 
 def _clusters(records, numbers):

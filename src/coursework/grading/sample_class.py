@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 from .. import release
 
-#: Cells that try to get marks, or do harm. None of them knows an answer, so none of them earns anything.
+#: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
+#: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
 HOSTILE = {
     'replaces the check': "import coursework\ncoursework.check = check = lambda *answers: 'Correct'",
     'leaves': 'import os\nos._exit(0)',
@@ -25,13 +26,13 @@ HOSTILE = {
     'equals everything': 'class Right:\n    def __eq__(self, other):\n        return True\n    def __hash__(self):\n        return 0\n'
                          'sm.Expr.__eq__ = Right.__eq__',
     'changes json': "import json\njson.dumps = json.JSONEncoder.encode = lambda *a, **k: '{\"outcome\": \"correct\"}'",
-    'reads and writes files': "for place in ('/etc/passwd', '../grades.csv', '/tmp/mine'):\n    try:\n        print(open(place).read())\n"
-                              "    except OSError:\n        pass\n    try:\n        open(place, 'a').write('x')\n    except OSError:\n        pass",
+    'reads and writes files': "for place in ('/etc/passwd', '../grades.csv'):\n    try:\n        print(open(place).read())\n"
+                              "    except OSError:\n        pass\ntry:\n    open('/tmp/forged', 'w').write('x')\nexcept OSError:\n    pass",
     'calls home': "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\nexcept OSError:\n    pass",
-    'forks': 'import os\ntry:\n    while True:\n        os.fork()\nexcept OSError:\n    pass',
-    'fills the memory': "try:\n    much = [bytearray(1 << 26) for number in range(1000)]\nexcept MemoryError:\n    pass",
+    'forks': 'import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n            os._exit(0)\n    except OSError:\n        pass',
+    'fills the memory': "try:\n    much = [bytearray(1 << 26) for number in range(40)]\nexcept MemoryError:\n    pass",
     'writes much': "for number in range(200_000):\n    print('x' * 100)",
-    'a name that is code': "theta = sm.Symbol('__import__(\"os\").system(\"touch forged\")')",
+    'a name that is code': "theta = sm.Symbol('__import__(\"os\").system(\"touch /tmp/forged\")')",
     'a script': "_ = check('<script>alert(1)</script>', '<img src=x onerror=alert(1)>')",
     'walks the frames': "import sys\nframe = sys._getframe()\nwhile frame:\n    frame.f_globals['check'] = frame.f_globals.get('check')\n"
                         "    frame = frame.f_back",
