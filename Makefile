@@ -12,7 +12,7 @@ export IPYTHONDIR := $(CURDIR)/_build/ipython
 export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve test take-away notebooks benchmark clean
+.PHONY: help setup book serve test take-away notebooks release benchmark clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -20,6 +20,7 @@ help:
 	@echo "make take-away  build it with the whole book as a PDF and as a zip to read offline"
 	@echo "make test       run every test"
 	@echo "make notebooks  run every notebook and store it with its outputs"
+	@echo "make release    make the exercises from the notebooks with solutions, and try them"
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
 
@@ -64,6 +65,10 @@ test: book
 
 notebooks: setup
 	@$(RUN) -m website.notebooks
+
+release: setup
+	@$(RUN) -m coursework release
+	@$(RUN) -m coursework selftest
 
 benchmark: setup
 	@$(RUN) -m benchmarks
