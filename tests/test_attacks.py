@@ -1,6 +1,5 @@
 """Every attack of the corpus fails, and costs nobody else anything; without its layer it succeeds."""
 
-import contextlib
 import ctypes
 import dataclasses
 import json
@@ -17,6 +16,7 @@ import pytest
 from attacks.corpus import ATTACKS
 
 from coursework.grading.sandbox import Limits, Sandbox, run_notebooks
+from coursework.grading.scratch import remove_folder
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
 
@@ -103,16 +103,14 @@ def taken(result):
 
 
 @pytest.fixture(scope="module")
-def surroundings(tmp_path_factory):
-    # The folders on the way must not be what keeps another user out.
-    folder = tmp_path_factory.mktemp("attacked")
-    for parent in folder.parents:
-        with contextlib.suppress(PermissionError):
-            if parent.stat().st_uid == os.geteuid() and parent != Path("/"):
-                parent.chmod(parent.stat().st_mode | 0o011)
+def surroundings():
+    # Not pytest's own folder, which is closed to other users: that is not what must keep attacks out.
+    folder = Path(tempfile.mkdtemp(prefix="attacked-"))
+    folder.chmod(0o755)
     attacked = Surroundings(folder)
     with attacked.tcp, attacked.udp, attacked.local:
         yield attacked
+    remove_folder(folder)
 
 
 @pytest.fixture(scope="module")

@@ -72,8 +72,9 @@ def test_what_is_not_plain_data_is_named(sandbox):
 def test_a_check_tells_nothing_and_breaks_nothing(sandbox):
     result = sandbox.run(notebook(
         "r = check('q', 1)\nassert 'correct' not in repr(r).lower()", "import coursework\ncoursework.check('s', 2)",
+        "from coursework import check, hint, progress\nhint('q'); progress()\nassert check('q', 1).outcome is None",
         "from coursework.grading import sandbox", questions={"q": None, "s": None}))
-    assert outcomes(result) == ["done", "done", "error"]
+    assert outcomes(result) == ["done", "done", "done", "error"]
     assert result["answers"]["s"]["plain"] == integer(2)
 
 

@@ -69,6 +69,11 @@ class Reply:
     def __repr__(self):
         return "The answer is recorded."
 
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return None  # neither right nor wrong
+
 
 def nothing(*arguments, **options):
     """Stands for what only shows something."""
@@ -136,6 +141,7 @@ class _Notebook:
             del sys.modules[name]
         package = types.ModuleType("coursework")
         package.check = self.check
+        package.hint = package.progress = nothing
         sys.modules["coursework"] = package
         sys.argv = ["notebook"]
         sys.path.insert(0, self.folder)
