@@ -1,131 +1,33 @@
 """The moving figures as a reader meets them: by mouse, by keys alone, by touch, in both themes, from disk."""
 
 import gzip
-import itertools
 import json
-import threading
-from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from test_site import SIDEWAYS, WATCH_SHIFTS, violations
+from figure_pages import (  # noqa: F401
+    KINDS,
+    NARROW,
+    THEMES,
+    WIDE,
+    drag_with_a_finger,
+    drawing,
+    front_end,
+    numbers,
+    open_figure,
+    settle,
+    type_number,
+    words,
+)
+from test_site import SIDEWAYS, violations
 
 import orientation as module
 from orientation import moving
 from orientation.moving import bundle
-from website.serve import server
 
-FIGURES = {
-    figure.kind: figure
-    for figure in (getattr(moving, name) for name in moving.__all__)
-    if issubclass(figure, moving.MovingFigure) and figure.kind
-}
-KINDS = sorted(FIGURES)
-THEMES = ("light", "dark")
-WIDE, NARROW = {"width": 1000, "height": 900}, {"width": 380, "height": 760}
 HEAVIEST = 60_000  # bytes of our own JavaScript for all figures together, compressed
 SMALLEST_TARGET = 24  # pixels
 MOST_WRITTEN = 300  # attributes, texts and elements that one picture of a drag may change
-# What the pages of the book give to a figure: a background, and nothing else of theirs is needed.
-PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><head><meta charset="utf-8"><title>{kind}</title>
-<meta name="viewport" content="width=device-width"><link rel="icon" href="data:,">
-<link rel="stylesheet" href="moving.css"><style>
-html {{ --pst-color-background: #fff; background: #fff; color: #1d2125; font: 16px/1.6 sans-serif; }}
-html[data-theme="dark"] {{ --pst-color-background: #121212; background: #121212; color: #eceff2; }}
-body {{ max-width: 700px; margin: 0 auto; padding: 0 16px; }} figure {{ margin: 0; }}
-</style>{scripts}</head><body><main><h1>{kind}</h1>{figures}<p id="after">The text goes on.</p></main></body></html>"""
-
-
-@pytest.fixture(scope="session")
-def folder(tmp_path_factory):
-    """Pages with one figure each, and one with all of them, as the site would make them."""
-    folder = tmp_path_factory.mktemp("figures")
-    (folder / "shared.js").write_text(bundle.shared_script(), "utf8")
-    (folder / "moving.css").write_text(bundle.style(), "utf8")
-    stills = {kind: FIGURES[kind]().still() for kind in KINDS}
-    for kind in KINDS:
-        (folder / f"{kind}.js").write_text(bundle.script(kind), "utf8")
-    for theme, kind in itertools.product(THEMES, [*KINDS, "all"]):
-        kinds = KINDS if kind == "all" else [kind]
-        scripts = "".join(f'<script defer src="{name}.js"></script>' for name in ("shared", *kinds))
-        figures = "".join(stills[one] for one in kinds)
-        page = PAGE.format(theme=theme, kind=kind, scripts=scripts, figures=figures)
-        (folder / f"{kind}-{theme}.html").write_text(page, "utf8")
-    return folder
-
-
-@pytest.fixture(scope="session")
-def address(folder):
-    pages = server(folder=folder)
-    threading.Thread(target=pages.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{pages.server_port}/"
-    pages.shutdown()
-    pages.server_close()
-
-
-@pytest.fixture
-def open_figure(browser, address):
-    """``open_figure(kind)``: a page with that figure; whatever went wrong on it fails the test."""
-    contexts, faults = [], []
-
-    def open_page(kind, theme="light", viewport=WIDE, base=address, **options):
-        context = browser.new_context(color_scheme=theme, viewport=viewport, **options)
-        contexts.append(context)
-        context.add_init_script(WATCH_SHIFTS)
-        page = context.new_page()
-        page.on("console", lambda message: message.type in ("error", "warning") and faults.append(message.text))
-        page.on("pageerror", lambda error: faults.append(str(error)))
-        page.on("requestfailed", lambda request: faults.append(f"failed: {request.url}"))
-        page.on("request", lambda request: request.url.startswith((base, "data:")) or faults.append(request.url))
-        page.goto(f"{base}{kind}-{theme}.html")
-        if options.get("java_script_enabled", True):
-            page.wait_for_selector(".moving[data-ready] .sheet")
-            settle(page)
-        return page
-
-    yield open_page
-    for context in contexts:
-        context.close()
-    assert faults == []
-
-
-def numbers(page, name):
-    """The numbers of a table on the page, as they are written there."""
-    rows = page.locator(f'[aria-label="{name}"] .row:has(.number)')
-    texts = rows.evaluate_all("rows => rows.map(row => [...row.querySelectorAll('.number')].map(n => n.textContent))")
-    return np.array([[float(text.replace("\u2212", "-").replace("°", "")) for text in row] for row in texts]).squeeze()
-
-
-def drawing(page):
-    """What is drawn: the path data of all marks."""
-    return page.eval_on_selector(
-        ".sheet .marks", "marks => [...marks.children].map(mark => mark.getAttribute('d')).filter(Boolean).join()"
-    )
-
-
-def words(page):
-    """The text under the drawing, its formulas as they are read aloud."""
-    return page.eval_on_selector(
-        ".words", "all => [...all.childNodes].map(one => one.ariaLabel ?? one.textContent).join('')"
-    )
-
-
-SETTLED = """async () => {
-  const picture = () => new Promise((done) => requestAnimationFrame(done));
-  await picture();
-  do await picture(); while (document.querySelector('.live[aria-busy=true]'));
-}"""
-
-
-def settle(page):
-    """Wait until what was asked has been drawn."""
-    page.evaluate(SETTLED)
-
-
-def type_number(page, name, value):
-    page.get_by_label(name, exact=True).fill(str(value))
-    page.get_by_label(name, exact=True).blur()
-    settle(page)
 
 
 def test_every_figure_is_tested():
@@ -187,16 +89,6 @@ def test_both_languages_draw_the_same_arrows(open_figure, kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_figure_opened_from_disk(open_figure, folder, kind):
-    page = open_figure(kind, base=folder.as_uri() + "/")
-    before = drawing(page)
-    page.locator(".sheet").first.focus()
-    page.keyboard.press("ArrowLeft")
-    settle(page)
-    assert drawing(page) != before
-
-
-@pytest.mark.parametrize("kind", KINDS)
 def test_without_scripts_and_on_paper_there_is_the_still(open_figure, kind):
     page = open_figure(kind, java_script_enabled=False)
     assert page.locator(".still svg").first.is_visible()
@@ -207,7 +99,7 @@ def test_without_scripts_and_on_paper_there_is_the_still(open_figure, kind):
 
 
 def test_all_figures_on_one_page(open_figure):
-    page = open_figure("all")
+    page = open_figure(KINDS)
     assert page.locator(".moving[data-ready]").count() == len(KINDS)
     assert violations(page) == []
     ids = page.eval_on_selector_all("[id]", "all => all.map(one => one.id)")
@@ -279,39 +171,18 @@ def test_targets_are_large_enough_for_a_finger(open_figure, kind):
     assert [box for box in boxes if min(box[1:]) < SMALLEST_TARGET - 0.5] == []
 
 
-class Finger:
-    """Touches, as Chromium gets them from a screen."""
-
-    def __init__(self, page):
-        self.page, self.session = page, page.context.new_cdp_session(page)
-
-    def drag(self, start, end, steps=8):
-        for kind, parts in (("touchStart", [0]), ("touchMove", [k / steps for k in range(1, steps + 1)])):
-            for part in parts:
-                x, y = (a + part * (b - a) for a, b in zip(start, end))
-                self.session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y}]})
-        self.session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-        settle(self.page)
-
-
-def middle(locator):
-    box = locator.bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_touch(open_figure, kind):
     """A finger turns the view sideways, and up and down it still scrolls the page."""
     page = open_figure(kind, viewport=NARROW, has_touch=True, is_mobile=True)
     page.evaluate("document.querySelector('#after').style.height = '2000px'")
-    sheet, finger = page.locator(".sheet").first, Finger(page)
-    box = sheet.bounding_box()
+    box = page.locator(".sheet").first.bounding_box()
     corner = box["x"] + 12, box["y"] + box["height"] - 12
     before = drawing(page)
-    finger.drag(corner, (corner[0] + 60, corner[1]))
+    drag_with_a_finger(page, corner, (corner[0] + 60, corner[1]))
     assert drawing(page) != before
     assert page.evaluate("scrollY") == 0
-    finger.drag(corner, (corner[0], corner[1] - 150))
+    drag_with_a_finger(page, corner, (corner[0], corner[1] - 150))
     page.wait_for_function("scrollY > 50")
 
 
@@ -337,7 +208,7 @@ def test_parts_follow_the_pointer(open_figure, kind, part, corner, way, touch):
     end = start[0] + way[0], start[1] + way[1]
     before = page.locator(".live").inner_text()
     if touch:
-        Finger(page).drag(start, end)
+        drag_with_a_finger(page, start, end)
     else:
         page.mouse.move(*start)
         page.mouse.down()
@@ -531,6 +402,20 @@ def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(op
     assert np.median([count["made"] for count in counts]) == 0, "elements are made anew"
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_nothing_moves_unasked(open_figure, kind):
+    """Once it is drawn, a figure asks for no further picture."""
+    page = open_figure(kind)
+    asked = page.evaluate("""async () => {
+      const frame = window.requestAnimationFrame;
+      let asked = 0;
+      window.requestAnimationFrame = (work) => { asked += 1; return frame(work); };
+      for (let k = 0; k < 20; k += 1) await new Promise((done) => frame(done));
+      return asked;
+    }""")
+    assert asked == 0
+
+
 def test_reduced_motion_is_respected(open_figure):
     page = open_figure("gimbal")
     settle(page)
@@ -544,14 +429,9 @@ def test_reduced_motion_is_respected(open_figure):
     assert calm.get_by_label("psi in degrees").input_value() == "0"
 
 
-def test_a_figure_starts_from_its_own_state(browser, address, folder):
+def test_a_figure_starts_from_its_own_state(open_figure):
     """Two figures of one kind on a page do not know of each other."""
-    first, second = moving.TriadFigure(angle=0.5), moving.TriadFigure(angle=-1.0, axis=(0, 0, 1))
-    scripts = "".join(f'<script defer src="{name}.js"></script>' for name in ("shared", "triad"))
-    page_text = PAGE.format(theme="light", kind="two", scripts=scripts, figures=first.still() + second.still())
-    (folder / "two.html").write_text(page_text, "utf8")
-    page = browser.new_page()
-    page.goto(address + "two.html")
+    page = open_figure([moving.TriadFigure(angle=0.5), moving.TriadFigure(angle=-1.0, axis=(0, 0, 1))])
     fields = page.get_by_label("theta in degrees")
     values = [float(fields.nth(k).input_value()) for k in range(2)]
     assert values == pytest.approx(np.degrees([0.5, -1.0]), abs=0.01)
@@ -559,5 +439,3 @@ def test_a_figure_starts_from_its_own_state(browser, address, folder):
     settle(page)
     assert float(fields.nth(1).input_value()) == pytest.approx(np.degrees(-1.0), abs=0.01)
     assert json.loads(page.get_attribute(".moving >> nth=1", "data-state"))["angle"] == -1
-    assert urlsplit(page.url).path == "/two.html"
-    page.close()

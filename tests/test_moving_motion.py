@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import traitlets
 from bs4 import BeautifulSoup
-from conftest import REPOSITORY
+from figure_pages import NARROW, front_end, open_figure, settle, words  # noqa: F401
 from scipy.integrate import solve_ivp
 
 from orientation import (
@@ -308,71 +308,7 @@ def test_both_end_a_hopeless_run_at_the_same_step(node):
     assert len(answer["states"]) == len(MotionFigure(**settings, time=20).run()["time"])
 
 
-def test_the_front_end_is_small():
-    import gzip
-
-    assert len(gzip.compress(bundle.script("motion").encode())) < 9_000
-
-
 # ---- in a browser --------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def address(tmp_path_factory):
-    """A page that holds the figure between two paragraphs, opened from disk as a reader may."""
-    folder = tmp_path_factory.mktemp("page")
-
-    def build(theme):
-        scripts = bundle.shared_script() + bundle.script("motion")
-        page = folder / f"{theme}.html"
-        colours = {"light": "#fff", "dark": "#121212"}[theme]
-        page.write_text(
-            f'<!doctype html><html lang="en" data-theme="{theme}"><head><meta charset="utf-8"><title>Motion</title>'
-            f'<meta name="viewport" content="width=device-width"><style>body{{margin:0;background:{colours};'
-            f"--pst-color-background:{colours}}}main{{max-width:700px;margin:auto;padding:0 1rem}}"
-            f"h1{{color:gray}}{bundle.style()}</style></head><body><main><h1 hidden>Motion</h1>"
-            f"{MotionFigure().still()}</main><script>{scripts}</script></body></html>",
-            "utf8",
-        )
-        return page.as_uri()
-
-    return {theme: build(theme) for theme in ("light", "dark")}
-
-
-@pytest.fixture
-def visit(browser, address):
-    """``visit(theme, width, ...)``: the page, opened anew; it must not complain."""
-    contexts, faults = [], []
-
-    def open_page(theme="light", width=1300, **more):
-        context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=theme, **more)
-        contexts.append(context)
-        page = context.new_page()
-        page.on("pageerror", lambda error: faults.append(str(error)))
-        page.on("console", lambda message: message.type == "error" and faults.append(message.text))
-        page.goto(address[theme])
-        settled(page)
-        return page
-
-    yield open_page
-    for context in contexts:
-        context.close()
-    assert not faults
-
-
-def words(page):
-    return page.locator(".words").text_content()
-
-
-def settled(page, at=None):
-    """Wait until the words have come to the time of the slider, or to ``at``."""
-    page.wait_for_function(
-        """(at) => {
-          const words = document.querySelector('.words').textContent, time = document.querySelector('.player input').value;
-          return words.startsWith(`After ${Number(at ?? time).toFixed(1)} s`);
-        }""",
-        arg=at,
-    )
 
 
 def time_of(page):
@@ -381,7 +317,7 @@ def time_of(page):
 
 def set_time(page, seconds):
     page.get_by_label("Time in seconds").fill(str(seconds))
-    settled(page, seconds)
+    settle(page)
 
 
 def curves(page):
@@ -392,18 +328,13 @@ def table(page):
     return page.eval_on_selector_all(".runs tbody tr", "(rows) => rows.map((row) => row.innerText.trim().split(/\\s*\\t\\s*/))")
 
 
-def test_it_opens_on_the_still_and_stays_at_rest(visit):
-    page = visit()
-    assert page.locator(".still").is_hidden() and page.locator(".live").is_visible()
-    assert "has flipped once" in words(page)
-    page.wait_for_timeout(900)   # longer than the words wait before they are read aloud
-    before = page.locator(".live").inner_html()
-    page.wait_for_timeout(400)
-    assert page.locator(".live").inner_html() == before and time_of(page) == 6
+def test_it_opens_on_what_the_still_shows(open_figure):
+    page = open_figure("motion")
+    assert "has flipped once" in words(page) and time_of(page) == 6
 
 
-def test_what_it_says_is_what_python_says(visit):
-    page, figure = visit(), MotionFigure()
+def test_what_it_says_is_what_python_says(open_figure):
+    page, figure = open_figure("motion"), MotionFigure()
     fault = abs(figure.dcm @ figure.dcm.T - np.eye(3)).max()
     assert f"not orthogonal by {float(f'{fault:.2g}'):g}" in words(page)
     assert f"{np.linalg.norm(figure.dcm, axis=1).max():.3g} long" in words(page)
@@ -411,44 +342,42 @@ def test_what_it_says_is_what_python_says(visit):
     assert table(page)[0][1] == f"{float(f'{fault:.2g}'):g}"
 
 
-def test_play_pause_reset(visit):
-    page = visit()
+def test_play_pause_reset(open_figure):
+    page = open_figure("motion")
     page.get_by_role("button", name="Reset").click()
-    settled(page, 0)
+    settle(page)
     assert time_of(page) == 0 and all("L" not in data for data in curves(page))
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("document.querySelector('.player input').value > 1")
     page.get_by_role("button", name="Pause").click()
-    settled(page)
+    settle(page)
     stopped = time_of(page)
     assert stopped > 1 and all("L" in data for data in curves(page))
-    page.wait_for_timeout(300)
+    settle(page)
     assert time_of(page) == stopped
     # Back in what has been computed: the curves stay.
     grown = curves(page)
     set_time(page, 0.5)
     assert curves(page) == grown
     page.get_by_role("button", name="Reset").click()
-    settled(page, 0)
+    settle(page)
     assert time_of(page) == 0 and all("L" not in data for data in curves(page))
 
 
-def test_restoring_changes_the_plot_and_brings_the_triad_back(visit):
-    page = visit()
+def test_restoring_changes_the_plot_and_brings_the_triad_back(open_figure):
+    page = open_figure("motion")
     drifted = curves(page)
     page.get_by_label("Restore after every step").check()
-    page.wait_for_function("document.querySelector('.words').textContent.includes('stays orthogonal')")
-    settled(page, 6)
+    settle(page)
     assert curves(page)[:2] != drifted[:2]
     assert [row[1] for row in table(page)] == ["< 10⁻¹⁵"] * 3
     page.get_by_label("Restore after every step").uncheck()
-    page.wait_for_function("document.querySelector('.words').textContent.includes('not restored')")
-    settled(page, 6)
+    settle(page)
     assert curves(page) == drifted
 
 
-def test_every_control_changes_the_run(visit):
-    page = visit()
+def test_every_control_changes_the_run(open_figure):
+    page = open_figure("motion")
     before = curves(page)
     for change in (
         lambda: page.get_by_label("Method", exact=True).select_option("Runge-Kutta"),
@@ -458,8 +387,7 @@ def test_every_control_changes_the_run(visit):
         lambda: page.get_by_label("Spin about", exact=True).select_option("z"),
     ):
         change()
-        page.wait_for_timeout(150)
-        settled(page, 6)
+        settle(page)
         after = curves(page)
         assert after != before
         before = after
@@ -468,8 +396,8 @@ def test_every_control_changes_the_run(visit):
     page.wait_for_function("document.querySelector('.words').textContent.includes('gimbal lock')")
 
 
-def test_a_hopeless_step_says_so(visit):
-    page = visit()
+def test_a_hopeless_step_says_so(open_figure):
+    page = open_figure("motion")
     page.get_by_label("Step in milliseconds").fill("100")
     page.get_by_label("Disturbance in radians per second").fill("0.5")
     page.get_by_label("Time in seconds").fill("20")
@@ -477,8 +405,8 @@ def test_a_hopeless_step_says_so(visit):
     assert time_of(page) < 19
 
 
-def test_keyboard_alone(visit):
-    page = visit()
+def test_keyboard_alone(open_figure):
+    page = open_figure("motion")
     names = []
     for _ in range(20):
         page.keyboard.press("Tab")
@@ -512,8 +440,8 @@ def test_keyboard_alone(visit):
     page.wait_for_function("(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=triad)
 
 
-def test_sliders_tell_their_values_and_units(visit):
-    page = visit()
+def test_sliders_tell_their_values_and_units(open_figure):
+    page = open_figure("motion")
     for name, told in (
         ("Time", "Time, 6 seconds"),
         ("Step", "Step, 10 milliseconds"),
@@ -524,8 +452,8 @@ def test_sliders_tell_their_values_and_units(visit):
     page.wait_for_function("document.querySelector('[role=status]').textContent.startsWith('After 6.0 s')")
 
 
-def test_touch_on_a_phone(visit):
-    page = visit(width=380, has_touch=True, is_mobile=True)
+def test_touch_on_a_phone(open_figure):
+    page = open_figure("motion", viewport=NARROW, has_touch=True, is_mobile=True)
     assert page.evaluate("document.documentElement.scrollWidth") <= 380
     page.get_by_label("Restore after every step").tap()
     page.wait_for_function("document.querySelector('.words').textContent.includes('stays orthogonal')")
@@ -540,8 +468,8 @@ def test_touch_on_a_phone(visit):
     page.get_by_role("button", name="Pause").tap()
 
 
-def test_dragging_in_the_plot_goes_through_time(visit):
-    page = visit()
+def test_dragging_in_the_plot_goes_through_time(open_figure):
+    page = open_figure("motion")
     box = page.locator(".plot").bounding_box()
     at = lambda second: box["x"] + box["width"] * (52 + 296 * second / 20) / 360
     page.mouse.move(at(2), box["y"] + 60)
@@ -552,41 +480,11 @@ def test_dragging_in_the_plot_goes_through_time(visit):
     page.wait_for_function("Math.abs(document.querySelector('.player input').value - 5) < 0.1")
 
 
-def test_dragging_the_drawing_turns_the_view(visit):
-    page = visit()
+def test_dragging_the_drawing_turns_the_view(open_figure):
+    page = open_figure("motion")
     before, box = page.locator(".stage .marks").inner_html(), page.locator(".stage .sheet").bounding_box()
     page.mouse.move(box["x"] + 100, box["y"] + 100)
     page.mouse.down()
     page.mouse.move(box["x"] + 160, box["y"] + 100)
     page.mouse.up()
     page.wait_for_function("(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=before)
-
-
-def test_less_motion_goes_in_steps(visit):
-    page = visit(reduced_motion="reduce")
-    page.get_by_role("button", name="Play").click()
-    page.wait_for_timeout(1800)
-    page.get_by_role("button", name="Pause").click()
-    moved = time_of(page) - 6
-    assert 0.5 <= moved <= 2.5
-    page.evaluate(
-        """() => { window.times = new Set();
-        new MutationObserver(() => times.add(document.querySelector('.player input').value))
-          .observe(document.querySelector('.plot'), { subtree: true, attributes: true }); }"""
-    )
-    page.get_by_role("button", name="Play").click()
-    page.wait_for_timeout(1800)
-    assert 1 <= page.evaluate("times.size") <= 4
-
-
-@pytest.mark.parametrize("theme", ("light", "dark"))
-@pytest.mark.parametrize("width", (1300, 380))
-def test_axe_finds_nothing(visit, theme, width):
-    page = visit(theme, width)
-    page.evaluate((REPOSITORY / "node_modules" / "axe-core" / "axe.min.js").read_text("utf8"))
-    found = page.evaluate(
-        "async () => (await axe.run('.moving', {resultTypes: ['violations']})).violations"
-        ".map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 200)} ${v.nodes[0].failureSummary}`)"
-    )
-    assert found == []
-    assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") == 0
