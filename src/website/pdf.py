@@ -283,7 +283,7 @@ def make(site, file, title, author):
     with open_browser() as browser:
         page = browser.new_page(viewport={"width": WIDTH, "height": 900})
         page.emulate_media(media="print", color_scheme="light")
-        page.goto(file.resolve().as_uri())
+        page.goto(file.resolve().as_uri(), timeout=0)  # as long as a slow machine needs
         page.evaluate("document.fonts.ready")
         if faults := page.evaluate(FIT, SMALLEST):
             raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
