@@ -339,6 +339,13 @@ def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
     assert len(opened) == 1
 
 
+def test_the_order_in_which_symbols_are_listed_does_not_matter():
+    sealed = make().sealed()
+    for order in (sorted, lambda names: sorted(names, reverse=True)):
+        again = {**sealed, 'symbols': {name: sealed['symbols'][name] for name in order(sealed['symbols'])}}
+        assert questions.judge('trial/gimbal', again, to_plain(GIMBAL))[0].outcome == 'correct'
+
+
 def test_the_values_of_an_answer_do_not_stand_in_what_is_sealed():
     text = json.dumps(KINDS['numbers in a matrix'].sealed())
     for entry in KINDS['numbers in a matrix'].answer:

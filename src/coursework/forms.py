@@ -220,7 +220,8 @@ def another_answer(public, answer, chance=None):
     if kind == 'choice':
         return next(option for option in public['options'] if option.lower() != answer.lower())
     if kind == 'truth values':
-        return [not part for part in answer]
+        changed = chance.randrange(len(answer))
+        return [part != (order == changed) for order, part in enumerate(answer)]
     if kind == 'words':
         return [another_answer({**public, 'kind': 'choice'}, part) for part in answer]
     if hasattr(answer, 'to_matrix'):

@@ -24,7 +24,7 @@ def points(question):
     found = []
     for number in range(POINTS):
         point = {name: _draw(question, number, order, *limits)
-                 for order, (name, limits) in enumerate(symbols.items())}
+                 for order, (name, limits) in enumerate(sorted(symbols.items()))}
         for group in question.get('unit', ()):
             length = MP.sqrt(sum(point[name] ** 2 for name in group))
             point.update({name: point[name] / length for name in group})

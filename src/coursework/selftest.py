@@ -8,6 +8,7 @@ import base64
 import html
 import io
 import json
+import random
 import re
 import zipfile
 from pathlib import Path
@@ -17,7 +18,7 @@ from .forms import another_answer, equivalent_forms
 from .kinds import Fault, Undecidable
 from .mistakes import message
 from .plain import NotPlain
-from .questions import judge
+from .questions import compare, judge, notebook_questions
 from .release import ARCHIVE, CHAPTERS, EXERCISES, HIDDEN, SEALED, SOLUTION, SOURCES, read_source
 from .reply import Reply, to_html
 
@@ -40,35 +41,49 @@ class Finding(NamedTuple):
 
 
 def try_question(question):
-    """Try one question as students will, right and wrong."""
-    sealed, faults = question.sealed(), []
+    """Try one question as students will, right and wrong.
+
+    Answers are compared with what is sealed before the slow hash locks it up: that the locks hold the same is
+    shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
+    """
+    faults = []
     forms = equivalent_forms(question.public, question.answer)
     for form, answer in forms:
-        reply = _judge(question, sealed, answer)
+        reply = _judge(question, answer)
         if reply.outcome != 'correct':
             faults.append(f'The right answer in the form "{form}" gets "{reply.outcome}": {reply.messages}')
     words = question.public['kind'] in ('sequence', 'choice', 'truth values', 'words', 'function')
     if len(forms) < FORMS and not words and not hasattr(question.answer, 'to_matrix'):
         faults.append(f'The right answer was tried in {len(forms)} forms only.')
-    named, unmoved = _try_mistakes(question, sealed, faults)
-    blank = _judge(question, sealed, ...)
+    sealed = notebook_questions(question.name.partition('/')[0]).get(question.name)
+    if sealed and judge(question.name, sealed, question.plain)[0].outcome != 'correct':
+        faults.append('The right answer does not open what is sealed: make the release anew.')
+    named, unmoved = _try_mistakes(question, faults)
+    blank = _judge(question, ...)
     if blank.outcome != 'not attempted':
         faults.append(f'The untouched blank gets "{blank.outcome}".')
-    other = _judge(question, sealed, another_answer(question.public, question.answer))
+    others = (question.to_plain(another_answer(question.public, question.answer, random.Random(seed))) for seed in range(9))
+    other = next((plain for plain in others if question.fingerprint_of(plain) not in question.entries), None)
+    other = Reply(question.name, 'wrong') if other is None else _compare(question, other)
     if other.outcome == 'correct' or other.outcome == 'wrong' and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
     return Finding(question.name, question.public['kind'], [form for form, _ in forms], named, unmoved,
                    question.guessing_bits(), faults)
 
 
-def _judge(question, sealed, answer):
+def _compare(question, plain):
+    return compare(question.name, question.public, plain, lambda text: (
+        question.entries[text]._asdict() if text in question.entries else None))
+
+
+def _judge(question, answer):
     try:
-        return judge(question.name, sealed, question.to_plain(answer))[0]
+        return _compare(question, question.to_plain(answer))
     except NotPlain as error:
         return Reply(question.name, 'invalid', 'unreadable', [str(error)])
 
 
-def _try_mistakes(question, sealed, faults):
+def _try_mistakes(question, faults):
     named, unmoved = [], []
     right = question.fingerprint_of(question.plain)
     for mistake in question.mistakes:
@@ -80,7 +95,7 @@ def _try_mistakes(question, sealed, faults):
                 if mistake.note == 'authored':
                     faults.append(f'This authored mistake gives the right answer: {said}')
                 continue
-            reply = judge(question.name, sealed, plain)[0]
+            reply = _compare(question, plain)
         except (Fault, Undecidable, NotPlain) as refused:
             named.append((mistake.note, f'(refused for its form) {refused}'))
             continue
@@ -113,13 +128,20 @@ def secrets_of(source):
             found += [(f'the answer of {name}', text) for text in _writings(question.answer)]
     given = {_dense(line) for cell in source.notebook.cells
              for line in HIDDEN.sub('', SOLUTION.sub('', cell.source)).splitlines()}
+    # The arguments that a function is tried with are public: whoever checks it must call it.
+    given |= {_dense(json.dumps(question.public.get('calls', ''))) for question in source.questions.values()}
     seen = {}
     for what, text in found:
         dense = _dense(text)
-        # Short lines stand anywhere; a line that the author gives openly elsewhere is no secret.
-        if len(dense) >= 14 and dense not in given and not any(dense in line for line in given):
+        # Short lines stand anywhere, imports and marks tell nothing, and what the author gives openly
+        # elsewhere is no secret.
+        if len(dense) >= 14 and not _tells_nothing(text) and not any(dense.strip(',') in line for line in given):
             seen.setdefault(dense, what)
     return seen
+
+
+def _tells_nothing(line):
+    return re.match(r'\s*(import |from \w[\w.]* import |def |### |class )', line) is not None
 
 
 def _writings(answer):
