@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import symtable
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from importlib.util import find_spec
@@ -20,6 +21,7 @@ from pathlib import Path
 
 import nbformat
 
+from ..execution import STORED
 from ..paths import REPOSITORY, fingerprint
 
 PYTHON = Path(__file__).parent / "python"
@@ -65,12 +67,12 @@ def write_python(folder):
 
 def run_alone(codes):
     """What the cells of a page put out, one after another, without NumPy."""
-    RESULTS.mkdir(parents=True, exist_ok=True)
-    write_python(RESULTS / "python")
-    done = subprocess.run(
-        [sys.executable, "-c", ALONE, RESULTS / "python"],
-        input=json.dumps(codes), capture_output=True, text=True, check=True,
-    )  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        write_python(Path(folder, "python"))
+        done = subprocess.run(
+            [sys.executable, "-c", ALONE, "python"],
+            cwd=folder, input=json.dumps(codes), capture_output=True, text=True, check=True,
+        )  # fmt: skip
     return json.loads(done.stdout)
 
 
@@ -121,11 +123,12 @@ def names_taken(code):
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - imported
 
 
-def classify(cells):
+def classify(cells, strict=True):
     """For each code cell what it needs beyond SymPy, and whether a run of the page may leave it out.
 
     A run leaves out a cell that only draws a figure, needs more for it, and gives names to other such cells
-    at most: its picture is there already.
+    at most: its picture is there already. With ``strict``, a result that differs from the stored one without such
+    a reason is an error.
     """
     codes = [cell.source for cell in cells]
     kinds = []
@@ -140,9 +143,9 @@ def classify(cells):
             for earlier in reversed(range(position)):
                 if kinds[earlier]["needs"] and used & names_bound(codes[earlier]):
                     needs |= set(kinds[earlier]["needs"])
-            if not needs:
+            if not needs and strict:
                 raise RuntimeError(
-                    f"cell {position + 1} gives another result in the page than the stored one:\n"
+                    f"cell {position + 1} gives another result in the page than the stored one (is that one old? `make notebooks`):\n"
                     f"{cell.source}\n{outcome.get('traceback', told['messages'])}"
                 )
         kinds.append({"needs": sorted(needs), "figure": "hide-input" in cell.metadata.get("tags", [])})
@@ -159,7 +162,8 @@ def kinds_of_cells():
     """The kinds of the code cells of every notebook, by the names of the pages."""
     from ..notebooks import all_notebooks
 
-    notebooks = all_notebooks(REPOSITORY)
+    exercises = sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))
+    notebooks = [*all_notebooks(REPOSITORY), *exercises]
     inputs = fingerprint(
         Path(__file__), PYTHON, *notebooks, REPOSITORY / "constraints.txt",
         REPOSITORY / "src" / "orientation", REPOSITORY / "src" / "coursework",
@@ -169,12 +173,14 @@ def kinds_of_cells():
         def classify_page(path):
             notebook = nbformat.read(path, as_version=4)
             try:
-                return classify([cell for cell in notebook.cells if cell.cell_type == "code"])
+                cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+                return classify(cells, strict=path not in exercises)
             except RuntimeError as error:
                 raise RuntimeError(f"{path}: {error}") from None
 
         with ThreadPoolExecutor(max_workers=2) as pool:
             kinds = list(pool.map(classify_page, notebooks))
+        RESULTS.mkdir(parents=True, exist_ok=True)
         for outdated in RESULTS.glob("cells-*.json"):
             outdated.unlink()
         names = [str(path.relative_to(REPOSITORY).with_suffix("")) for path in notebooks]

@@ -33,8 +33,8 @@ def row(page, kinds):
 
 class NeedsMore(SphinxDirective):
     def run(self):
-        pages = kinds_of_cells()
         order = list(self.config.external_site_map)
+        pages = {page: kinds for page, kinds in kinds_of_cells().items() if page in order}
         setting = self.config.numpy_in_the_page or "off"
         every = [kind for kinds in pages.values() for kind in kinds]
         lines = [

@@ -55,7 +55,7 @@ export class Cell {
           ])),
           keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
           EditorView.contentAttributes.of({
-            "aria-label": `Code of ${this.name}`, "aria-describedby": "live-keys", spellcheck: "false",
+            "aria-label": `Code of ${this.name}`, "aria-describedby": "live-keys", spellcheck: "false", tabindex: "0",
           }),
         ],
       }),
@@ -71,7 +71,9 @@ export class Cell {
     this.button.before(this.back);
   }
 
+  // An edited cell has to run again before the cells below it.
   changed() {
+    this.ran = false;
     this.back.hidden = !this.edited;
     this.box.classList.toggle("edited", this.edited);
     this.page.keep();
@@ -127,7 +129,14 @@ export class Cell {
     if (message.type === "stream") this.replace([...this.fresh]); // what is printed is seen at once
   }
 
-  // ``note`` is a box with what went wrong; the book's own result stays beside it.
+  // The cell was not run: what stands below it stays, and ``note`` says why.
+  leave(note) {
+    this.box.classList.remove("running", "waiting");
+    this.replace([...this.built, note]);
+    this.ran = false;
+  }
+
+  // The cell has run; ``note`` is a box with what went wrong. The book's own result stays beside that.
   end(note) {
     this.box.classList.remove("running", "waiting");
     this.box.classList.toggle("failed", Boolean(note));

@@ -108,7 +108,8 @@ class Page {
       this.report();
     } catch (error) {
       this.empty();
-      this.bar.say(`Python could not be started: ${error.message}.`);
+      this.bar.progress(null);
+      this.bar.say(error.message === "interrupted" ? "Stopped: Python was not loaded." : `Python could not be started: ${error.message}.`);
     }
     this.busy = false;
     this.tally = null;
@@ -150,8 +151,7 @@ class Page {
   leave(cell, reason) {
     this.tally.missing.add(cell.number);
     const note = element("div", "live-note", element("p", "", `Not run here: ${reason}.`));
-    cell.end(note);
-    cell.ran = false;
+    cell.leave(note);
     this.last = `${cell.name} was not run: ${reason}.`;
   }
 

@@ -10,9 +10,20 @@ function element(tag, className, ...children) {
   return made;
 }
 
+// What scrolls can be reached with the keyboard, but only while it does.
+const watchLong = new ResizeObserver((entries) => {
+  for (const { target } of entries) {
+    const { scrollWidth, clientWidth, scrollHeight, clientHeight } = target;
+    if (scrollWidth > clientWidth + 1 || scrollHeight > clientHeight + 1) target.tabIndex = 0;
+    else target.removeAttribute("tabindex");
+  }
+});
+
 function preformatted(kind, text) {
   const box = element("div", `output ${kind} highlight-myst-ansi notranslate`);
-  box.append(element("div", "highlight", element("pre", "", text)));
+  const words = element("pre", "", text);
+  box.append(element("div", "highlight", words));
+  watchLong.observe(words);
   return box;
 }
 

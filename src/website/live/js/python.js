@@ -11,6 +11,7 @@ export class Python {
     this.interrupts = globalThis.crossOriginIsolated ? new Uint8Array(new SharedArrayBuffer(1)) : null;
     this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
     this.ready = new Promise((resolve, reject) => {
+      this.giveUp = reject;
       this.worker.addEventListener("message", ({ data }) => this.hear(data, resolve, reject));
       this.worker.addEventListener("error", (event) => {
         event.preventDefault();
@@ -49,6 +50,7 @@ export class Python {
   interrupt() {
     if (!this.interrupts || !this.current) return this.end("interrupted");
     this.interrupts[0] = 2; // SIGINT
+    clearTimeout(this.timer);
     this.timer = setTimeout(() => this.end("interrupted"), PATIENCE);
   }
 
@@ -56,6 +58,7 @@ export class Python {
   end(reason) {
     this.worker.terminate();
     this.ended = true;
+    this.giveUp(new Error(reason));
     this.finish({ status: "ended", reason });
   }
 }

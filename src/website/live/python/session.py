@@ -29,7 +29,8 @@ REPRESENTATIONS = {
     "text/latex": "_repr_latex_",
 }
 MOST_CHARACTERS = 60_000  # that one cell may print; a page holds no more with comfort
-PAUSE = 0.1  # seconds between two messages while a cell prints
+FIRST_LINES = 50  # sent one by one
+PAUSE = 0.1  # seconds between two messages after that
 
 
 class Missing:
@@ -57,7 +58,7 @@ class Absent(types.ModuleType):
     """Stands for a missing package until it is used: many a cell imports NumPy for later ones."""
 
     def __getattr__(self, attribute):
-        if attribute.startswith("__"):
+        if attribute in ("__path__", "__file__", "__wrapped__"):  # what others ask of any module
             raise AttributeError(attribute)
         return getattr(importlib.import_module(self.__name__), attribute)
 
@@ -118,7 +119,8 @@ class Printed(io.TextIOBase):
         self.start()
 
     def start(self):
-        self.parts, self.room, self.dropped, self.sent = [], MOST_CHARACTERS, 0, time.monotonic()
+        self.parts, self.room, self.dropped = [], MOST_CHARACTERS, 0
+        self.messages, self.sent = 0, time.monotonic()
 
     def writable(self):
         return True
@@ -131,14 +133,16 @@ class Printed(io.TextIOBase):
         self.dropped += len(text) - len(kept)
         if kept:
             self.parts.append(kept)
-            if time.monotonic() - self.sent > PAUSE:
+            # A few lines are sent at once, so that they are read while the cell works on.
+            soon = self.messages < FIRST_LINES and kept.endswith("\n")
+            if soon or time.monotonic() - self.sent > PAUSE:
                 self.flush()
         return len(text)
 
     def flush(self):
         if self.parts:
             self.shell.send({"type": "stream", "name": self.name, "text": "".join(self.parts)})
-            self.parts, self.sent = [], time.monotonic()
+            self.parts, self.messages, self.sent = [], self.messages + 1, time.monotonic()
 
     def finish(self):
         self.flush()
