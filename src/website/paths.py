@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import shutil
 import subprocess
 import tomllib
 from datetime import datetime, timezone
@@ -36,7 +37,7 @@ def package():
 def moment_of_sources():
     """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else now."""
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
-    if seconds is None:
+    if seconds is None and shutil.which("git"):
         command = ["git", "-C", REPOSITORY, "log", "-1", "--format=%ct"]
         seconds = subprocess.run(command, capture_output=True, text=True).stdout.strip()
     return datetime.fromtimestamp(int(seconds), timezone.utc) if seconds else datetime.now(timezone.utc)

@@ -117,8 +117,8 @@ def article(site, page):
     for paragraph in text.find_all("p"):
         if paragraph.get_text().rstrip().endswith((":", ",")):
             paragraph["class"] = [*paragraph.get("class", []), "leads-on"]
-    for code in text.select("div.cell_input"):
-        if len(code.get_text().splitlines()) > LONG:
+    for code in text.select("div.cell_input, .cell_output .output"):
+        if len(code.get_text().strip().splitlines()) > LONG:
             code["class"].append("long")
     for element in text.find_all(True):
         if element.get("id"):
@@ -278,9 +278,9 @@ def finish(printed, headings, title, author):
 
 def make(site, file, title, author):
     """The PDF of the built book in ``site``, printed from the document ``file``."""
-    file.parent.mkdir(exist_ok=True)
-    file.write_text(document(site, title), "utf8")
     with open_browser() as browser:
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(document(site, title), "utf8")
         page = browser.new_page(viewport={"width": WIDTH, "height": 900})
         page.emulate_media(media="print", color_scheme="light")
         page.goto(file.resolve().as_uri(), timeout=0)  # as long as a slow machine needs
