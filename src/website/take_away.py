@@ -7,7 +7,6 @@ they cannot be old. The package that the code imports lies beside them.
 """
 
 import shutil
-import tomllib
 from pathlib import Path
 
 import jupytext
@@ -16,7 +15,7 @@ import nbformat
 from coursework import release
 
 from .markdown import MarkdownWriter
-from .paths import REPOSITORY
+from .paths import REPOSITORY, package
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
@@ -66,7 +65,7 @@ def make_notebook(app, docname, doctree):
 
 
 def wheel_name():
-    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
+    project = package()
     return f"{project['name'].replace('-', '_')}-{project['version']}-py3-none-any.whl"
 
 
