@@ -8,6 +8,7 @@ import sys
 
 import pytest
 import sympy as sm
+from sympy.physics.mechanics import ReferenceFrame
 
 import coursework
 from coursework import questions, sealing
@@ -126,7 +127,7 @@ def reply_to(one, answer):
     (dcm_from_body_fixed((theta, alpha, phi), 'xyz'), 'another sequence', 'xyz'),
     (simple_dcm('y', phi) * simple_dcm('z', theta), 'turn missing', 'second turn is missing'),
     (GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}), 'sign of every turn', 'wrong sign'),
-    (2 * GIMBAL, 'not orthogonal', 'first row should be a unit vector and has length 2.0'),
+    (2 * GIMBAL, 'not orthogonal', 'row should be a unit vector and has length 2.0'),
     (GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)), 'not orthogonal', 'row'),
     (sm.diag(1, -1, 1) * GIMBAL, 'left-handed', 'determinant is −1'),
     (GIMBAL.subs(theta, sm.Symbol('w')), 'stray symbol', 'holds w; this question has the symbols theta, alpha, varphi'),
@@ -137,6 +138,9 @@ def reply_to(one, answer):
     (GIMBAL * sm.I, 'not real', 'imaginary'),
     (GIMBAL / sm.Add(theta, -theta, evaluate=False), 'undefined', 'no finite value'),
     (object(), 'unreadable', 'cannot be read'),
+    (ReferenceFrame('E').x + ReferenceFrame('F').y, 'unreadable', 'not connected'),
+    (ReferenceFrame('E'), 'frame', 'This is the frame E'),
+    (ReferenceFrame('E').x, 'shape', 'a vector'),
     (simple_dcm('x', sm.Rational(1, 3)), '', 'a direction cosine matrix, but not the one'),
     (..., '', 'in place of'),
     (None, '', 'in place of'),

@@ -72,10 +72,14 @@ class Question:
         self.turns, self.turned = list(turns), turned
         self.plain = self.to_plain(answer)
         self.public.setdefault('salt', None)
+        held = {node[1] for node in self.plain['nodes'] if node[0] == 'symbol'}
+        if self.public.get('symbols') and held >= set(self.public['symbols']):
+            self.public['every symbol'] = True
         self._settle_points()
         self._demand_turns()
-        self.mistakes = [*self._catalogued(), *(
-            Mistake('authored', {'text': text}, wrong) for text, wrong in (authored or {}).items())]
+        # What the author says of a mistake is closer to the question than what the catalogue says of it.
+        self.mistakes = [*(Mistake('authored', {'text': text}, wrong) for text, wrong in (authored or {}).items()),
+                         *self._catalogued()]
         self.entries = self._entries()
 
     def to_plain(self, answer):

@@ -206,7 +206,9 @@ def _vector(question, value):
     frame = question.get('frames', (None,))[0]
     if value[0] == 'vector':
         # The zero vector belongs to every frame.
-        if not value[1] or frame not in value[1]:
+        if frame is None:
+            raise _shape_fault(f'A list of {length} components', value)
+        if frame not in value[1]:
             raise Fault('frame', f'This vector is not connected with the frame `{frame}` that the question names.')
         value = value[1][frame]
     return _components(value, length, f'A list of {length} components')
@@ -309,10 +311,11 @@ def _sequence(question, plain):
 
 
 def _choice(question, plain):
-    text = ' '.join(_word(plain, f'One of {_listed(question["options"])}').lower().split())
+    given = ' '.join(_word(plain, f'One of {_listed(question["options"])}').split())
+    text = given.lower()
     options = {option.lower(): option for option in question['options']}
     if text not in options:
-        raise Fault('shape', f'The answer is one of {_listed(question["options"])}; this is `{text[:40]}`.')
+        raise Fault('shape', f'The answer is one of {_listed(question["options"])}; this is `{given[:40]}`.')
     return text
 
 

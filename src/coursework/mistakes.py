@@ -42,7 +42,7 @@ def _transposed(question):
 
 
 def _turn(number):
-    return f'the {ORDINALS[number]} turn'
+    return 'the turn' if number is None else f'the {ORDINALS[number]} turn'
 
 
 MESSAGES = {
@@ -131,6 +131,9 @@ def mistakes(question, answer, turns=(), turned=None):
 
 def _sympy_matrix(answer):
     import sympy
+    if hasattr(answer, 'dcm'):
+        raise TypeError('A reference frame is the right answer here: bind its direction cosine matrix instead, so '
+                        'that mistakes can be made of it. A student may still answer with the frame.')
     return sympy.Matrix(answer)
 
 
@@ -199,8 +202,12 @@ def _of_turns(kind, turns):
         return [(axis, -angle if order in numbers else angle) for order, (axis, angle) in enumerate(turns)]
 
     count = len(turns)
+    def named(turn):
+        # A single turn is not called the first of its kind.
+        return turn if count > 1 else None
+
     for turn in range(count):
-        yield Mistake('sign of one turn', {'turn': turn}, build(changed(turn)))
+        yield Mistake('sign of one turn', {'turn': named(turn)}, build(changed(turn)))
     if count > 1:
         yield Mistake('other order', {}, build(turns[::-1]))
         yield Mistake('sign of every turn', {}, build(changed(*range(count))))
@@ -229,11 +236,11 @@ def _of_turns(kind, turns):
                 if axis != letters[turn]:
                     other = list(turns)
                     other[turn] = (axis, turns[turn][1])
-                    yield Mistake('another axis', {'turn': turn, 'axis': axis}, build(other))
+                    yield Mistake('another axis', {'turn': named(turn), 'axis': axis}, build(other))
         other = list(turns)
         other[turn] = (turns[turn][0], sympy.pi / 2 - turns[turn][1])
         if kind != 'quaternion':
-            yield Mistake('sine for cosine', {'turn': turn}, build(other))
+            yield Mistake('sine for cosine', {'turn': named(turn)}, build(other))
     if turns and not any(sympy.sympify(angle).free_symbols for _, angle in turns):
         yield Mistake('degrees taken for radians', {},
                       build([(axis, sympy.deg(angle).evalf(20)) for axis, angle in turns]))

@@ -128,8 +128,12 @@ class _Writer:
                 _text(other.name): self.value(answer.dcm(other), depth + 1) for other in _connected([answer])}]
         if mechanics and isinstance(answer, mechanics.Vector):
             frames = _connected([frame for _, frame in answer.args])
-            return ['vector', {
-                _text(frame.name): self.value(answer.to_matrix(frame), depth + 1) for frame in frames}]
+            try:
+                return ['vector', {
+                    _text(frame.name): self.value(answer.to_matrix(frame), depth + 1) for frame in frames}]
+            except ValueError:
+                raise NotPlain('The parts of this vector belong to frames that are not connected: orient one of '
+                               'them with respect to another first.') from None
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
         if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(answer, sympy.MatrixBase):

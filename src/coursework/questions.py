@@ -12,6 +12,7 @@ from importlib import resources
 from . import sealing
 from .kinds import Blank, Fault, Reading, Undecidable, fault, fingerprint, read
 from .mistakes import message
+from .points import TWINS
 from .reply import Reply
 
 FORMAT = 1
@@ -125,8 +126,8 @@ def what_can_be_said(question, plain, reading: Reading):
         'axis and angle': 'This axis and angle give another orientation than the one that is asked for.',
     }.get(kind, 'The form is right, the value is not.')
     named = {node[1] for node in plain['nodes'] if node[0] == 'symbol'}
-    missing = [symbol for symbol in question.get('symbols', {}) if symbol not in named]
-    if question.get('symbols') and named and missing:
+    missing = [symbol for symbol in question.get('symbols', {}) if not {symbol, TWINS.get(symbol)} & named]
+    if question.get('every symbol') and named and missing:
         said += f' It holds no {" and no ".join(f"`{symbol}`" for symbol in missing)}.'
     if any(node[0] == 'float' for node in plain['nodes']) and question.get('tolerance') is None and reading.text is None:
         said += ' It holds decimal fractions; where an exact answer is asked for, write `sm.Rational(1, 2)` and `sm.sqrt(3)`.'

@@ -79,5 +79,7 @@ def plain_text(message):
     'This is N_C_A: transpose it.'
     """
     message = re.sub(r'\$\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?\$', r'\1_C_\2', message)
+    message = re.sub(r'\\hat\{(\w)\}_(\w)', r'\1_\2', message)
+    message = re.sub(r'\\math\w+\{(\w+)\}', r'\1', message)
     message = re.sub(r'\$([^$]*)\$', lambda found: found[1].replace('\\', ''), message)
     return re.sub(r'\*([^*]+)\*', r'\1', message).replace('`', '')
