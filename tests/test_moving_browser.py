@@ -47,9 +47,7 @@ def test_weight():
 @pytest.mark.parametrize("kind", KINDS)
 def test_figure_on_the_page(open_figure, kind, viewport, theme):
     page = open_figure(kind, theme, viewport)
-    # The racket's words and table fill while its run is computed, inside the figure's own room.
-    most = 0.006 if kind == "motion" else 0.001
-    assert page.evaluate("window.shift") < most, "the page moves when the figure wakes"
+    assert page.evaluate("window.shift") < 0.001, "the page moves when the figure wakes"
     assert page.evaluate(SIDEWAYS) <= 0
     assert violations(page) == []
     boxes = ("still", "live .sheet")

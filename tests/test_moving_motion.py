@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import traitlets
 from bs4 import BeautifulSoup
-from figure_pages import NARROW, front_end, open_figure, settle, words  # noqa: F401
+from figure_pages import NARROW, drawing, front_end, open_figure, settle, type_number, words  # noqa: F401
 from scipy.integrate import solve_ivp
 
 from orientation import (
@@ -27,16 +27,17 @@ from orientation.moving import MotionFigure, bundle
 from orientation.moving.motion import DESCRIPTIONS, MOMENTS, SPIN
 
 NODE = Path(sys.executable).with_name("node")
-SETTINGS = ("body", "axis", "disturbance", "method", "step", "restored")
+SETTINGS = ("moments", "axis", "disturbance", "method", "step", "restored")
 RUNS = [
     dict(zip(SETTINGS, values))
     for values in (
-        ("racket", "y", 0.01, "Euler", 0.01, False),
-        ("racket", "y", 0.01, "Euler", 0.01, True),
-        ("racket", "y", 0.2, "Runge-Kutta", 0.02, False),
-        ("racket", "y", 0.2, "Runge-Kutta", 0.05, True),
-        ("book", "x", 0.1, "Runge-Kutta", 0.02, False),
-        ("book", "z", 0.3, "Euler", 0.02, True),
+        (MOMENTS["racket"], "y", 0.01, "Euler", 0.01, False),
+        (MOMENTS["racket"], "y", 0.01, "Euler", 0.01, True),
+        (MOMENTS["racket"], "y", 0.2, "Runge-Kutta", 0.02, False),
+        (MOMENTS["racket"], "y", 0.2, "Runge-Kutta", 0.05, True),
+        (MOMENTS["book"], "x", 0.1, "Runge-Kutta", 0.02, False),
+        (MOMENTS["book"], "z", 0.3, "Euler", 0.02, True),
+        ((5.0, 3.0, 7.5), "z", 0.3, "Runge-Kutta", 0.02, False),
     )
 ]
 AGREE = 1e-12
@@ -46,9 +47,9 @@ FEW_SECONDS = 4.0
 # ---- the same integration, written once more from the module's functions -------------------------------
 
 
-def integrated(body, axis, disturbance, method, step, restored, seconds):
+def integrated(moments, axis, disturbance, method, step, restored, seconds):
     """Each description at every step, by the textbook's formulas and the rates of the module."""
-    moments = np.array(MOMENTS[body])
+    moments = np.array(moments)
     omega = np.array([SPIN if axis == other else disturbance for other in "xyz"])
 
     def rates(state):
@@ -95,7 +96,7 @@ def test_the_figure_integrates_as_the_formulas_say(settings):
 
 
 def test_the_reference_agrees_with_scipy():
-    figure = MotionFigure(body="book", disturbance=0.2, step=0.01, time=6.0)
+    figure = MotionFigure(moments=MOMENTS["book"], disturbance=0.2, step=0.01, time=6.0)
     moments = np.array(MOMENTS["book"])
 
     def rate(_, state):
@@ -163,7 +164,10 @@ def test_a_run_ends_where_its_numbers_have_no_meaning():
         ("disturbance", 1, "rad/s"),
         ("method", "euler", "Euler"),
         ("axis", 0, "axis"),
-        ("body", "cat", "racket"),
+        ("moments", (1, 2), "shape"),
+        ("moments", (1, 2, 4), "no body has such moments.*the largest, 4, is more than the sum of the others, 3"),
+        ("moments", (-1, 2, 2), "from 0.1 to 20"),
+        ("moments", (16, 17, 21), "from 0.1 to 20"),
         ("description", "dcm", "matrix"),
         ("restored", "perhaps", "restored"),
     ],
@@ -192,9 +196,9 @@ def test_attributes_can_be_observed():
 
 
 @pytest.mark.parametrize("time", (0, 6))
-@pytest.mark.parametrize("body", MOMENTS)
-def test_the_still_shows_and_tells(body, time):
-    figure = MotionFigure(body=body, time=time)
+@pytest.mark.parametrize("body, moments", [*MOMENTS.items(), ("block", (5, 3, 8))])
+def test_the_still_shows_and_tells(body, moments, time):
+    figure = MotionFigure(moments=moments, time=time)
     pictures = BeautifulSoup(figure.still(), "html.parser").find_all("svg", role="img")
     assert [svg["viewbox"] for svg in pictures] == ["-180 -150 360 300", "-180 0 360 356"]
     drawn, plotted = (svg["aria-label"] for svg in pictures)
@@ -205,7 +209,7 @@ def test_the_still_shows_and_tells(body, time):
         gimbal_lock_margin(body_fixed_from_dcm(dcm_from_quaternion(figure.run()["reference"]), "zxy"), "zxy")
     )
     assert f"at the least {margins.min():.0f} degrees" in plotted
-    assert figure.still() == MotionFigure(body=body, time=time).still()
+    assert figure.still() == MotionFigure(moments=moments, time=time).still()
 
 
 # ---- the browser's language ----------------------------------------------------------------------------
@@ -261,12 +265,14 @@ def test_trajectories_agree_to_twelve_digits(node, settings):
     expected["reference"] = figure.run()["reference"]
     for name, values in expected.items():
         assert theirs[name].shape == values.shape
-        assert abs(theirs[name] - values).max() < AGREE, name
+        # About x the angles of zxy go through gimbal lock, where every rounding grows.
+        most = 1e-9 if name == "angles" and settings["axis"] == "x" else AGREE
+        assert abs(theirs[name] - values).max() < most, name
     assert len(answer["flips"]) == figure.flips
 
 
 def test_faults_errors_and_margins_agree(node):
-    settings = dict(zip(SETTINGS, ("racket", "y", 0.2, "Euler", 0.02, False)))
+    settings = dict(zip(SETTINGS, (MOMENTS["racket"], "y", 0.2, "Euler", 0.02, False)))
     answer = node(TRAJECTORY, {"settings": settings, "count": 150})
     run = MotionFigure(**settings, time=3.0).run()
     truth = dcm_from_quaternion(run["reference"])
@@ -302,7 +308,7 @@ def test_rates_agree_with_the_module(node):
 
 
 def test_both_end_a_hopeless_run_at_the_same_step(node):
-    settings = dict(zip(SETTINGS, ("racket", "y", 0.5, "Euler", 0.1, False)))
+    settings = dict(zip(SETTINGS, (MOMENTS["racket"], "y", 0.5, "Euler", 0.1, False)))
     answer = node(TRAJECTORY, {"settings": settings, "count": 200})
     assert answer["ended"]
     assert len(answer["states"]) == len(MotionFigure(**settings, time=20).run()["time"])
@@ -383,7 +389,8 @@ def test_every_control_changes_the_run(open_figure):
         lambda: page.get_by_label("Method", exact=True).select_option("Runge-Kutta"),
         lambda: page.get_by_label("Step in milliseconds").fill("50"),
         lambda: page.get_by_label("Disturbance in radians per second").fill("0.2"),
-        lambda: page.get_by_label("Body", exact=True).select_option("book"),
+        lambda: page.get_by_role("button", name="a book").click(),
+        lambda: page.get_by_label("Moment of inertia about x in gram square metres").fill("8"),
         lambda: page.get_by_label("Spin about", exact=True).select_option("z"),
     ):
         change()
@@ -391,7 +398,7 @@ def test_every_control_changes_the_run(open_figure):
         after = curves(page)
         assert after != before
         before = after
-    assert "the book does not flip" in words(page)
+    assert "the block does not flip" in words(page)
     page.get_by_role("radio", name="Euler angles").check()
     page.wait_for_function("document.querySelector('.words').textContent.includes('gimbal lock')")
 
@@ -405,10 +412,41 @@ def test_a_hopeless_step_says_so(open_figure):
     assert time_of(page) < 19
 
 
+def test_moments_that_no_body_has_are_refused_and_not_drawn(open_figure):
+    page = open_figure("motion")
+    field = {axis: f"Moment of inertia about {axis} in gram square metres" for axis in "xyz"}
+    before = curves(page), drawing(page)
+    type_number(page, field["z"], 20)
+    said = words(page)
+    assert said.startswith("No body has the moments of inertia 1.2, 16, 20") and "sum of the others, 17.2" in said
+    assert "Still drawn: 1.2, 16, 17" in said and (curves(page), drawing(page)) == before
+    assert page.locator(".slider.refused").count() == 3
+    assert page.get_by_label(field["z"]).input_value() == "20", "the reader's number is taken away"
+    # The way to moments that are possible may lead through some that are not.
+    type_number(page, field["x"], 5)
+    assert page.locator(".slider.refused").count() == 0 and curves(page) != before[0]
+    figure = MotionFigure(moments=(5, 16, 20))
+    fault = abs(figure.dcm @ figure.dcm.T - np.eye(3)).max()
+    assert table(page)[0][1] == f"{float(f'{fault:.2g}'):g}" and "the block" in words(page)
+    type_number(page, field["z"], 0.5)
+    page.get_by_role("button", name="a racket").click()
+    assert "the racket has flipped once" in words(page) and page.locator(".slider.refused").count() == 0
+    assert (curves(page), drawing(page)) == before
+
+
+@pytest.mark.parametrize("moments, texts", [
+    ((5, 3, 7), ["middle moment", "smallest moment", "largest moment"]),
+    ((5, 5, 7), ["equal to another", "equal to another", "largest moment"])])
+def test_the_axes_are_told_apart_by_their_moments(open_figure, moments, texts):
+    page = open_figure(MotionFigure(moments=moments, axis="x"))
+    options = page.get_by_label("Spin about", exact=True).locator("option").all_text_contents()
+    assert options == [f"{axis} ({text})" for axis, text in zip("xyz", texts)]
+
+
 def test_keyboard_alone(open_figure):
     page = open_figure("motion")
     names = []
-    for _ in range(20):
+    for _ in range(26):
         page.keyboard.press("Tab")
         names.append(
             page.evaluate(
@@ -417,7 +455,8 @@ def test_keyboard_alone(open_figure):
             ).strip()
         )
     expected = ["Play", "Time", "Time in seconds", "Reset", "Matrix", "Restore after every step", "Method", "Step"]
-    expected += ["Step in milliseconds", "Disturbance", "Disturbance in radians per second", "Body", "Spin about"]
+    expected += ["Step in milliseconds", "Disturbance", "Disturbance in radians per second", "a racket", "a book"]
+    expected += ["Spin about", *(f"Moment of inertia about {axis}{unit}" for axis in "xyz" for unit in ("", " in gram square metres"))]
     found = [name for name in names if name in expected]
     assert found[: len(expected)] == expected
     page.get_by_label("Time", exact=True).and_(page.locator("input")).focus()
@@ -446,6 +485,7 @@ def test_sliders_tell_their_values_and_units(open_figure):
         ("Time", "Time, 6 seconds"),
         ("Step", "Step, 10 milliseconds"),
         ("Disturbance", "Disturbance, 0.01 radians per second"),
+        ("Moment of inertia about y", "Moment of inertia about y, 16 gram square metres"),
     ):
         slider = page.locator(f'input[type=range][aria-label="{name}"]')
         assert slider.get_attribute("aria-valuetext") == told

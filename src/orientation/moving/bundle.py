@@ -18,7 +18,7 @@ COMMENT = re.compile(r'^\s*//.*\n|^ +', re.MULTILINE)
 
 #: Every text that a figure sets as mathematics.
 LABELS = (*(rf'\hat{{{frame}}}_{axis}' for frame in 'nabcd' for axis in 'xyz'), r'\hat{e}', *'NABCDtxyz',
-          r'\psi', r'\theta', r'\theta/2', r'\varphi', 'q_0', 'q_i', 'q_j', 'q_k', 'e_x', 'e_y', 'e_z',
+          r'\psi', r'\theta', r'\theta/2', r'\varphi', 'q_0', 'q_i', 'q_j', 'q_k', 'e_x', 'e_y', 'e_z', 'I_x', 'I_y', 'I_z',
           r'{}^A\mathbf{C}^N', r'{}^D\mathbf{C}^A', r'\hat{a}_x\times\hat{a}_y',
           *(rf'\hat{{e}}_{axis}' for axis in 'xyz'), 'E', 'q', '-q', '0', r'4\,\mathrm{s}',
           *(rf'{top}^\circ/\mathrm{{s}}' for top in (30, 60, 90, 120, 180, 360, 720)), *(rf'\mathbf{{C}}_{axis}' for axis in 'xyz'),

@@ -13,9 +13,9 @@ from ..quaternions import dcm_from_quaternion
 from .figure import MovingFigure
 from .state import Numbers
 
-#: Principal moments of inertia along a_x, a_y and a_z; only their ratios matter. The racket's a_x runs
-#: along its handle and a_z out of its face; the book's a_x runs along its long edges.
-MOMENTS = {'racket': (1.2, 16.0, 17.0), 'book': (0.8424, 1.7748, 2.5524)}
+#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's a_x
+#: runs along its handle and a_z out of its face; the book's a_x runs along its long edges.
+MOMENTS = {'racket': (1.2, 16.0, 17.0), 'book': (6.9, 13.3, 19.7)}
 DESCRIPTIONS = {'matrix': 'direction cosine matrix', 'quaternion': 'quaternion', 'angles': 'Euler angles'}
 SPIN = 4.0        # rad/s
 SECONDS = 20.0
@@ -48,6 +48,21 @@ class Between(Numbers):
         return number
 
 
+class Moments(Numbers):
+    """Three principal moments of inertia that a body can have, in g m^2."""
+
+    def validate(self, obj, value):
+        moments = super().validate(obj, value)
+        if not all(0.1 <= moment <= 20 for moment in moments):
+            raise traitlets.TraitError(f'{self.name} is {value!r}; from 0.1 to 20 g m^2 can be had')
+        largest = max(moments)
+        others = sum(moments) - largest
+        if largest > others + 1e-9:
+            raise traitlets.TraitError(f'{self.name} is {value!r}: no body has such moments of inertia, because the '
+                                       f'largest, {largest:g}, is more than the sum of the others, {others:g}')
+        return moments
+
+
 class MotionFigure(MovingFigure):
     r"""A body that tumbles freely, integrated in three descriptions with or without the restoring step.
 
@@ -58,8 +73,10 @@ class MotionFigure(MovingFigure):
 
     Attributes
     ----------
-    body : str
-        'racket' or 'book', with the principal moments of inertia :data:`MOMENTS`.
+    moments : tuple of three floats
+        The principal moments of inertia about :math:`\hat{a}_x`, :math:`\hat{a}_y` and :math:`\hat{a}_z`, from
+        0.1 to 20 g m\ :sup:`2`, none larger than the sum of the others. A racket is drawn for its own,
+        otherwise the uniform block that has them.
     axis : str
         The principal axis that it spins about, 'x', 'y' or 'z'.
     disturbance : float
@@ -89,8 +106,8 @@ class MotionFigure(MovingFigure):
 
     kind = 'motion'
     sheet = (-180, -150, 180, 150)
-    room = (612, 1185)
-    body = traitlets.Enum(tuple(MOMENTS), 'racket').tag(sync=True, state=True)
+    room = (684, 1255)
+    moments = Moments(MOMENTS['racket'], (3,)).tag(sync=True, state=True)
     axis = traitlets.Enum(tuple('xyz'), 'y').tag(sync=True, state=True)
     disturbance = Between(0.01, 0, 0.5, 'rad/s').tag(sync=True, state=True)
     method = traitlets.Enum(('Euler', 'Runge-Kutta'), 'Euler').tag(sync=True, state=True)
@@ -107,12 +124,17 @@ class MotionFigure(MovingFigure):
         its numbers have grown beyond a million.
         """
         count = int(self.time / self.step + 1e-9)
-        return _run(self.body, self.axis, self.disturbance, self.method, self.step, self.restored, count)
+        return _run(self.moments, self.axis, self.disturbance, self.method, self.step, self.restored, count)
 
     @property
     def dcm(self):
         """The matrix of the drawn description at ``time``, orthogonal or not, shape ``(3, 3)``."""
         return _matrices(self.run(), self.description, slice(-1, None))[0]
+
+    @property
+    def body(self):
+        """What is drawn: 'racket', 'book' or, for other moments of inertia, 'block'."""
+        return next((name for name, moments in MOMENTS.items() if moments == self.moments), 'block')
 
     @property
     def flips(self):
@@ -126,7 +148,7 @@ class MotionFigure(MovingFigure):
 
     def _momentum(self):
         # At the start A is N, and the components along both are the same.
-        momentum = MOMENTS[self.body] * self.run()['angular_velocity'][0]
+        momentum = self.moments * self.run()['angular_velocity'][0]
         return momentum / np.linalg.norm(momentum)
 
     def still(self):
@@ -139,9 +161,11 @@ class MotionFigure(MovingFigure):
         fault, error = (curve[-1] for curve in (_fault(dcm[None]), _error(dcm[None], run['reference'][-1:])))
         lengths = ', '.join(f'{length:.2f}' for length in np.linalg.norm(dcm, axis=1))
         restored = 'restored after every step' if self.restored else 'not restored'
-        times = {0: 'has not flipped yet' if self.axis == 'y' else 'does not flip', 1: 'has flipped once'}.get(self.flips, f'has flipped {self.flips} times')
+        middle = sorted(self.moments)[1] == self.moments['xyz'.index(self.axis)]
+        times = {0: 'has not flipped yet' if middle else 'does not flip', 1: 'has flipped once'}.get(self.flips, f'has flipped {self.flips} times')
         drawing = Drawing(
-            f'A {self.body} that spins freely about its {self.axis} axis, drawn with its triad A as its '
+            f'A {self.body} that spins freely about its {self.axis} axis, with the moments of inertia '
+            f'{", ".join(f"{moment:g}" for moment in self.moments)} g m^2 about x, y and z, drawn with its triad A as its '
             f'{DESCRIPTIONS[self.description]} says after {run["time"][-1]:.1f} seconds, {restored}, with the '
             f'{self.method} method in steps of {1000 * self.step:g} milliseconds. It {times}. The unit vectors of A, '
             f'which should be 1 long, are {lengths} long; the matrix is not orthogonal by {_words(fault)}, and the '
@@ -160,10 +184,13 @@ class MotionFigure(MovingFigure):
 
         if not toward[2]:
             arrow(2)
-        (_draw_racket if self.body == 'racket' else _draw_book)(drawing, dcm)
+        if self.body == 'racket':
+            _draw_racket(drawing, dcm)
+        else:
+            _draw_block(drawing, dcm, _edges(self.moments))
         for k in range(3 if toward[2] else 2):
             arrow(k)
-        for points in SHAPES[self.body]:
+        for points in RACKET if self.body == 'racket' else [_cut(_edges(self.moments))]:
             drawing.line(points @ dcm_from_quaternion(run['reference'][-1]), 'muted', 'guide')
         return drawing
 
@@ -234,12 +261,12 @@ def _curve(drawing, times, values, part, kind):
 # The integration. Its results are kept: an unchanged figure draws the same run again and again.
 
 @lru_cache(maxsize=8)
-def _run(body, axis, disturbance, method, step, restored, count):
+def _run(moments, axis, disturbance, method, step, restored, count):
     start = np.where([axis == other for other in 'xyz'], SPIN, disturbance)
     rows = [(start, np.eye(3), np.eye(4)[0], np.zeros(3))]
 
     def rates(omega, matrix, quaternion, angles):
-        return (np.array(_angular_acceleration(omega, MOMENTS[body])), dcm_rate(matrix, omega),
+        return (np.array(_angular_acceleration(omega, moments)), dcm_rate(matrix, omega),
                 quaternion_rate(quaternion, omega), np.linalg.solve(angular_velocity_matrix(angles, 'zxy'), omega))
 
     for _ in range(count):
@@ -252,7 +279,7 @@ def _run(body, axis, disturbance, method, step, restored, count):
             matrix, quaternion = nearest_dcm(matrix).dcm, quaternion / np.linalg.norm(quaternion)
         rows.append((omega, matrix, quaternion, angles))
     names = 'angular_velocity', 'matrix', 'quaternion', 'angles'
-    return {'time': step * np.arange(len(rows)), 'reference': _reference(start, MOMENTS[body], step / FINER, FINER * (len(rows) - 1))[::FINER],
+    return {'time': step * np.arange(len(rows)), 'reference': _reference(start, moments, step / FINER, FINER * (len(rows) - 1))[::FINER],
             **{name: np.array(column) for name, column in zip(names, zip(*rows))}}
 
 
@@ -343,9 +370,21 @@ STRINGS = np.array([(x, side * 0.36 * np.sqrt(1 - ((x - 0.45) / 0.47)**2), 0)
                    + [(0.45 + side * 0.47 * np.sqrt(1 - (y / 0.36)**2), y, 0) for y in (-0.2, 0, 0.2) for side in (-1, 1)])
 THROAT = np.array([(0.065, 0.206, 0), (-0.24, 0, 0), (0.065, -0.206, 0)])
 HANDLE = np.array([(-0.24, 0, 0), (-0.85, 0, 0)])
-EDGES = np.array((1.32, 0.9, 0.18))   # of a uniform box with these moments of inertia
-COVER = np.array([(x, y, 0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))]) * EDGES / 2
-SHAPES = {'racket': (HEAD, THROAT, HANDLE), 'book': (COVER,)}
+RACKET = HEAD, THROAT, HANDLE
+COVER = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
+LONGEST_EDGE = 1.4
+
+
+def _edges(moments):
+    """Return the edges of a uniform block: about each axis the moment is that of the two other edges squared."""
+    edges = np.sqrt(np.maximum(sum(moments) / 2 - np.array(moments), 0))
+    return LONGEST_EDGE * edges / edges.max()
+
+
+def _cut(edges):
+    """Return the outline of the widest cut through the middle of a block."""
+    thin = np.argmin(edges)
+    return np.roll(np.insert(COVER, 0, 0, axis=1), thin, axis=1) * edges / 2
 
 
 def _draw_racket(drawing, dcm):
@@ -363,9 +402,9 @@ def _draw_racket(drawing, dcm):
         handle()
 
 
-def _draw_book(drawing, dcm):
+def _draw_block(drawing, dcm, edges):
     # Cross products of the edges: the faces of a skewed box do not look along the rows.
-    half = dcm * EDGES[:, None] / 2
+    half = dcm * edges[:, None] / 2
     for k, fill in enumerate((26, 26, 8)):
         u, v = half[(k + 1) % 3], half[(k + 2) % 3]
         for side in (-1, 1):

@@ -78,7 +78,7 @@ class SuccessiveFigure(MovingFigure):
 
     kind = 'successive'
     sheet = (-180, -142, 180, 222)
-    room = (685, 925)
+    room = (685, 1001)
     turns = Turns((('z', math.radians(30)), ('x', math.radians(50)), ('y', math.radians(40)))).tag(sync=True, state=True)
     fixed = traitlets.Enum(('body', 'space'), 'body').tag(sync=True, state=True)
     compare = traitlets.Enum(COMPARISONS, 'nothing').tag(sync=True, state=True)

@@ -1,10 +1,10 @@
 import { AXES, IDENTITY, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromBodyFixed, dcmFromQuaternion, dot, gimbalLockMargin,
   length, multiply, nearestDcm, scale, times, transpose, unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, follow, liveText, onceAFrame, open, player, put, slider,
+import { Sheet, button, change, choice, degrees, element, follow, group, liveText, onceAFrame, open, plain, player, put, slider,
   stage, write, writeWords } from './shared.js';
 
 // As in motion.py.
-const MOMENTS = { racket: [1.2, 16, 17], book: [0.8424, 1.7748, 2.5524] };
+const MOMENTS = { racket: [1.2, 16, 17], book: [6.9, 13.3, 19.7] };   // g m^2
 const DESCRIPTIONS = { matrix: 'Matrix', quaternion: 'Quaternion', angles: 'Euler angles' };
 const COLOURS = { matrix: 'A', quaternion: 'D', angles: 'C' };
 const SPIN = 4, SECONDS = 20, FINER = 10, LARGEST = 1e6, SAMPLE = 0.1;
@@ -63,8 +63,8 @@ export function error(matrix, truth) {
 
 // A run is computed step by step as far as it is asked for, and keeps what it has computed.
 export class Run {
-  constructor({ body, axis, disturbance, method, step, restored }) {
-    Object.assign(this, { step, method, restored, moments: MOMENTS[body], axis: AXES.indexOf(axis) });
+  constructor({ moments, axis, disturbance, method, step, restored }) {
+    Object.assign(this, { step, method, restored, moments, axis: AXES.indexOf(axis) });
     const omega = AXES.map((other) => (other === axis ? SPIN : disturbance));
     this.momentum = unit(omega.map((entry, k) => entry * this.moments[k]));
     this.states = [[...omega, 1, 0, 0, 0, ...IDENTITY.flat(), 0, 0, 0]];
@@ -138,9 +138,20 @@ const STRINGS = [
   ...[0.12, 0.285, 0.45, 0.615, 0.78].flatMap((x) => [-1, 1].map((side) => [x, side * 0.36 * Math.sqrt(1 - ((x - 0.45) / 0.47) ** 2), 0])),
   ...[-0.2, 0, 0.2].flatMap((y) => [-1, 1].map((side) => [0.45 + side * 0.47 * Math.sqrt(1 - (y / 0.36) ** 2), y, 0]))];
 const THROAT = [[0.065, 0.206, 0], [-0.24, 0, 0], [0.065, -0.206, 0]], HANDLE = [[-0.24, 0, 0], [-0.85, 0, 0]];
-const EDGES = [1.32, 0.9, 0.18];
-const COVER = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]].map(([x, y]) => [x * EDGES[0] / 2, y * EDGES[1] / 2, 0]);
-const SHAPES = { racket: [HEAD, THROAT, HANDLE], book: [COVER] };
+const COVER = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]], LONGEST_EDGE = 1.4;   // the widest cut through the middle
+
+// The edges of a uniform block: about each axis the moment is that of the two other edges squared.
+function edgesOf(moments) {
+  const half = moments.reduce((sum, moment) => sum + moment) / 2, edges = moments.map((moment) => Math.sqrt(Math.max(half - moment, 0)));
+  return scale(LONGEST_EDGE / Math.max(...edges), edges);
+}
+
+const bodyOf = (moments) => Object.keys(MOMENTS).find((name) => MOMENTS[name].every((moment, k) => moment === moments[k])) ?? 'block';
+const shapesOf = (moments) => {
+  if (bodyOf(moments) === 'racket') return [HEAD, THROAT, HANDLE];
+  const edges = edgesOf(moments), thin = edges.indexOf(Math.min(...edges));
+  return [COVER.map(([u, v]) => edges.map((edge, k) => [0, u, v][(k - thin + 3) % 3] * edge / 2))];
+};
 
 // Components along N of points given along A: the rows of the matrix are A's unit vectors, skewed or not.
 const placed = (points, matrix) => { const columns = transpose(matrix); return points.map((point) => times(columns, point)); };
@@ -157,8 +168,8 @@ function drawRacket(sheet, matrix) {
   sheet.path(`M${'L'.repeat(28)}`, head, 'thick A', 2);
 }
 
-function drawBook(sheet, matrix) {
-  const half = matrix.map((row, k) => scale(EDGES[k] / 2, row));
+function drawBlock(sheet, matrix, edges) {
+  const half = matrix.map((row, k) => scale(edges[k] / 2, row));
   sheet.layer = 3;
   [26, 26, 8].forEach((fill, k) => {
     const u = half[(k + 1) % 3], v = half[(k + 2) % 3];
@@ -181,15 +192,32 @@ function power(value) {
   return `${mantissa}\u2009×\u200910${[...exponent.replace('+', '')].map((sign) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(sign)]).join('')}`;
 }
 
-const often = (count, axis) => [axis === 'y' ? 'has not flipped yet' : 'does not flip', 'has flipped once', 'has flipped twice'][count] ?? `has flipped ${count} times`;
+const often = (count, middle) => [middle ? 'has not flipped yet' : 'does not flip', 'has flipped once', 'has flipped twice'][count] ?? `has flipped ${count} times`;
+
+// How the moment of one axis stands to the two others.
+function rank(moments, k) {
+  const smaller = moments.filter((moment) => moment < moments[k]).length, larger = moments.filter((moment) => moment > moments[k]).length;
+  if (smaller === 1 && larger === 1) return 'middle moment';
+  if (smaller + larger < 2) return 'equal to another';
+  return `${smaller ? 'largest' : 'smallest'} moment`;
+}
+
+const listed = (moments) => `${moments.map((one) => plain(one)).join(', ')} g\u202fm²`;
+
+// Why no body has these moments of inertia, or ''.
+function impossible(moments) {
+  const largest = Math.max(...moments), others = moments.reduce((sum, moment) => sum + moment) - largest;
+  return largest <= others + 1e-9 ? '' : `No body has the moments of inertia ${listed(moments)}: the largest, ${
+    plain(largest)}, is more than the sum of the others, ${plain(others)}.`;
+}
 
 // ---- the figure ----------------------------------------------------------------------------------------
 
-const SETTINGS = ['body', 'axis', 'disturbance', 'method', 'step', 'restored'];
+const SETTINGS = ['moments', 'axis', 'disturbance', 'method', 'step', 'restored'];
 
 export function render({ model, el }) {
   const alone = `description-${Math.random()}`;   // the buttons of one figure exclude each other, not those of the next
-  let run, made = '';
+  let run, made = '', refused = null;   // moments that the reader has set and that no body has
 
   const sheet = new Sheet({ bounds: [-180, -150, 180, 150], size: SIZE, changed: () => redraw(),
     name: 'The tumbling body with its triad A, drawn from the computed numbers. Dashed: the reference. H: the angular momentum.' });
@@ -212,9 +240,18 @@ export function render({ model, el }) {
 
   const clock = player({ name: 'Time', seconds: SECONDS, show: (time) => change(model, { time }) });
   const reset = button('Reset', () => { clock.pause(); made = ''; clock.set(0); redraw(); });
-  const body = choice({ name: 'Body', options: [['racket', 'tennis racket'], 'book'], change: (value) => change(model, { body: value }) });
-  const axis = choice({ name: 'Spin about', options: AXES.map((name, k) => [name, `${name}, ${['smallest', 'middle', 'largest'][k]} moment of inertia`]),
-    change: (value) => change(model, { axis: value }) });
+  const setMoments = (moments) => {
+    refused = impossible(moments) ? moments : null;
+    if (!refused) change(model, { moments });
+    redraw();
+  };
+  const moments = AXES.map((name, k) => slider({ symbol: `$I_${name}$`, name: `Moment of inertia about ${name}`, unit: 'gram square metres',
+    sign: ' g\u202fm²', factor: 1, min: 0.1, max: 20, step: 0.1, more: () => '',
+    change: (value) => setMoments((refused ?? model.get('moments')).map((old, n) => (n === k ? value : old))) }));
+  const bodies = group('Moments of inertia', 'row-of-controls', element('span', { 'aria-hidden': 'true' }, 'Moments of inertia of'),
+    ...[['racket', 'a racket'], ['book', 'a book']].map(([name, title]) => button(title, () => setMoments(MOMENTS[name]))));
+  const axis = choice({ name: 'Spin about', options: AXES.map((name) => [name, '']), change: (value) => change(model, { axis: value }) });
+  const ranks = axis.element.querySelectorAll('option');
   const method = choice({ name: 'Method', options: ['Euler', ['Runge-Kutta', 'Runge–Kutta, fourth order']],
     change: (value) => change(model, { method: value }) });
   const step = slider({ symbol: '', name: 'Step', unit: 'milliseconds', sign: ' ms', factor: 0.001, min: 5, max: 100, step: 5, more: () => '',
@@ -242,7 +279,8 @@ export function render({ model, el }) {
       element('table', { class: 'runs' }, element('thead', {}, element('tr', {}, ...heads)), element('tbody', {}, ...rows.map((row) => row.element))), aside),
     element('div', { class: 'controls pairs' },
       element('label', { class: 'choice' }, restored, element('span', {}, 'Restore after every step')),
-      method.element, named('Step', step), named('Disturbance', disturbance), body.element, axis.element));
+      method.element, named('Step', step), named('Disturbance', disturbance), bodies, axis.element,
+      element('div', { class: 'moments' }, ...moments.map((moment) => moment.element))));
 
   function draw() {
     const settings = Object.fromEntries(SETTINGS.map((name) => [name, model.get(name)])), time = model.get('time');
@@ -261,11 +299,17 @@ export function render({ model, el }) {
     // The rest is computed in the next frames, and drawn as it grows.
     put(figure, 'aria-busy', String(run.last < wanted));
     if (run.last < wanted) redraw();
+    else figure.removeAttribute('data-waking');
     const k = Math.min(wanted, run.last);
 
     clock.at(time);
-    body.show(settings.body);
-    writeWords(aside, `Dashed: the reference, with steps ten times finer. $\\mathbf{H}$: angular momentum of the ${settings.body}, fixed in $N$.`);
+    const body = bodyOf(settings.moments), shown = refused ?? settings.moments;
+    moments.forEach((moment, k) => {
+      moment.show(shown[k]);
+      moment.mark(refused ? 'refused' : '');
+    });
+    AXES.forEach((about, k) => write(ranks[k], `${about} (${rank(settings.moments, k)})`));
+    writeWords(aside, `Dashed: the reference, with steps ten times finer. $\\mathbf{H}$: angular momentum of the ${body}, fixed in $N$.`);
     axis.show(settings.axis);
     method.show(settings.method);
     step.show(settings.step);
@@ -278,14 +322,15 @@ export function render({ model, el }) {
       return [row.name, value];
     }));
     const matrix = MATRICES[name](run.states[k]);
-    sheet.draw(() => picture(settings.body, matrix, run.truth(k)));
+    sheet.draw(() => picture(settings.moments, matrix, run.truth(k)));
     plot.draw(() => curves(name, k));
-    text.say(told(name, k, settings, values[name], matrix));
+    text.say(refused ? `${impossible(refused)} Still drawn: ${listed(settings.moments)}.` : told(name, k, settings, values[name], matrix));
   }
 
-  function told(name, k, { body: what, axis: about, restored: valid, method: how }, [faulty, wrong], matrix) {
+  function told(name, k, { moments: inertia, axis: about, restored: valid, method: how }, [faulty, wrong], matrix) {
+    const what = bodyOf(inertia), middle = rank(inertia, AXES.indexOf(about)).startsWith('middle');
     const now = (run.step * k).toFixed(1), count = run.flips.filter((flip) => flip <= k).length;
-    const begin = `After ${now} s the ${what} ${often(count, about)}. `;
+    const begin = `After ${now} s the ${what} ${often(count, middle)}. `;
     if (run.ended && k === run.last) {
       return `${begin}Here the run ends: the computed numbers have passed a million. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
     }
@@ -299,20 +344,21 @@ export function render({ model, el }) {
     return `${begin}${title}, not restored, is not orthogonal by ${power(faulty)}${seen}. The orientation is wrong by ${power(wrong)} rad.`;
   }
 
-  function picture(what, matrix, truth) {
+  function picture(inertia, matrix, truth) {
+    const what = bodyOf(inertia);
     sheet.size = SIZE;
     sheet.triad('N', IDENTITY, { origin: times(transpose(sheet.view), [-136 / SIZE, -108 / SIZE, 0]), reach: 0.28 });
     sheet.layer = 1;
     sheet.arrow(scale(1.4, run.momentum), { colour: 'accent', label: '$\\mathbf{H}$' });
     // A body that has grown out of the sheet is drawn smaller, and with it what it really is.
     sheet.size = SIZE * Math.min(1, LONGEST / Math.max(...matrix.map(length)));
-    (what === 'racket' ? drawRacket : drawBook)(sheet, matrix);
+    if (what === 'racket') drawRacket(sheet, matrix); else drawBlock(sheet, matrix, edgesOf(inertia));
     matrix.forEach((row, i) => {
       sheet.layer = i === 2 && dot(row, sheet.view[2]) <= 0 ? 1.5 : 5;
       sheet.arrow(row, { colour: 'A', label: `$\\hat{a}_${AXES[i]}$` });
     });
     sheet.layer = 6;
-    for (const outline of SHAPES[what]) sheet.line(placed(outline, truth), 'muted', 'guide');
+    for (const outline of shapesOf(inertia)) sheet.line(placed(outline, truth), 'muted', 'guide');
   }
 
   function curves(drawn, k) {
@@ -343,6 +389,8 @@ export function render({ model, el }) {
     }
   }
 
+  put(figure, 'data-waking', '');   // until the first run is computed
   draw();
-  return follow(model, [...SETTINGS, 'description', 'time'], redraw);
+  const stops = [follow(model, [...SETTINGS, 'description', 'time'], redraw), follow(model, ['moments'], () => { refused = null; })];
+  return () => stops.forEach((stop) => stop());
 }
