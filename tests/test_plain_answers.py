@@ -56,6 +56,8 @@ def test_plain_numbers_and_numpy_numbers():
 
 def test_functions_of_time_go_by_their_name():
     theta = me.dynamicsymbols('x')
+    assert value_of(theta) == POINT['x']
+    assert to_plain([[1, theta]])['value'][0] == 'list'
     assert value_of(theta + 1) == POINT['x'] + 1
     assert value_of(theta.diff()) == POINT["x'"]
 

@@ -52,6 +52,8 @@ def flat(answer):
     """The entries of a matrix or a nested list, and a function that puts entries back into that shape."""
     if isinstance(answer, sympy.MatrixBase):
         return list(answer.flat()), lambda entries: sympy.Matrix(*answer.shape, list(entries))
+    if not isinstance(answer, sympy.Basic) and hasattr(answer, 'tolist'):
+        answer = answer.tolist()
     if isinstance(answer, (list, tuple)):
         parts = [flat(part) for part in answer]
         lengths = [len(entries) for entries, _ in parts]
@@ -79,7 +81,7 @@ def equivalent_forms(public, answer):
     if kind == 'function':
         return [('itself', answer), ('wrapped', lambda *arguments: answer(*arguments)),
                 ('as lists', lambda *arguments: _as_lists(answer(*arguments)))]
-    if not isinstance(answer, (sympy.Expr, sympy.MatrixBase, list, tuple, int, float)):
+    if hasattr(answer, 'to_matrix'):
         return [('itself', answer)]
     entries, put = flat(answer)
     return _forms_of_numbers(public, answer, entries, put) if not unknowns(entries) else _forms_of_symbols(
@@ -87,8 +89,8 @@ def equivalent_forms(public, answer):
 
 
 def _as_lists(result):
-    return [list(row) for row in result.tolist()] if hasattr(result, 'tolist') and getattr(
-        result, 'shape', (1,)) != (4, 1) else list(result) if hasattr(result, '__iter__') else result
+    entries, put = flat(list(result) if getattr(result, 'shape', ())[1:] == (1,) else result)
+    return put(entries)
 
 
 def _forms_of_word(kind, answer):

@@ -96,7 +96,7 @@ class _Writer:
             return ['text', _text(answer)]
         if isinstance(answer, numbers.Number):
             return ['expression', self.number(answer)]
-        if type(answer).__module__.partition('.')[0] == 'numpy':
+        if _module(type(answer)).partition('.')[0] == 'numpy':
             return self.numpy(answer, depth)
         if isinstance(answer, (list, tuple, set, frozenset)):
             return self.parts(_in_order(answer), depth)
@@ -114,11 +114,10 @@ class _Writer:
         return self.value(answer.tolist(), depth)
 
     def sympy(self, answer, depth):
-        module = type(answer).__module__
-        if module.startswith('scipy.spatial'):
+        if _module(type(answer)).startswith('scipy.spatial'):
             raise NotPlain('This is a SciPy Rotation, which holds no matrix of two named frames. '
                            'Turn it into one: `dcm_from_scipy_rotation` of the module does that.')
-        if not any(base.__module__.partition('.')[0] == 'sympy' for base in type(answer).__mro__):
+        if not any(_module(base).partition('.')[0] == 'sympy' for base in type(answer).__mro__):
             raise NotPlain(f'An answer of type `{type(answer).__name__[:40]}` cannot be read. '
                            'Give a SymPy expression, a matrix, a list of numbers or a text.')
         # Mechanics is slow to import; whoever has a frame or a vector has imported it.
@@ -240,6 +239,11 @@ def _text(text):
     if len(text) > LONGEST_TEXT:
         raise NotPlain(f'A text of {len(text)} characters is longer than any answer.')
     return text
+
+
+def _module(kind):
+    # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no module.
+    return kind.__module__ or ''
 
 
 def _in_order(parts):
