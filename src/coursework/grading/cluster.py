@@ -77,7 +77,7 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
             future = client.submit(run_job, json.dumps(job).encode(), name, key=f'{name} {job["id"]}', pure=False)
             sent[future.key] = future, job
         ours = software()
-        for future in as_completed([future for future, _ in sent.values()]):
+        for future in as_completed([future for future, _ in sent.values()], loop=client.loop):
             _, job = sent.pop(future.key)
             try:
                 answer = json.loads(future.result())

@@ -119,7 +119,7 @@ def _by_age(notebook):
 # --- grading ------------------------------------------------------------------------------------
 
 def grade(submissions, out, *, solutions=None, assignments=None, workers=2, scheduler=None, allow_weak_isolation=False,
-          limits=None, show=sys.stderr):
+          limits=None, show=None):
     """Grade what was handed in and write records and reports to the folder ``out``.
 
     Returns
@@ -133,7 +133,7 @@ def grade(submissions, out, *, solutions=None, assignments=None, workers=2, sche
     """
     from . import reports
     from .sandbox import Limits
-    store, limits = Store(out), limits or Limits()
+    store, limits, show = Store(out), limits or Limits(), show or sys.stderr
     with store.locked():
         course = Course(solutions, assignments)
         try:
@@ -314,9 +314,12 @@ class _Progress:
                     print(f'  not stopped: {line}', file=self.show)
         now = time.monotonic()
         on_screen = self.show.isatty()
+        if self.done == 1:
+            # What comes before the first is the start of the sandboxes, which takes no longer for more.
+            self.first = self.last = now
         if self.done == self.total or now - self.last > (0.2 if on_screen else 10):
             self.last = now
-            left = (now - self.start) / self.done * (self.total - self.done)
+            left = (now - self.first) / max(1, self.done - 1) * (self.total - self.done)
             said = f'{self.done} of {self.total} graded, ' + (f'{_span(left)} left' if self.done < self.total else
                                                              f'in {_span(now - self.start)}')
             end = '\n' if not on_screen or self.done == self.total else ''

@@ -18,6 +18,7 @@ from ..kinds import Blank, Fault, Undecidable, canonical, read
 from ..plain import NotPlain, read_plain
 from ..questions import compare
 from ..reply import Reply
+from .store import write
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf('1.5e-3')
@@ -35,17 +36,18 @@ def names_asked(path):
 
 def questions_of(path):
     """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
-    found = {}
-    for name, question in release.read_source(path).questions.items():
-        about = {
-            'title': question.title, 'variable': question.variable, 'worth': question.worth,
-            'credit': question.credit, 'public': question.public,
-            'known': {text: {'outcome': entry.outcome, 'notes': entry.notes} for text, entry in question.entries.items()},
-            'right': _canonical_of(question),
-        }
-        about = json.loads(json.dumps(about))
-        found[name] = {**about, 'version': hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]}
-    return found
+    return {name: about(question) for name, question in release.read_source(path).questions.items()}
+
+
+def about(question):
+    """All that marks need of a :class:`coursework.author.Question`, and a version that follows from it."""
+    found = json.loads(json.dumps({
+        'title': question.title, 'variable': question.variable, 'worth': question.worth,
+        'credit': question.credit, 'public': question.public,
+        'known': {text: {'outcome': entry.outcome, 'notes': entry.notes} for text, entry in question.entries.items()},
+        'right': _canonical_of(question),
+    }))
+    return {**found, 'version': hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]}
 
 
 def _canonical_of(question):
@@ -67,16 +69,20 @@ def load_questions(paths, kept):
     places = {path: kept / f'{Path(path).stem}-{hashlib.sha256(ours + Path(path).read_bytes()).hexdigest()[:16]}.json'
               for path in paths}
     missing = [path for path in paths if not places[path].exists()]
-    if missing:
-        context = multiprocessing.get_context('spawn')
-        with concurrent.futures.ProcessPoolExecutor(min(len(missing), 4), mp_context=context) as pool:
-            for path, questions in zip(missing, pool.map(questions_of, missing)):
-                from .store import write
-                write(places[path], json.dumps(questions, ensure_ascii=False))
+    for path, questions in zip(missing, _questions_of_each(missing)):
+        write(places[path], json.dumps(questions, ensure_ascii=False))
     found = {}
     for path in paths:
         found.update(json.loads(places[path].read_text('utf8')))
     return found
+
+
+def _questions_of_each(paths):
+    if len(paths) < 2:
+        return map(questions_of, paths)
+    context = multiprocessing.get_context('spawn')
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), 4), mp_context=context) as pool:
+        return list(pool.map(questions_of, paths))
 
 
 def _digest_of_package():

@@ -183,8 +183,9 @@ def deed(mark):
     """What was done, in words that follow "31 % of the class"."""
     if mark['note'] == 'authored':
         return f'were told: “{mark["messages"][0]}”'
-    details = {name: ORDINALS[value] if isinstance(value, int) else value for name, value in mark['details'].items()}
-    return DEEDS.get(mark['note'], mark['note']).format(**details)
+    # Where there is only one turn, it has no number.
+    details = {name: ORDINALS[value] if isinstance(value, int) else value or '' for name, value in mark['details'].items()}
+    return ' '.join(DEEDS.get(mark['note'], mark['note']).format(**details).split())
 
 
 def report(classes, refused):
@@ -288,7 +289,7 @@ def _mixups(records, names, numbers):
         f'<td><svg viewBox="0 0 120 12" width="120" height="12" role="img" aria-label="{count} of {len(records)}">'
         f'<rect class="of-none" width="120" height="12"/><rect class="of-wrong" width="{120 * count / len(records):.1f}" height="12"/></svg></td>'
         f'<td>{pages.message(what)} in question {numbers[name]}, <em>{text(titles[name])}</em> <span class="soft">({count} of {len(records)})</span></td></tr>'
-        for (name, what), count in shown if count > 1 or len(records) < 10)
+        for (name, what), count in shown if count > 1 or len(records) < 30)
     return ('<h3>What was mixed up</h3><p>Of the class,</p><div class="scroll"><table><thead><tr><th class="number">Share</th><th></th>'
             f'<th>did this</th></tr></thead><tbody>{rows}</tbody></table></div>') if rows else ''
 

@@ -182,10 +182,8 @@ def _slip(question):
 
 def _expected(question, answer):
     """What is to come of an answer: its outcome and note."""
-    from .marking import judge
-    about = {'public': question.public, 'known': {text: {'outcome': entry.outcome, 'notes': entry.notes}
-                                                  for text, entry in question.entries.items()}, 'right': None}
-    reply, _ = judge(question.name, about, {'outcome': 'recorded', 'plain': question.to_plain(answer)})
+    from .marking import about, judge
+    reply, _ = judge(question.name, about(question), {'outcome': 'recorded', 'plain': question.to_plain(answer)})
     return reply.outcome, reply.note
 
 

@@ -85,7 +85,7 @@ def file_name(name):
     plain = re.sub(r'[^A-Za-z0-9._-]+', '-', name).strip('.-')[:60]
     # The letter's case counts too: some file systems do not tell a from A. And what looks like a name with a
     # digest gets one as well, or somebody could call himself what another is called here.
-    if plain == name and name == name.lower() and not re.search(r'-[0-9a-f]{8}$', name):
+    if plain and plain == name == name.lower() and not re.search(r'-[0-9a-f]{8}$', name):
         return plain
     return f'{plain.lower() or "student"}-{hashlib.sha256(name.encode("utf8", "surrogatepass")).hexdigest()[:8]}'
 

@@ -1,0 +1,544 @@
+"""A class is graded: every notebook on its own, nothing lost or done twice, the same wherever it is run."""
+
+import csv
+import dataclasses
+import hashlib
+import io
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+from html.parser import HTMLParser
+
+import nbformat
+import pytest
+from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
+
+from coursework.__main__ import main
+from coursework.grading import gradebooks, pages, sample_class
+from coursework.grading.grade import NothingToGrade, given_up, grade, regrade, run_here
+from coursework.grading.sandbox import Limits, WeakIsolation, WorkerDied
+from coursework.grading.store import InUse, Store, file_name
+from coursework.grading.tables import as_cell, as_written, table
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+
+LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+SCRIPT = "<script>alert(1)</script>"
+
+
+def students():
+    """The notebooks of a class by student: each is right in all that it does not name."""
+    yield "right", handed_in()
+    yield "mistaken", handed_in(about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, sm.sin(theta), sm.cos(theta)]])",
+                                sum="sine = -sm.sin(alpha + beta)")
+    yield "blank", handed_in(about_x="A_C_N = ...", sum="sine = ...", doubled="def doubled(x):\n    ...")
+    yield "broken", handed_in(sum="sine = (sm.sin(")
+    yield "leaves", handed_in(sum="import os\nos._exit(0)")
+    yield "endless", handed_in(sum="while True:\n    pass")
+    yield "no-checks", notebook([SETUP["turns"], *(RIGHT[f"turns/{name}"] for name in ("about-x", "sum", "doubled"))])
+    backwards = notebook([RIGHT["turns/sum"], "check('turns/sum', sine)", SETUP["turns"]])
+    for count, cell in zip((2, 3, 1), backwards.cells):
+        cell.execution_count = count
+    yield "backwards", backwards
+    yield "nearly", handed_in(sum="sine = sm.sin(alpha + beta)*1.0004")
+    yield "warns", handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)")
+    yield "corrects", handed_in(sum="sine = -sm.sin(alpha + beta)", also=[RIGHT["turns/sum"], "check('turns/sum', sine)"])
+    yield "=1+1", handed_in(sum=f"sine = sm.Symbol('{SCRIPT}')")
+    yield SCRIPT.replace("/", ""), handed_in(
+        doubled=f"def doubled(x):\n    raise ValueError('{SCRIPT} $\\\\href{{javascript:alert(1)}}{{x}}$ ` `')",
+        also=[("markdown", SCRIPT), f"raise KeyError('{SCRIPT}')"])
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    """The solutions, the submissions, and the results of grading them on two workers."""
+    place = tmp_path_factory.mktemp("course")
+    solutions, submissions = write_sources(place / "solutions"), place / "submissions"
+    for student, made in students():
+        put(submissions, student, made)
+    put(submissions, "refused", "{")
+    put(submissions, SCRIPT.replace("/", ""), "no notebook", "answers.pdf")
+    (submissions / "refused" / "link.ipynb").symlink_to(submissions / "right" / "turns.ipynb")
+    said = grade(submissions, place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    assert said == {"graded": 13, "kept": 0, "refused": 3}
+    return place
+
+
+@pytest.fixture
+def copied(course, tmp_path):
+    """A copy of the results, to change."""
+    return shutil.copytree(course / "out", tmp_path / "out")
+
+
+@pytest.fixture
+def prepared(course, tmp_path):
+    """A folder for results that has the questions already: working them out again is not what is tested."""
+    shutil.copytree(course / "out" / "questions", tmp_path / "out" / "questions")
+    return tmp_path / "out"
+
+
+def record(course, student):
+    return Store(course / "out").read(student, "turns")
+
+
+def rows_of(path):
+    with open(path, newline="", encoding="utf8") as file:
+        return list(csv.DictReader(file))
+
+
+def outcomes(course, student):
+    return [mark["outcome"] for mark in record(course, student)["marks"].values()]
+
+
+def contents(folder):
+    """Every file that depends on nothing but what was handed in."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
+            if path.is_file() and path.name not in ("run.log", "lock")}
+
+
+# ---- what each notebook gets
+
+@pytest.mark.parametrize("student, expected, points", [
+    ("right", ["correct"] * 3, 6),
+    ("mistaken", ["wrong", "wrong", "correct"], 4),  # half of two for the transpose, by its author's word
+    ("blank", ["not attempted"] * 3, 0),
+    ("broken", ["correct", "not attempted", "correct"], 5),
+    ("leaves", ["correct", "not attempted", "correct"], 5),
+    ("endless", ["correct", "not attempted", "correct"], 5),
+    ("no-checks", ["correct"] * 3, 6),
+    ("backwards", ["not attempted", "correct", "not attempted"], 1),
+    ("nearly", ["correct", "undecided", "correct"], 5),
+    ("warns", ["correct"] * 3, 6),
+    ("corrects", ["correct"] * 3, 6),
+    ("=1+1", ["correct", "invalid", "correct"], 5),
+    (SCRIPT.replace("/", ""), ["correct", "correct", "invalid"], 3),
+])
+def test_marks(course, student, expected, points):
+    assert outcomes(course, student) == expected
+    found = record(course, student)
+    assert (found["points"], found["worth"]) == (points, 6)
+
+
+def test_a_record_says_what_it_rests_on(course):
+    found = record(course, "endless")
+    written = (course / "submissions" / "endless" / "turns.ipynb").read_bytes()
+    (one,) = found["notebooks"]
+    assert one["sha256"] == hashlib.sha256(written).hexdigest()
+    assert one["isolation"]["layers"] and one["isolation"]["weak"] is False and one["seed"] == 0
+    assert [cell["outcome"] for cell in one["cells"]][3] == "timeout"
+    assert found["limits"] == dataclasses.asdict(LIMITS)
+    assert set(found["software"]) >= {"python", "sympy", "numpy", "coursework"}
+    assert set(found["answers"]) == set(found["marks"]) == {name for name in RIGHT if name.startswith("turns/")}
+    assert all(mark["version"] for mark in found["marks"].values())
+
+
+def test_out_of_order_is_said(course):
+    assert record(course, "backwards")["notebooks"][0]["notes"] == ["works only out of order"]
+    assert "in another order than they stand in" in page(course, "backwards")
+    assert "works only out of order" in (course / "out" / "report.html").read_text()
+
+
+def test_submissions_were_only_read(course):
+    for student, made in students():
+        assert (course / "submissions" / student / "turns.ipynb").read_text() == nbformat.writes(made)
+    assert {path.name for path in (course / "submissions").rglob("*") if path.is_file() or path.is_symlink()} == {
+        "turns.ipynb", "link.ipynb", "answers.pdf"}
+
+
+# ---- pages and tables are safe
+
+def page(course, student):
+    return (course / "out" / "feedback" / file_name(student) / "turns.html").read_text("utf8")
+
+
+class Tags(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.found, self.attributes = set(), set()
+
+    def handle_starttag(self, tag, attributes):
+        self.found.add(tag)
+        self.attributes |= {name for name, _ in attributes}
+
+
+def test_pages_hold_nothing_that_could_run_or_load(course):
+    paths = [*(course / "out").rglob("*.html")]
+    assert len(paths) == 14
+    for path in paths:
+        tags = Tags()
+        tags.feed(path.read_text("utf8"))
+        assert not tags.found & {"script", "iframe", "img", "object", "embed", "link", "base", "form", "a", "style-src"}
+        assert not [name for name in tags.attributes if name.startswith("on") or name in ("href", "src", "style", "srcdoc")]
+        assert "default-src 'none'" in path.read_text("utf8")
+    student = SCRIPT.replace("/", "")
+    assert "&lt;script&gt;alert(1)" in page(course, student)
+    assert "&lt;script&gt;" in (course / "out" / "report.html").read_text("utf8")
+
+
+def test_nothing_in_a_table_is_a_formula(course):
+    for path in (course / "out").glob("*.csv"):
+        for row in csv.reader(io.StringIO(path.read_text("utf8"))):
+            assert not [cell for cell in row if cell.startswith(("=", "+", "-", "@", "\t", "\r"))], path
+    rows = rows_of(course / "out" / "grades.csv")
+    assert {as_written(row["student"]) for row in rows} == {student for student, _ in students()}
+    assert {row["student"]: row["points"] for row in rows}["'=1+1"] == "5"
+    assert {row["student"]: row["turns/sum: outcome"] for row in rows}["nearly"] == "undecided"
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", "\uff1d1", "'=1", '"=1', "a,b", "\u202egnp"])
+def test_cells(text):
+    (row,) = list(csv.reader(io.StringIO(table([text], []))))
+    assert row == [text] or text in ("\r=1",)
+    (_, row) = list(csv.reader(io.StringIO(table(["x"], [[text]]))))
+    assert not row[0].startswith(("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d")) and "\u202e" not in row[0]
+    assert as_cell(3) == "3" and as_cell(-0.5) == "-0.5"
+
+
+def test_mathematics_in_messages():
+    assert "<math" in pages.message("This is ${}^{A}\\mathbf{C}^{N}$ in `code`.") and "<code>code</code>" in pages.message("`code`")
+    for hostile in ("$\\href{javascript:alert(1)}{x}$", "$<img src=x>$", "`<b>`", "*<b>*", "<b>", "$" + "{" * 400 + "$"):
+        said = pages.message(hostile)
+        tags = Tags()
+        tags.feed(said)
+        assert not tags.found & {"a", "img", "b", "script"} and "href" not in tags.attributes
+
+
+def test_an_answer_is_printed_in_bounded_length():
+    doubling = {"value": ["expression", 60], "nodes": [["symbol", "x"], *(["Add", order, order] for order in range(60))]}
+    assert len(pages.answer_as_text(doubling)) < 400
+    deep = {"value": ["expression", 5_000], "nodes": [["symbol", "x"], *(["sin", order] for order in range(5_000))]}
+    assert len(pages.answer_as_text(deep)) < 400
+    import sympy as sm
+    from coursework.plain import to_plain
+    x, y = sm.symbols("x y")
+    for expression in (x - y, -x / 2, (x + y) ** 2, sm.sqrt(x) * (y - 1), 2 ** (x * y), x ** -y, sm.sin(x) / y, -(x + y), (x ** 2) ** y):
+        assert sm.simplify(sm.sympify(pages.answer_as_text(to_plain(expression))) - expression) == 0
+
+
+# ---- the report
+
+def test_the_report_tells_what_was_misunderstood(course):
+    text = re.sub(r"<[^>]+>", " ", (course / "out" / "report.html").read_text("utf8"))
+    text = " ".join(text.split())
+    assert "13 students" in text
+    assert "8 % gave the transpose in question 1, about x (1 of 13)" in text
+    assert "8 % gave the opposite in question 2, sum (1 of 13)" in text
+    assert "link to another place" in text and "not well-formed JSON" in text
+    assert "agrees with the right one to about three digits" in text
+
+
+def test_identical_wrong_answers_are_put_together(tmp_path, course):
+    from coursework.grading.reports import report
+    records = []
+    for student in ("right", "right", "right"):
+        found = json.loads(json.dumps(record(course, student)))
+        found["marks"]["turns/sum"] |= {"outcome": "wrong", "note": "", "group": "same", "points": 0, "messages": ["No."]}
+        found["answers"] = {"turns/sum": "42*alpha"}
+        records.append(found)
+    assert "42*alpha" in report({"turns": records}, [])
+    records[0]["marks"]["turns/sum"]["group"] = records[1]["marks"]["turns/sum"]["group"] = "other"
+    records[2]["marks"]["turns/sum"]["group"] = "third"
+    records[1]["marks"]["turns/sum"]["group"] = "fourth"
+    assert "42*alpha" not in report({"turns": records}, [])
+
+
+# ---- never lost, never twice
+
+def graded_lines(folder):
+    return [line.split("graded: ")[1] for line in (folder / "run.log").read_text().splitlines() if "graded: " in line]
+
+
+def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
+    out = prepared
+    code = (f"from coursework.grading.grade import grade; from coursework.grading.sandbox import Limits; "
+            f"grade({str(course / 'submissions')!r}, {str(out)!r}, solutions={str(course / 'solutions')!r}, workers=1, "
+            f"limits=Limits(**{dataclasses.asdict(LIMITS)!r}))")
+    running = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
+    while len(list((out / "records").glob("*/*.json"))) < 3:
+        assert running.poll() is None, "it ended before it could be killed"
+    running.send_signal(signal.SIGKILL)
+    running.wait()
+    done = len(list((out / "records").glob("*/*.json")))
+    (out / "records" / "right").mkdir(exist_ok=True)
+    (out / "records" / "right" / ".half-written").write_text("{")
+    said = grade(course / "submissions", out, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    assert 3 <= done < 13 and said == {"graded": 13 - done, "kept": done, "refused": 3}
+    lines = graded_lines(out)
+    # The last one may have been recorded and not yet logged when the run was killed.
+    assert len(set(lines)) == len(lines) and len(lines) in (12, 13)
+    assert contents(out) == contents(course / "out")
+
+
+def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
+    monkeypatch.setattr("coursework.grading.sandbox.run_notebooks", lambda *arguments, **options: pytest.fail("it was run"))
+    said = grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    assert said == {"graded": 0, "kept": 13, "refused": 3}
+    assert contents(copied) == contents(course / "out")
+
+
+def test_what_changed_is_graded_again(course, copied, tmp_path):
+    submissions = shutil.copytree(course / "submissions", tmp_path / "submissions", symlinks=True)
+    put(submissions, "right", handed_in(sum="sine = 0"))
+    said = grade(submissions, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    assert said == {"graded": 1, "kept": 12, "refused": 3}
+    assert Store(copied).read("right", "turns")["points"] == 5
+
+
+def test_two_runs_on_one_folder_are_refused(course, copied):
+    with Store(copied).locked(), pytest.raises(InUse):
+        grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+
+
+def test_names_lead_nowhere_and_stay_apart():
+    names = ["a", "A", "../a", "/a", "a/b", "a b", "a-b", "..", ".", "", "-", "é", "e", "a\0", "a" * 100, "a" * 101, "con."]
+    files = [file_name(name) for name in names]
+    assert len(set(map(str.lower, files))) == len(names)
+    assert all(re.fullmatch(r"[a-z0-9_][a-z0-9._-]*", name) for name in files)
+    assert file_name(file_name("A")) != file_name("A")
+
+
+def test_a_notebook_that_kills_sandbox_after_sandbox_costs_only_itself(course, monkeypatch):
+    from coursework.grading import sandbox
+    jobs = [{"id": str(number), "cells": [{"source": ""}], "questions": {"q": {}}, "seed": 0} for number in range(9)]
+    done = []
+
+    def run(jobs, workers, limits, *, allow_weak_isolation):
+        for job in jobs:
+            if job["id"] == "4":
+                raise WorkerDied("again and again")
+            done.append(job["id"])
+            yield {"id": job["id"]}
+
+    monkeypatch.setattr(sandbox, "run_notebooks", run)
+    results = {result["id"]: result for result in run_here(jobs, 2, LIMITS, False)}
+    assert sorted(results) == [job["id"] for job in jobs] and sorted(done) == sorted(set(results) - {"4"})
+    assert results["4"] == given_up(jobs[4], "again and again") and results["4"]["finished"] is False
+
+
+# ---- the same wherever it is run
+
+@pytest.mark.parametrize("workers", [1, 4])
+def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
+    grade(course / "submissions", prepared, solutions=course / "solutions", limits=LIMITS, workers=workers, show=io.StringIO())
+    assert contents(prepared) == contents(course / "out")
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_cluster_that_loses_a_worker_changes_no_byte(course, prepared):
+    distributed = pytest.importorskip("distributed")
+    lost, over = [], threading.Event()
+
+    def lose_a_worker():
+        while not over.wait(0.01):
+            if list((prepared / "records").glob("*/*.json")):
+                lost.append(next(iter(cluster.workers.values())).pid)
+                os.kill(lost[0], signal.SIGKILL)
+                return
+
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster:
+        killer = threading.Thread(target=lose_a_worker)
+        killer.start()
+        try:
+            said = grade(course / "submissions", prepared, solutions=course / "solutions", limits=LIMITS,
+                         scheduler=cluster.scheduler_address, show=io.StringIO())
+        finally:
+            over.set()
+            killer.join()
+    assert lost and said["graded"] == 13
+    assert contents(prepared) == contents(course / "out")
+
+
+def test_a_cluster_that_is_not_there_is_said(course, prepared, monkeypatch):
+    pytest.importorskip("distributed")
+    from coursework.grading import cluster
+    monkeypatch.setattr(cluster, "CONNECT_WITHIN", "0.5s")
+    with pytest.raises(ValueError, match="no Dask scheduler to be reached at tcp://127.0.0.1:1"):
+        grade(course / "submissions", prepared, solutions=course / "solutions", scheduler="tcp://127.0.0.1:1", show=io.StringIO())
+
+
+def test_it_fails_closed(course, prepared, monkeypatch):
+    from coursework.grading import isolation
+    monkeypatch.setattr(isolation, "lacking", lambda report: ["namespaces: switched off for this test"])
+    with pytest.raises(WeakIsolation):
+        grade(course / "submissions", prepared, solutions=course / "solutions", limits=LIMITS, workers=1, show=io.StringIO())
+    with pytest.raises(SystemExit, match="switched off for this test"):
+        main(["grade", str(course / "submissions"), "--out", str(prepared), "--solutions", str(course / "solutions"), "--workers", "1"])
+    assert not list((prepared / "records").glob("*/*"))
+
+
+# ---- judged again
+
+def test_a_changed_question_moves_only_whom_it_concerns(course, copied, tmp_path):
+    changed = write_sources(tmp_path / "solutions", [("credit={'transposed': 0.5}", "credit={'transposed': 1}"),
+                                                     ("symbols='alpha beta', worth=1", "symbols='alpha beta', worth=4")])
+    moved = {one.student: (one.before, one.after) for one in regrade(copied, solutions=changed)}
+    assert moved["mistaken"] == (4, 5) and moved["right"] == (6, 9) and "blank" not in moved
+    assert "mistaken" in moved and regrade(copied, solutions=changed) == []
+    regrade(copied, solutions=course / "solutions")
+    assert contents(copied / "records") == contents(course / "out" / "records")
+
+
+def test_a_person_decides_what_is_undecided(course, copied):
+    (row,) = rows_of(copied / "undecided.csv")
+    assert (row["student"], row["question"], row["credit"]) == ("nearly", "turns/sum", "")
+    row |= {"credit": "0.5", "comment": "Rounded."}
+    (copied / "decisions.csv").write_text(table(list(row), [list(row.values()), ["right", "turns/sum", "0", "Never.", 1, "", "", ""]]))
+    (moved,) = regrade(copied, solutions=course / "solutions")
+    assert (moved.student, moved.before, moved.after) == ("nearly", 5, 5.5)
+    mark = Store(copied).read("nearly", "turns")["marks"]["turns/sum"]
+    assert (mark["outcome"], mark["points"], mark["messages"]) == ("decided", 0.5, ["Rounded."])
+    assert rows_of(copied / "undecided.csv") == []
+    (copied / "decisions.csv").write_text("student,question,credit\r\nnearly,turns/sum,much\r\n")
+    with pytest.raises(ValueError, match="line 2: credit is a number from 0 to 1, and this is 'much'"):
+        regrade(copied, solutions=course / "solutions")
+
+
+# ---- handed on
+
+@pytest.fixture(scope="module")
+def marks(course):
+    return gradebooks.Marks(Store(course / "out"))
+
+
+CANVAS = ('Student,ID,SIS User ID,SIS Login ID,Section,Turns (77),"Final, all"\r\n'
+          '    Points Possible,,,,,12,(read only)\r\n'
+          '"Right, Student",1,S1,right,"A ""quoted"" section",,\r\n'
+          '"Nobody, Student",2,S2,nobody,,3,\r\n'
+          'Nearly,3,S3,nearly,,,\r\n'
+          '"Two\r\nlines",4,S4,mistaken,x,"",9')
+
+
+@pytest.mark.parametrize("before, student, written", [
+    ("\ufeff" + CANVAS, "right", '"A ""quoted"" section",12,'),
+    (CANVAS, "mistaken", 'x,"8",9'),
+    ('Identifier;"Full name";"ID number";Grade;"Maximum Grade";"Grade can be changed"\n'
+     '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n"Participant 7";D;broken;"";6,00;Yes\n', "right", "right;6;6,00"),
+    ("OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric MaxPoints:3>\tEnd-of-Line Indicator\r\n"
+     "#1\t#right\tR\tS\t\t#\r\n#2\t#broken\tB\tS\t1\t#\r\n", "broken", "#broken\tB\tS\t2.5\t#"),
+], ids=["canvas with mark", "canvas", "moodle", "brightspace"])
+def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, before, student, written):
+    path = tmp_path / "book.csv"
+    path.write_bytes(before.encode())
+    said = gradebooks.fill(path, marks)
+    after = (tmp_path / "book-filled.csv").read_bytes().decode()
+    assert written in after
+    assert path.read_bytes() == before.encode()
+    book, filled = gradebooks.Gradebook(before.encode()), gradebooks.Gradebook(after.encode())
+    place = gradebooks._column(book, gradebooks._system(book), None)
+    for (old, old_end), (new, new_end) in zip(book.lines, filled.lines, strict=True):
+        assert old[:place] == new[:place] and old[place + 1:] == new[place + 1:] and old_end == new_end
+    assert after.startswith("\ufeff") == before.startswith("\ufeff")
+    text = "\n".join(said)
+    assert "blank" in text.partition("not in the gradebook")[2]
+    if "nobody" in before:
+        assert "Nobody, Student" in text and "2,S2,nobody,,3," in after
+        assert "nearly" in text.partition("a person has still to decide")[2] and "Nearly,3,S3,nearly,,,\r\n" in after
+    if "Moodle" in text:
+        assert "C;mistaken;-;6,00;No" in after and "mistaken" in text.partition("allows no change")[2]
+
+
+@pytest.mark.parametrize("data", [CANVAS.encode("utf-16"), CANVAS.replace("Nobody", "N\xf3body").encode("latin-1"), CANVAS.encode(), b"\xef\xbb\xbf" + CANVAS.encode()])
+def test_a_gradebook_that_is_not_changed_is_the_same_bytes(data):
+    assert bytes(gradebooks.Gradebook(data)) == data
+
+
+def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
+    for layout in ("canvas", "moodle", "brightspace"):
+        files = {f"student-{number:03}": b"" for number in range(1, 4)}
+        book = gradebooks.Gradebook(sample_class._gradebook(layout, list(files), 6))
+        sample_class.LAYOUTS[layout](tmp_path, files, "turns")
+        import zipfile
+        from coursework.grading.intake import _Layout
+        names = [name for name in zipfile.ZipFile(tmp_path / "submissions.zip").namelist() if name.endswith("ipynb")]
+        whose = {one.student: one.identity for one in map(_Layout(names, ["turns"]).who, names)}
+        stub = type("Marks", (), {"students": whose, "identity": lambda self, student: whose[student]})()
+        first = gradebooks._scale(book, layout.title(), 4)[1]
+        found, several = gradebooks._match(book, layout.title(), stub, first)
+        assert len(found) == 3 and several == []
+        for line, student in found.items():
+            assert whose[student][layout] in "".join(field.says for field in book.lines[line][0])
+
+
+def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
+    path = tmp_path / "book.csv"
+    path.write_text('Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\n"A",1,,right,,\n"B",2,,right,,\n')
+    said = gradebooks.fill(path, marks)
+    assert "right" in "\n".join(said).partition("more than once")[2]
+    assert (tmp_path / "book-filled.csv").read_text() == path.read_text()
+
+
+@pytest.mark.parametrize("header, message", [
+    ("Name,Points\nA,1\n", "no gradebook of Canvas"),
+    ("Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n", "'Turns (1)', 'Axes (2)'"),
+    ("Student,ID\n", "no students"),
+])
+def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, message):
+    path = tmp_path / "book.csv"
+    path.write_text(header)
+    with pytest.raises(gradebooks.CannotExport) as error:
+        gradebooks.fill(path, marks)
+    assert message in str(error.value)
+
+
+def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
+    out = str(course / "out")
+    main(["export", out, "--nbgrader", str(tmp_path / "grades.csv"), "--gradescope", str(tmp_path / "results.json"), "--student", "mistaken"])
+    rows = {row["student_id"]: row for row in rows_of(tmp_path / "grades.csv")}
+    assert list(rows["right"]) == list(gradebooks.NBGRADER)
+    assert (rows["mistaken"]["assignment"], rows["mistaken"]["score"], rows["mistaken"]["max_score"]) == ("turns", "4", "6")
+    results = json.loads((tmp_path / "results.json").read_text())
+    assert results["score"] == 4 and [test["score"] for test in results["tests"]] == [1, 0, 3]
+    assert results["tests"][0]["max_score"] == 2 and "the transpose" in results["tests"][0]["output"]
+    with pytest.raises(SystemExit, match="one student at a time"):
+        main(["export", out, "--gradescope", str(tmp_path / "results.json")])
+    with pytest.raises(SystemExit, match="name what to write"):
+        main(["export", out])
+
+
+# ---- the sample class, and the commands
+
+def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
+    solutions = str(course / "solutions")
+    main(["sample-class", "--out", str(tmp_path / "class"), "--students", "60", "--seed", "3", "--notebooks", "turns,axes", "--solutions", solutions])
+    made = contents(tmp_path / "class")
+    main(["sample-class", "--out", str(tmp_path / "again"), "--students", "60", "--seed", "3", "--notebooks", "turns,axes", "--solutions", solutions])
+    assert contents(tmp_path / "again") == made
+    main(["grade", str(tmp_path / "class" / "submissions"), "--out", str(tmp_path / "out"), "--solutions", solutions,
+          "--assignment", "homework=turns,axes"])
+    said = capsys.readouterr()
+    assert "report.html" in said.out and "Isolation: " in said.err
+    expected = json.loads((tmp_path / "class" / "expected.json").read_text())
+    store, compared = Store(tmp_path / "out"), 0
+    for student, about in expected.items():
+        found = store.read(student, "homework")
+        refused = any(did.startswith("refused") for did in about["did"])
+        assert (found is None) == refused, about["did"]
+        for name, (outcome, note) in ({} if refused else about["questions"]).items():
+            mark = found["marks"][name]
+            if any(did.startswith("hostile") for did in about["did"]):
+                assert not mark["points"] or outcome != "not attempted"   # it may have spoilt its own, and gained nothing
+            else:
+                assert mark["outcome"] == outcome and (not note or mark["note"] == note), (student, about["did"], name)
+                compared += 1
+    assert compared > 200
+    main(["regrade", str(tmp_path / "out"), "--solutions", solutions])
+    assert "0 moved." in capsys.readouterr().out
+    main(["export", str(tmp_path / "out"), "--lms", str(tmp_path / "class" / "gradebook.csv")])
+    said = capsys.readouterr().out
+    assert "student-061" in said or "061, Student" in said
+
+
+def test_what_is_missing_is_said(course, tmp_path):
+    with pytest.raises(NothingToGrade, match="no notebook with solutions in"):
+        grade(course / "submissions", tmp_path / "out", solutions=tmp_path, show=io.StringIO())
+    with pytest.raises(NothingToGrade, match="no notebook with solutions 'turn'"):
+        grade(course / "submissions", tmp_path / "out", solutions=course / "solutions", assignments={"x": ["turn"]}, show=io.StringIO())
+    with pytest.raises(SystemExit, match="nothing at"):
+        main(["grade", str(tmp_path / "nowhere"), "--out", str(tmp_path / "out"), "--solutions", str(course / "solutions")])
+    with pytest.raises(SystemExit, match="no records"):
+        main(["regrade", str(tmp_path / "empty"), "--solutions", str(course / "solutions")])

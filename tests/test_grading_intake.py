@@ -1,0 +1,353 @@
+"""Whatever is handed in is read strictly, named when refused, and left as it was."""
+
+import codecs
+import hashlib
+import json
+import os
+import stat
+import struct
+import zipfile
+
+import nbformat
+import pytest
+from grading_class import handed_in, notebook
+
+from coursework.grading import intake
+from coursework.grading.grade import Course, sort_work
+
+GOOD = nbformat.writes(handed_in()).encode()
+
+
+@pytest.fixture
+def folder(tmp_path):
+    place = tmp_path / "submissions"
+    (place / "neighbour").mkdir(parents=True)
+    (place / "neighbour" / "turns.ipynb").write_bytes(GOOD)
+    return place
+
+
+def the_refused(path):
+    """Why each file was refused; the neighbour's notebook must be read all the same."""
+    notebooks, refused = intake.take_in(path, ["turns"])
+    assert [one.student for one in notebooks] == ["neighbour"]
+    return {one.file: one.why for one in refused}
+
+
+def archive(path, *entries):
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as box:
+        for name, data in (("neighbour/turns.ipynb", GOOD), *entries):
+            if isinstance(name, str):
+                info = zipfile.ZipInfo()
+                info.filename, info.compress_type = name, zipfile.ZIP_DEFLATED  # as it is, also if it leads astray
+                name = info
+            box.writestr(name, data)
+    return path
+
+
+# ---- whose a notebook is
+
+@pytest.mark.parametrize("name, student, identity, late", [
+    ("student-017/turns.ipynb", "student-017", {}, False),
+    ("student-017/work/turns.ipynb", "student-017", {}, False),
+    ("student-017.ipynb", "student-017", {}, False),
+    ("student-017_turns.ipynb", "student-017", {}, False),
+    ("turns (student-017).ipynb", "student-017", {}, False),
+    ("submitted/student-017/turns/turns.ipynb", "student-017", {}, False),
+    ("seventeenstudent_100017_800017_turns.ipynb", "seventeenstudent_100017", {"canvas": "100017", "name": "seventeenstudent"}, False),
+    ("seventeenstudent_LATE_100017_800017_turns-1.ipynb", "seventeenstudent_100017", {"canvas": "100017", "name": "seventeenstudent"}, True),
+    ("Student Seventeen_100017_assignsubmission_file_/turns.ipynb", "Student Seventeen 100017",
+     {"moodle": "100017", "name": "Student Seventeen"}, False),
+    ("Student Seventeen_100017_assignsubmission_file/turns.ipynb", "Student Seventeen 100017",
+     {"moodle": "100017", "name": "Student Seventeen"}, False),
+    ("Student Seventeen_100017_assignsubmission_file_turns.ipynb", "Student Seventeen 100017",
+     {"moodle": "100017", "name": "Student Seventeen"}, False),
+    ("100017-4711 - Student Seventeen - Nov 21, 2026 801 PM/turns.ipynb", "Student Seventeen 100017",
+     {"brightspace": "100017", "name": "Student Seventeen"}, False),
+])
+@pytest.mark.parametrize("packed", [False, True])
+def test_whose_a_notebook_is(tmp_path, name, student, identity, late, packed):
+    if packed:
+        path = tmp_path / "submissions.zip"
+        with zipfile.ZipFile(path, "w") as box:
+            box.writestr(name, GOOD)
+            box.writestr("index.html", "<p>")
+    else:
+        path = tmp_path / "submissions"
+        (path / name).parent.mkdir(parents=True)
+        (path / name).write_bytes(GOOD)
+    (found,), refused = intake.take_in(path, ["turns"])
+    assert (found.student, found.identity, found.late) == (student, identity, late)
+    assert found.digest == hashlib.sha256(GOOD).hexdigest()
+    assert refused == []
+
+
+def test_two_numbers_in_a_students_own_file_are_not_taken_for_canvas(folder):
+    for name in ("homework_1_2_final.ipynb", "turns.ipynb", "more.ipynb"):
+        (folder / "neighbour" / name).write_bytes(GOOD)
+    assert {one.student for one in intake.take_in(folder)[0]} == {"neighbour"}
+
+
+# ---- what is refused
+
+def half(data):
+    return data[:len(data) // 2]
+
+
+def with_cells(cells, **others):
+    return json.dumps({"cells": cells, "nbformat": 4, "nbformat_minor": 5, "metadata": {}, **others}).encode()
+
+
+CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execution_count": None}
+
+
+@pytest.mark.parametrize("data, why", [
+    (b"", "empty"),
+    (b" \n", "empty"),
+    (half(GOOD), "not well-formed JSON"),
+    (b"PK\x03\x04 another format", "not well-formed JSON"),
+    (b"[]", "no cells"),
+    (b'{"nbformat": 4}', "no cells"),
+    (b'{"cells": {}, "nbformat": 4}', "no list"),
+    (with_cells([1]), "one of its cells is none"),
+    (with_cells([CODE | {"source": 3}]), "text of one of its cells"),
+    (with_cells([CODE | {"source": [["a"]]}]), "text of one of its cells"),
+    (with_cells([CODE | {"source": "\ud800"}]), "half of a character"),
+    (with_cells([], nbformat=2), "version 2"),
+    (with_cells([], nbformat=5), "version 5"),
+    (with_cells([], nbformat=[4]), "version"),
+    (GOOD.replace(b"{", b'{"cells": [], ', 1), "same name twice"),
+    (GOOD.decode().encode("utf-16"), "UTF-16"),
+    (with_cells([CODE | {"source": "é"}]).replace(rb"\u00e9", "é".encode("latin-1")), "UTF-8"),
+    (b'{"cells": ' + b"[" * 100_000 + b"]" * 100_000 + b"}", "nested too deeply"),
+    (with_cells([]).replace(b"[]", b"[" + b"9" * 10_000 + b"]"), "not well-formed"),
+    (with_cells([CODE] * (intake.MOST_CELLS + 1)), "1001 cells"),
+    (with_cells([CODE | {"source": "#" * (intake.MOST_CODE + 1)}]), "code is longer"),
+    (b" " * (intake.MOST_BYTES + 1), "larger than 20 MB"),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_what_is_no_notebook_is_refused_by_name(folder, data, why):
+    (folder / "stranger").mkdir()
+    (folder / "stranger" / "turns.ipynb").write_bytes(data)
+    refused = the_refused(folder)
+    assert list(refused) == ["stranger/turns.ipynb"] and why in refused["stranger/turns.ipynb"]
+
+
+def test_other_files_are_refused_by_name_and_litter_is_not_mentioned(folder):
+    for name in ("answers.pdf", "answers.zip", "turns.ipynb.exe", "figure.png", ".DS_Store", "._turns.ipynb"):
+        (folder / "neighbour" / name).write_bytes(b"x")
+    checkpoints = folder / "neighbour" / ".ipynb_checkpoints"
+    checkpoints.mkdir()
+    (checkpoints / "turns-checkpoint.ipynb").write_bytes(GOOD)
+    assert sorted(the_refused(folder)) == ["neighbour/answers.pdf", "neighbour/answers.zip", "neighbour/turns.ipynb.exe"]
+
+
+def test_links_and_channels_are_refused_and_not_followed(folder, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "turns.ipynb").write_bytes(GOOD)
+    mine = folder / "stranger"
+    mine.mkdir()
+    (mine / "file.ipynb").symlink_to(elsewhere / "turns.ipynb")
+    (mine / "folder").symlink_to(elsewhere)
+    (folder / "student").symlink_to(elsewhere)
+    os.mkfifo(mine / "channel.ipynb")
+    assert {name: why.split(".")[0] for name, why in the_refused(folder).items()} == {
+        "stranger/channel.ipynb": "This is no file but a device or a channel",
+        **dict.fromkeys(("stranger/file.ipynb", "stranger/folder", "student"), "This is a link to another place")}
+
+
+def test_a_file_that_is_exchanged_for_a_link_meanwhile_is_not_read(folder, tmp_path, monkeypatch):
+    (tmp_path / "secret.ipynb").write_bytes(GOOD)
+    (folder / "stranger").mkdir()
+    changing = folder / "stranger" / "turns.ipynb"
+    changing.write_bytes(GOOD)
+    honest = intake._Layout
+
+    def exchange(*arguments):
+        changing.unlink()
+        changing.symlink_to(tmp_path / "secret.ipynb")
+        return honest(*arguments)
+
+    monkeypatch.setattr(intake, "_Layout", exchange)
+    assert "cannot be read" in the_refused(folder)["stranger/turns.ipynb"]
+
+
+def test_folders_nested_without_end_are_left_alone(folder):
+    deep = folder / "stranger" / "/".join("d" * (intake.DEEPEST + 3))
+    deep.mkdir(parents=True)
+    (deep / "turns.ipynb").write_bytes(GOOD)
+    assert list(the_refused(folder).values()) == ["Its folders are nested too deeply to be looked at."]
+
+
+def test_names_that_are_no_text_are_shown(folder):
+    (folder / "stranger").mkdir()
+    with open(os.fsencode(folder / "stranger") + b"/\xff.ipynb", "wb") as file:
+        file.write(b"")
+    assert the_refused(folder) == {"stranger/\\xff.ipynb": "The file is empty."}
+
+
+# ---- archives
+
+@pytest.mark.parametrize("name", ["../turns.ipynb", "a/../../turns.ipynb", "/turns.ipynb", "..\\turns.ipynb", "\\turns.ipynb",
+                                  "C:turns.ipynb", "a/..\\b.ipynb"])
+def test_paths_that_lead_out_of_an_archive_are_refused(tmp_path, name):
+    refused = the_refused(archive(tmp_path / "class.zip", (name, GOOD)))
+    assert refused == {name: "Its name leads out of the archive."}
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["class.zip"]
+
+
+def test_a_link_in_an_archive_is_refused(tmp_path):
+    link = zipfile.ZipInfo("stranger/turns.ipynb")
+    link.external_attr = (stat.S_IFLNK | 0o777) << 16
+    assert "link" in the_refused(archive(tmp_path / "class.zip", (link, "/etc/passwd")))["stranger/turns.ipynb"]
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_a_name_that_is_there_twice_is_refused(tmp_path):
+    twice = ("stranger/turns.ipynb", GOOD)
+    refused = the_refused(archive(tmp_path / "class.zip", twice, twice))
+    assert set(refused.values()) == {"The archive holds this name more than once."}
+
+
+def test_an_archive_that_unpacks_to_far_more_is_refused(tmp_path):
+    bomb = ("stranger/turns.ipynb", b" " * (intake.MOST_BYTES + 1))
+    path = archive(tmp_path / "class.zip", bomb)
+    assert path.stat().st_size < 100_000
+    assert "larger than 20 MB" in the_refused(path)["stranger/turns.ipynb"]
+
+
+def test_an_archive_that_lies_about_sizes_is_refused(tmp_path):
+    path = archive(tmp_path / "class.zip", ("stranger/turns.ipynb", b" " * 3_000_000))
+    data = path.read_bytes()
+    assert data.count(struct.pack("<I", 3_000_000)) == 2
+    path.write_bytes(data.replace(struct.pack("<I", 3_000_000), struct.pack("<I", 1_000)))
+    assert "cannot be unpacked" in the_refused(path)["stranger/turns.ipynb"]
+
+
+def test_damaged_and_locked_entries_are_refused(tmp_path):
+    path = archive(tmp_path / "class.zip", ("stranger/turns.ipynb", os.urandom(2_000)))
+    data = bytearray(path.read_bytes())
+    data[data.index(b"stranger/turns.ipynb") + 500] ^= 0xFF
+    path.write_bytes(data)
+    assert "cannot be unpacked" in the_refused(path)["stranger/turns.ipynb"]
+    path = archive(tmp_path / "locked.zip", ("stranger/turns.ipynb", GOOD))
+    data = bytearray(path.read_bytes())
+    central = data.index(b"PK\x01\x02", data.index(b"PK\x01\x02") + 1)
+    data[central + 8] |= 1
+    path.write_bytes(data)
+    assert "password" in the_refused(path)["stranger/turns.ipynb"]
+
+
+def test_all_of_an_archive_together_is_bounded(tmp_path, monkeypatch):
+    monkeypatch.setattr(intake, "MOST_UNPACKED", len(GOOD) + 10)
+    refused = the_refused(archive(tmp_path / "class.zip", ("stranger/turns.ipynb", GOOD)))
+    assert "this was not read any more" in refused["stranger/turns.ipynb"]
+
+
+def test_what_is_no_archive_is_said(tmp_path):
+    (tmp_path / "class.zip").write_bytes(b"no archive")
+    with pytest.raises(intake.Unfit, match="no zip archive"):
+        intake.take_in(tmp_path / "class.zip")
+    with pytest.raises(intake.Unfit, match="nothing at"):
+        intake.take_in(tmp_path / "class")
+
+
+# ---- what is read
+
+def test_a_mark_of_byte_order_and_older_notebooks_are_read():
+    cells, _ = intake.read_notebook(codecs.BOM_UTF8 + GOOD)
+    assert cells == intake.read_notebook(GOOD)[0]
+    older = {"nbformat": 3, "nbformat_minor": 0, "metadata": {}, "worksheets": [{"cells": [
+        {"cell_type": "code", "input": ["a = 1\n", "b = 2"], "prompt_number": 7, "outputs": [], "language": "python"},
+        {"cell_type": "heading", "source": "A title", "level": 1}]}]}
+    assert intake.read_notebook(json.dumps(older).encode()) == ([{"source": "a = 1\nb = 2", "execution_count": 7}], [])
+
+
+def test_submissions_stay_as_they_are(folder):
+    for path in (folder / "neighbour", folder / "neighbour" / "turns.ipynb"):
+        path.chmod(0o500)
+
+    def state():
+        return {path: (path.is_file() and path.read_bytes(), path.stat().st_mtime_ns, path.stat().st_mode, path.stat().st_ctime_ns)
+                for path in [folder, *folder.rglob("*")]}
+
+    before = state()
+    assert len(intake.take_in(folder)[0]) == 1
+    assert state() == before
+    (folder / "neighbour").chmod(0o700)
+
+
+# ---- which notebook counts
+
+@pytest.fixture
+def course(tmp_path):
+    from grading_class import write_sources
+    return Course(write_sources(tmp_path / "solutions"))
+
+
+def sorted_work(folder, course):
+    refused = []
+    work = sort_work(intake.take_in(folder, course.assignments)[0], course, refused)
+    return {(one.student, one.assignment): ([notebook.file for notebook in one.notebooks], [notebook.file for notebook in one.superseded])
+            for one in work}, refused
+
+
+def test_the_newest_of_several_counts(folder, course):
+    older = folder / "neighbour" / "a turns.ipynb"
+    older.write_bytes(GOOD)
+    os.utime(older, (1, 1))
+    work, _ = sorted_work(folder, course)
+    assert work == {("neighbour", "turns"): (["neighbour/turns.ipynb"], ["neighbour/a turns.ipynb"])}
+
+
+def test_a_number_that_canvas_put_there_says_which_is_newer(tmp_path, course):
+    path = tmp_path / "class.zip"
+    with zipfile.ZipFile(path, "w") as box:
+        for name in ("turns-2", "turns", "turns-10"):
+            box.writestr(f"student_7_8_{name}.ipynb", GOOD)
+    work, _ = sorted_work(path, course)
+    assert work["student_7", "turns"][0] == ["student_7_8_turns-10.ipynb"]
+
+
+def test_the_date_that_brightspace_wrote_says_which_is_newer(tmp_path, course):
+    path = tmp_path / "class.zip"
+    with zipfile.ZipFile(path, "w") as box:
+        for when in ("Nov 21, 2026 1201 AM", "Nov 21, 2026 801 PM", "Nov 21, 2026 1101 AM", "Oct 30, 2026 1159 PM"):
+            box.writestr(f"7-8 - Student Seven - {when}/turns.ipynb", GOOD)
+    work, _ = sorted_work(path, course)
+    assert work["Student Seven 7", "turns"][0] == ["7-8 - Student Seven - Nov 21, 2026 801 PM/turns.ipynb"]
+
+
+def test_an_assignment_in_several_notebooks_is_one(folder, tmp_path, course):
+    (folder / "neighbour" / "axes.ipynb").write_bytes(nbformat.writes(handed_in("axes")).encode())
+    both = Course(tmp_path / "solutions", {"homework": ["turns", "axes"]})
+    assert sorted_work(folder, both)[0] == {("neighbour", "homework"): (["neighbour/axes.ipynb", "neighbour/turns.ipynb"], [])}
+    assert sorted(sorted_work(folder, course)[0]) == [("neighbour", "axes"), ("neighbour", "turns")]
+
+
+@pytest.mark.parametrize("name, cells, found", [
+    ("any.ipynb", ["check('turns/sum', 1)"], "turns"),
+    ("any.ipynb", ['check( "axes/angle" ,\n 1)', "check('turns/sum', 1)", "check('axes/length', 1)"], "axes"),
+    ("turns final.ipynb", ["A_C_N = 1"], "turns"),
+    ("any.ipynb", ["A_C_N = 1"], None),
+    ("any.ipynb", ["check('turns/nothing', 1)"], None),
+])
+def test_which_assignment_a_notebook_is(folder, course, name, cells, found):
+    (folder / "stranger").mkdir()
+    (folder / "stranger" / name).write_text(nbformat.writes(notebook(cells)))
+    work, refused = sorted_work(folder, course)
+    assert [assignment for student, assignment in work if student == "stranger"] == ([found] if found else [])
+    assert [one.file for one in refused] == ([] if found else [f"stranger/{name}"])
+
+
+def test_nbgraders_names_tell_the_assignment_where_the_checks_are_gone(folder, course):
+    made = notebook(["A_C_N = 1"])
+    made.cells[0].metadata["nbgrader"] = {"grade_id": "axes-angle", "schema_version": 3}
+    (folder / "stranger").mkdir()
+    (folder / "stranger" / "any.ipynb").write_text(nbformat.writes(made))
+    assert ("stranger", "axes") in sorted_work(folder, course)[0]
+
+
+def test_the_names_of_questions_are_found_without_running_a_solution(tmp_path):
+    from grading_class import write_sources
+    solutions = write_sources(tmp_path / "solutions", [("import sympy as sm", "import sympy as sm\nraise SystemExit")])
+    assert Course(solutions).names == {"turns": ["turns/about-x", "turns/sum", "turns/doubled"], "axes": ["axes/angle", "axes/length"]}
