@@ -34,6 +34,11 @@ def test_the_svg_is_well_formed_and_speaks():
     assert svg.getAttribute('aria-label').startswith('A line with an angle < 90 degrees & a second')
 
 
+def test_a_plot_leaves_the_other_figures_of_a_page_alone():
+    for rule in re.findall(r'([^{}<>]+)\{', ''.join(re.findall(r'<style[^>]*>(.*?)</style>', example(), re.DOTALL))):
+        assert all('.orientation-figure' in selector for selector in rule.split(',')), rule
+
+
 def test_colours_are_the_page_s_and_follow_its_theme():
     svg = re.search(r'<svg.*</svg>', example(), re.DOTALL)[0]
     for name in ('A', 'D', 'ink', 'muted'):

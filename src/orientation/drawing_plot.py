@@ -71,6 +71,8 @@ class Plot:
             self.figure.savefig(buffer, format='svg', metadata={'Date': None, 'Creator': None})
         svg = buffer.getvalue().replace('xlink:href', 'href')  # in a page the prefix has no meaning
         svg = re.sub(r'<metadata>.*?</metadata>', '', svg[svg.index('<svg'):], flags=re.DOTALL)
+        # Matplotlib's style is for every element of a page: it would take the round ends of lines from all drawings.
+        svg = re.sub(r' <defs>\s*<style[^>]*>[^<]*</style>\s*</defs>\n', '', svg)
         for name, colour in LIGHT.items():
             svg = svg.replace(colour, f'var(--{name})')
         # Every id carries a name of its own: two plots on one page cannot clash.
@@ -78,7 +80,7 @@ class Plot:
         svg = re.sub(r'(id="|href="#|url\(#)', rf'\g<1>{name}-', svg)
         svg = re.sub(r'<svg .*?viewBox="([^"]*)"[^>]*>',
                      rf'<svg viewBox="\1" role="img" aria-label="{escape(self.alt)}" '
-                     rf'style="max-width:{self.width}px;stroke:none">', svg, count=1, flags=re.DOTALL)
+                     rf'style="max-width:{self.width}px;stroke:none;stroke-linecap:butt">', svg, count=1, flags=re.DOTALL)
         return f'<figure class="orientation-figure"><style>{STYLE}</style>{svg}</figure>'
 
     def __repr__(self):
