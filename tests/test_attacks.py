@@ -146,7 +146,7 @@ def test_the_corpus_is_large_and_its_names_differ():
 def test_attack_ends_with_its_name_and_takes_nothing(attack, aftermath):
     result = aftermath["results"][attack.name]
     assert result["isolation"]["weak"] is False
-    assert result["cells"][1]["outcome"] == attack.outcome, result["cells"]
+    assert result["cells"][1]["outcome"] in attack.outcome.split(" or "), result["cells"]
     assert not taken(result)
     assert result["answers"]["before"].get("plain") == integer(1), "an earlier answer was lost"
     if not attack.spoils:

@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import psutil
@@ -305,9 +304,10 @@ for result in run_notebooks(json.loads(sys.argv[1]), workers=2):
 """
 
 
-def test_a_grader_that_is_killed_leaves_nothing_running():
+def test_a_grader_that_is_killed_leaves_nothing_running(tmp_path):
     jobs = [notebook("1"), *[notebook("import time; time.sleep(600)")] * 2]
-    grader = subprocess.Popen([sys.executable, "-c", KILLED, json.dumps(jobs)], stdout=subprocess.PIPE, text=True)
+    grader = subprocess.Popen([sys.executable, "-c", KILLED, json.dumps(jobs)], stdout=subprocess.PIPE, text=True,
+                              env=os.environ | {"TMPDIR": str(tmp_path)})
     assert grader.stdout.readline() == "n\n"
     below = psutil.Process(grader.pid).children(recursive=True)
     assert len(below) >= 2

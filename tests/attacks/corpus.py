@@ -27,7 +27,7 @@ class Attack:
     code : str
         The cell.
     outcome : str
-        What the cell's end must be called.
+        What the cell's end must be called; "a or b" where that depends on the machine.
     without : tuple of str
         The layers without which the same cell takes the loot; empty where that cannot be tried.
     forges : bool
@@ -487,15 +487,12 @@ with open("long", "wb") as file:
 check("loot", "taken")
 """, without=("resource limits",)),
     Attack("many files", """
-try:
-    for number in range(20):
-        with open(f"file{number}", "wb") as file: file.write(b"x" * (3 << 20))
-finally:
-    import os
-    for number in range(20):
-        if os.path.exists(f"file{number}"): os.remove(f"file{number}")
+for number in range(20):
+    with open(f"file{number}", "wb") as file: file.write(b"x" * (3 << 20))
+import time
+time.sleep(20)  # a folder on disk is looked at from time to time
 check("loot", "taken")
-"""),
+""", "error or disk"),
     Attack("a deep tree left behind", """
 import os
 for _ in range(3000):

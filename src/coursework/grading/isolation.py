@@ -447,7 +447,8 @@ def _threads(target):
     threading.stack_size(64 * 1024)
     started = []
     try:
-        for _ in range(target["limits"]["threads"] + 1):
+        # Others of the same user may have ended since they were counted.
+        for _ in range(target["threads in use"] + target["limits"]["threads"] + 1):
             started.append(threading.Thread(target=done.wait))
             started[-1].start()
     except RuntimeError:

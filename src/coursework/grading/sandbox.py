@@ -38,6 +38,7 @@ from coursework.grading.warm_parent import NOT_CONFINED
 
 WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
 WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
+DEEPEST_STEPS = 10
 MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
 ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
 
@@ -116,6 +117,7 @@ class Sandbox:
         self.namespaces_by = () if NAMESPACES in self.without else tuple(namespaces_by)
         self.process = None
         self.control = None
+        self.errors = None
         self.base = None
         self.report = None
         self.abandoned = False
@@ -156,6 +158,8 @@ class Sandbox:
         except BaseException:
             self.close()
             raise
+        if self.report["scratch in memory"]:
+            self.remove_base()  # nothing is left on this machine even if this process is killed
         lacking = isolation.lacking(self.report)
         if lacking and not self.allow_weak_isolation:
             self.close()
@@ -191,14 +195,14 @@ class Sandbox:
         """Start the warm parent behind `command`; give its report."""
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
-        errors = Path(self.base, "errors")
+        self.errors = tempfile.TemporaryFile()
         try:
-            with other, errors.open("wb") as stderr:
+            with other:
                 handles = (other.fileno(), processes)
                 self.process = subprocess.Popen(
                     [*command, sys.executable, "-s", "-P", "-B", "-X", "utf8", "-c",
                      "from coursework.grading.warm_parent import main; main()", *map(str, handles)],
-                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=stderr, cwd="/",
+                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self.errors, cwd="/",
                     pass_fds=handles, start_new_session=True, env={
                         "LANG": "C.UTF-8", "TZ": "UTC", "PYTHONHASHSEED": "0", "MPLBACKEND": "Agg",
                         "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"})
@@ -221,7 +225,8 @@ class Sandbox:
 
     def last_error(self):
         """The last line that the warm parent, never a student, wrote on its error stream."""
-        lines = Path(self.base, "errors").read_text(errors="replace").strip().splitlines()
+        self.errors.seek(0)
+        lines = self.errors.read().decode(errors="replace").strip().splitlines()
         return lines[-1][:500] if lines else "the warm parent ended without a word"
 
     def send(self, message, handles=()):
@@ -253,10 +258,15 @@ class Sandbox:
             except subprocess.TimeoutExpired:
                 self.process.kill()
                 self.process.wait()
-        self.control = self.process = None
+        if self.errors is not None:
+            self.errors.close()
+        self.control = self.process = self.errors = None
 
     def close(self):
         self.end_process()
+        self.remove_base()
+
+    def remove_base(self):
         if self.base is not None:
             scratch.remove_folder(self.base)
             self.base = None
@@ -402,6 +412,7 @@ class _Once:
         }).encode()
         self.records = records.Records(len(job["cells"]))
         self.steps = []  # begun and not ended, outermost first
+        self.begun = []
         self.deadlines = []
         self.cells = {}
         self.questions = job["questions"]
@@ -480,13 +491,17 @@ class _Once:
         if "begin" in record:
             step = record["begin"]
             wall = self.limits.cell_wall_seconds if step[0] == "cell" else self.limits.answer_wall_seconds
-            self.steps.append(step)
-            self.deadlines.append(now + wall + self.limits.grace_seconds)
-            self.steps, self.deadlines = self.steps[:10], self.deadlines[:10]
+            if len(self.steps) < DEEPEST_STEPS:
+                self.steps.append(step)
+                self.begun.append(now)
+                self.deadlines.append(now + wall + self.limits.grace_seconds)
         elif "end" in record:
             if self.steps and self.steps[-1] == record["end"]:
                 self.steps.pop()
                 self.deadlines.pop()
+                begun = self.begun.pop()
+                if self.deadlines:  # the reading of an answer is not the cell's time
+                    self.deadlines[-1] += now - begun
             if record["end"][0] == "cell":
                 index = record["end"][1]
                 self.cells[index] = {

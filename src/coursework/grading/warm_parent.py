@@ -111,7 +111,8 @@ class WarmParent:
         self.why_no_namespaces = why_no_namespaces
         self.first_of_its_namespace = made_by is not None and os.getpid() == 1
         self.base = isolation.SCRATCH if made_by else start["base"]
-        self.threads_in_use = start["threads in use"]
+        # Namespaces of an ordinary user count their own threads only.
+        self.threads_in_use = 0 if made_by else start["threads in use"]
         self.user = isolation.user_for_students(start["user"], about_itself(processes, "uid_map"))
         if not self.first_of_its_namespace:
             isolation.adopt_orphans()
@@ -225,6 +226,7 @@ class WarmParent:
         Path(own).write_text("a file outside")
         os.chmod(own, 0o666)
         os.chmod(outside, 0o777)
+        self.target["threads in use"] = self.threads_in_use
         everywhere = self.target | {"files": [*self.target["files"], own]}
         layers = {}
         for layer in LAYERS:
