@@ -78,8 +78,24 @@ def test_front_end_is_one_module_that_needs_nothing(figure, tmp_path):
 
 @pytest.mark.parametrize("figure", FIGURES)
 def test_a_misspelt_attribute_is_an_error(figure):
-    with pytest.raises(TypeError, match=f"{figure.__name__} has no angel"):
-        figure(angel=1)
+    name = next(iter(figure().state()))
+    misspelt = name[:-2] + name[-1] + name[-2] + "e"
+    message = rf"{figure.__name__} has no {misspelt} \(did you mean {name}\?\); what can be set is .*{name}"
+    with pytest.raises(TypeError, match=message):
+        figure(**{misspelt: 1})
+    one = figure()
+    before = one.state()
+    with pytest.raises(AttributeError, match=message):
+        setattr(one, misspelt, 1)
+    with pytest.raises(AttributeError, match=f"{figure.__name__} has no xyzzy; what"):
+        one.xyzzy = 1
+    assert one.state() == before and not hasattr(one, misspelt)
+
+
+def test_angel_is_not_angle():
+    figure = TriadFigure()
+    with pytest.raises(AttributeError, match="did you mean angle?"):
+        figure.angel = 1
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """What every moving figure is: a widget in Jupyter, a still on paper, and the state that both show."""
 import json
+from difflib import get_close_matches
 from html import escape
 
 import anywidget
@@ -41,9 +42,20 @@ class MovingFigure(anywidget.AnyWidget):
     def __init__(self, **attributes):
         unknown = sorted(set(attributes) - set(self.trait_names()))
         if unknown:  # a widget would take a misspelt name in silence
-            raise TypeError(f'{type(self).__name__} has no {", ".join(unknown)}; what can be set is '
-                            f'{", ".join(sorted(self.trait_names(state=True)))}')
+            raise TypeError(self._without(unknown[0]))
         super().__init__(**attributes)
+
+    def __setattr__(self, name, value):
+        # The same once it is made: a misspelt name would become an attribute that nothing shows.
+        if not name.startswith('_') and not hasattr(type(self), name):
+            raise AttributeError(self._without(name))
+        super().__setattr__(name, value)
+
+    def _without(self, name):
+        """Return the message for a name that cannot be set, with the one that was probably meant."""
+        names = sorted(self.trait_names(state=True))
+        near = ''.join(f' (did you mean {close}?)' for close in get_close_matches(name, names, 1))
+        return f'{type(self).__name__} has no {name}{near}; what can be set is {", ".join(names)}'
 
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
