@@ -16,6 +16,7 @@ CONTRIBUTING.md explains each argument with an example.
 """
 
 import hashlib
+import html
 import itertools
 import json
 import math
@@ -225,7 +226,7 @@ def to_page(markdown):
 
     def formula(content, options):
         mark = '$$' if options['display_mode'] else '$'
-        return f'{mark}{content}{mark}'
+        return f'{mark}{html.escape(content, quote=False)}{mark}'
 
     return MarkdownIt().use(dollarmath_plugin, renderer=formula).render(markdown)
 

@@ -176,12 +176,29 @@ def released_texts(exercises=EXERCISES, sealed=SEALED, archive=ARCHIVE):
                 files.update({f'{name}!{inner}': box.read(inner) for inner in box.namelist()})
             continue
         text = data.decode('utf8', 'replace')
-        if name.endswith('.ipynb'):
-            text += json.dumps(json.loads(text), ensure_ascii=False).replace('\\n', '\n').replace('\\\\', '\\')
+        if name.endswith(('.ipynb', '.json')):
+            text += '\n'.join(_strings(json.loads(text)))
         for picture in re.findall(r'base64,([A-Za-z0-9+/=]{40,})', text):
             text += base64.b64decode(picture).decode('utf8', 'replace')
         texts[name] = _dense(text)
     return texts
+
+
+def _strings(data):
+    """All texts in JSON data, as they are read and not as they are written."""
+    if isinstance(data, str):
+        yield data
+    elif isinstance(data, dict):
+        for key, value in data.items():
+            yield key
+            yield from _strings(value)
+    elif isinstance(data, list):
+        # A notebook may keep a text as a list of its lines.
+        if all(isinstance(part, str) for part in data):
+            yield ''.join(data)
+        else:
+            for part in data:
+                yield from _strings(part)
 
 
 def leaks(sources, texts):
