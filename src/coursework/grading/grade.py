@@ -7,6 +7,7 @@ run that finds a record with the right key leaves it alone, so a run that was ki
 
 import contextlib
 import csv
+import functools
 import hashlib
 import json
 import platform
@@ -180,6 +181,7 @@ def key_of(work, questions, limits, weak):
     return hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
 
 
+@functools.cache
 def software():
     """The versions that answers may depend on."""
     return {'python': platform.python_version(), **{name: metadata.version(name) for name in (

@@ -121,17 +121,24 @@ class _Printer:
     def __init__(self, nodes, most):
         self.nodes = nodes
         self.left = most
+        self.is_cut = False
 
     def put(self, piece):
         if self.left <= 0:
-            return ''
+            return self.cut()
         self.left -= len(piece)
-        return piece if self.left >= 0 else piece[:self.left] + '…'
+        return piece if self.left >= 0 else piece[:self.left] + self.cut()
+
+    def cut(self):
+        """The sign that something is missing: once."""
+        first, self.is_cut = not self.is_cut, True
+        return '…' if first else ''
 
     def parts(self, parts, write, between=', '):
         written = []
         for part in parts:
             if self.left <= 0:
+                written.append(self.cut())
                 break
             written.append((self.put(between) if written else '') + write(part))
         return ''.join(written)
@@ -164,18 +171,17 @@ class _Printer:
         return self.parts(sorted(values), lambda name: self.put(f'in {readable(name)}: ') + self.value(values[name]), '; ')
 
     def node(self, order, depth, around):
-        if self.left <= 0:
-            return ''
-        if depth > 40:
-            return self.put('…')
+        if self.left <= 0 or depth > 40:
+            return self.cut() if self.left <= 0 else self.put('…')
         operation, *rest = self.nodes[order]
         if operation == 'symbol':
             return self.put(readable(rest[0]))
         if operation == 'constant':
             return self.put(NAMES.get(rest[0], readable(rest[0])))
         if operation in ('integer', 'rational', 'float'):
-            # Twelve digits are enough to recognise a number by.
-            digits = re.sub(r'(\.\d{10})\d+', r'\1', '/'.join(rest))
+            digits = '/'.join(rest)
+            if operation == 'float' and 1e-300 < abs(float(digits)) < 1e300:
+                digits = f'{float(digits):.10g}'   # enough to recognise a number by
             tight = around > 1 and ('/' in digits or digits.startswith('-'))
             return self.put(f'({digits})' if tight else digits)
         if operation == 'Pow' and self.nodes[rest[1]] == ['rational', '1', '2']:

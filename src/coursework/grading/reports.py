@@ -108,7 +108,7 @@ def _read(path, otherwise):
 
 def _write_if_new(path, content):
     if not path.exists() or path.read_text('utf8') != content:
-        write(path, content)
+        write(path, content, lasting=False)
 
 
 def grades(records):
@@ -144,9 +144,13 @@ def _question(order, name, mark, plain):
     paragraphs = ''.join(f'<p>{pages.message(said)}</p>' for said in mark['messages'])
     read = pages.answer_as_text(plain) if plain and mark['outcome'] != 'not attempted' else ''
     answer = f'<p class="soft">Your answer, as it was read:</p><pre>{text(read, 2_000)}</pre>' if read else ''
-    return (f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(mark["title"])}</h3>'
+    return (f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(_title(mark))}</h3>'
             f'<span class="verdict"><span aria-hidden="true">{sign}</span> {word} · {_points(mark)}</span></div>'
             f'<p class="soft"><code>{text(name)}</code></p>{paragraphs}{answer}</section>')
+
+
+def _title(mark):
+    return mark['title'][:1].upper() + mark['title'][1:]
 
 
 def _points(mark):
@@ -256,7 +260,7 @@ def _success(records, names):
                 bars.append(f'<rect class="edge of-{part}" x="{x:.1f}" y="0" width="{wide:.1f}" height="18"/>')
                 x += wide
         spoken = ', '.join(f'{counts[part]} {word}' for part, word in PARTS if counts[part])
-        rows.append(f'<tr><td class="number">{order}</td><td>{text(marks[0]["title"])}<br><span class="soft">{spoken}</span></td>'
+        rows.append(f'<tr><td class="number">{order}</td><td>{text(_title(marks[0]))}<br><span class="soft">{spoken}</span></td>'
                     f'<td><svg viewBox="0 0 300 18" width="300" height="18" role="img" aria-label="{spoken}">{"".join(bars)}</svg></td>'
                     f'<td class="number">{_percent(counts["correct"], len(marks))}</td></tr>')
     key = ''.join(f'<span><svg width="11" height="11" viewBox="0 0 11 11" aria-hidden="true"><rect class="of-{part}" width="11" height="11"/></svg>'

@@ -90,18 +90,20 @@ def file_name(name):
     return f'{plain.lower() or "student"}-{hashlib.sha256(name.encode("utf8", "surrogatepass")).hexdigest()[:8]}'
 
 
-def write(path, text):
-    """Write a file so that it is there whole or not at all, also if the machine goes down."""
+def write(path, text, lasting=True):
+    """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     half = path.with_name(f'.half-{secrets.token_hex(8)}')
     with open(half, 'wb') as file:
         file.write(text.encode('utf8', 'backslashreplace') if isinstance(text, str) else text)
-        file.flush()
-        os.fsync(file.fileno())
+        if lasting:
+            file.flush()
+            os.fsync(file.fileno())
     os.replace(half, path)
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+    if lasting:
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
