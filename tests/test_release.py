@@ -17,9 +17,9 @@ SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("t
 SOLUTION = ('### BEGIN SOLUTION\nworking = sm.sin(theta)\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), working], '
             '[0, -working, sm.cos(theta)]])\n### END SOLUTION')
 HIDDEN = ("### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='direction cosine matrix', frames=('A', 'N'), "
-          "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not move.\\nThey say "the axis stays" of it.')\n"
+          "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not move.')\n"
           "### END HIDDEN TESTS")
-FUNCTION = ('### BEGIN SOLUTION\ndef conjugate(quaternion):\n    """Return the conjugate."""\n'
+FUNCTION = ('### BEGIN SOLUTION\ndef conjugate(quaternion):\n    """Return the conjugate."""\n    "a quoted remark"\n'
             '    return [quaternion[0], *(-part for part in quaternion[1:])]\n### END SOLUTION')
 HIDDEN_FUNCTION = ("### BEGIN HIDDEN TESTS\nquestion('trial/conjugate', kind='function', result='quaternion', "
                    "calls=[[[0.5, 0.5, 0.5, 0.5]], [[0.6, 0, 0.8, 0]]])\n### END HIDDEN TESTS")
@@ -77,7 +77,7 @@ def test_a_planted_secret_is_found(trial, tmp_path):
     source = release.read_source(trial / 'sources' / 'trial.ipynb')
     assert len(secrets_of(source)) > 5
     assert leaks([source], released_texts(trial / 'exercises', trial / 'sealed', tmp_path / 'none.zip')) == []
-    for planted in ('They say "the axis stays" of it.', 'The shared axis is the first one,\nwhich does  not move.', '[0, -sin(theta), cos(theta)]]',
+    for planted in ('The shared axis is the first one,\nwhich does  not move.', '[0, -sin(theta), cos(theta)]]',
                     "turns=[('x', theta)], worth=2"):
         folder = tmp_path / str(len(planted))
         write_source(folder, ('markdown', f'x {planted} y') if 'sin' not in planted else

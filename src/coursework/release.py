@@ -11,6 +11,7 @@ import base64
 import concurrent.futures
 import contextlib
 import copy
+import hashlib
 import html
 import json
 import os
@@ -19,6 +20,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import textwrap
 import zipfile
 from pathlib import Path
 from typing import NamedTuple
@@ -157,7 +159,7 @@ def exercise_notebook(source):
         else:
             blanks = [name for region in SOLUTION.findall(cell.source) for name in _bound(region, owners)]
             code = nbformat.v4.new_code_cell(HIDDEN.sub('', SOLUTION.sub(
-                lambda region: _blank(region[1], owners), cell.source)).rstrip())
+                lambda region: blank(region[1], owners), cell.source)).rstrip())
             graded = [source.questions[name] for name, variable in checked.items()
                       if re.search(rf"check\(\s*['\"]{re.escape(name)}['\"]", code.source)]
             if blanks:
@@ -182,7 +184,7 @@ def _bound(region, owners):
     return [name for name in names if name in owners]
 
 
-def _blank(region, owners):
+def blank(region, owners):
     """What stands in place of a solution."""
     functions = {node.name: node for node in ast.parse(_outdent(region)).body if isinstance(node, ast.FunctionDef)}
     lines = []
@@ -199,7 +201,6 @@ def _blank(region, owners):
 
 
 def _outdent(region):
-    import textwrap
     return textwrap.dedent(region)
 
 
@@ -219,11 +220,10 @@ def _nbgrader(cell, identifier, solution=False, points=None):
 
 def _checksum(cell, about):
     # As nbgrader.utils.compute_checksum; a test compares the two.
-    import hashlib
-    parts = [cell.source, cell.cell_type]
+    parts = [cell.source, cell.cell_type, *(str(about[key]) for key in ('grade', 'solution', 'locked')),
+             about['grade_id']]
     if about['grade']:
         parts.append(str(float(about['points'])))
-    parts.append(about['grade_id'])
     digest = hashlib.md5()
     for part in parts:
         digest.update(part.encode('utf8'))

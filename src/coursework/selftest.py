@@ -19,7 +19,7 @@ from .kinds import Fault, Undecidable
 from .mistakes import message
 from .plain import NotPlain
 from .questions import compare, judge, notebook_questions
-from .release import ARCHIVE, CHAPTERS, EXERCISES, HIDDEN, SEALED, SOLUTION, SOURCES, read_source
+from .release import ARCHIVE, CHAPTERS, EXERCISES, HIDDEN, SEALED, SOLUTION, SOURCES, blank, read_source
 from .reply import Reply, to_html
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
@@ -128,6 +128,10 @@ def secrets_of(source):
             found += [(f'the answer of {name}', text) for text in _writings(question.answer)]
     given = {_dense(line) for cell in source.notebook.cells
              for line in HIDDEN.sub('', SOLUTION.sub('', cell.source)).splitlines()}
+    # What stands in place of a solution is given too: the signature of a function and its docstring.
+    owners = {question.variable: name for name, question in source.questions.items()}
+    given |= {_dense(line) for cell in source.notebook.cells for region in SOLUTION.findall(cell.source)
+              for line in blank(region, owners).splitlines()}
     # The arguments that a function is tried with are public: whoever checks it must call it.
     given |= {_dense(json.dumps(question.public.get('calls', ''))) for question in source.questions.values()}
     seen = {}

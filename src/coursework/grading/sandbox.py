@@ -268,7 +268,8 @@ class Sandbox:
 
     def remove_base(self):
         if self.base is not None:
-            scratch.remove_folder(self.base)
+            with contextlib.suppress(FileNotFoundError):  # the warm parent tidies up too
+                scratch.remove_folder(self.base)
             self.base = None
 
     def abandon(self):

@@ -33,8 +33,11 @@ LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on d
 LONGEST_MESSAGE = 1 << 16
 
 
-def into_namespaces(control, readable):
-    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot be."""
+def into_namespaces(control, readable, base):
+    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot be.
+
+    The process outside waits, and at the end removes `base`, which whoever started it may not live to do.
+    """
     reading, writing = os.pipe()
     outer = os.getpid()
     if os.fork() == 0:
@@ -66,9 +69,15 @@ def into_namespaces(control, readable):
     if said == b"in":
         control.close()  # the process inside has its own handle
         os.wait()
+        tidy(base)
         os._exit(0)
     os.wait()
     return said.decode(errors="replace") or "it ended without a word"
+
+
+def tidy(base):
+    with contextlib.suppress(OSError):
+        scratch.remove_folder(base)
 
 
 def load_libraries():
@@ -339,12 +348,16 @@ def main():
     readable = isolation.readable_paths()
     made_by, why_not = start["namespaces made by"], start["why no namespaces"]
     if made_by == "unshare":
-        why_not = into_namespaces(control, readable)
+        why_not = into_namespaces(control, readable, start["base"])
         made_by = None if why_not else "unshare"
-    server = WarmParent(control, int(sys.argv[2]), start, readable, made_by, why_not)
-    report = server.report()
-    gc.collect()
-    gc.freeze()
-    send(control, {"ready": report})
-    with contextlib.suppress(ConnectionError, BrokenPipeError):
-        server.serve()
+    try:
+        server = WarmParent(control, int(sys.argv[2]), start, readable, made_by, why_not)
+        report = server.report()
+        gc.collect()
+        gc.freeze()
+        with contextlib.suppress(ConnectionError):  # whoever started it may have ended
+            send(control, {"ready": report})
+            server.serve()
+    finally:
+        if made_by is None:
+            tidy(start["base"])
