@@ -23,7 +23,7 @@ from orientation.moving import bundle
 
 from .pages import BROWSERS
 
-FIGURES = [getattr(moving, name) for name in moving.__all__ if name != 'MovingFigure']
+FIGURES = [figure for figure in (getattr(moving, name) for name in moving.__all__) if getattr(figure, 'kind', '')]
 SLOWED, FRAME, HEAVIEST = 4, 16, 60_000   # times, milliseconds, bytes
 PICTURES, ROUNDS = 120, 5
 PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{kind}</title>

@@ -2,6 +2,7 @@
 
 ``orientation`` does not load this package, which needs anywidget.
 """
+from .explorer import SequenceExplorer
 from .figure import MovingFigure
 from .gimbal import GimbalFigure
 from .motion import MotionFigure
@@ -10,4 +11,5 @@ from .successive import SuccessiveFigure
 from .nine_numbers import NineNumbersFigure
 from .triad import TriadFigure
 
-__all__ = ['GimbalFigure', 'MotionFigure', 'MovingFigure', 'NineNumbersFigure', 'QuaternionFigure', 'SuccessiveFigure', 'TriadFigure']
+__all__ = ['GimbalFigure', 'MotionFigure', 'MovingFigure', 'NineNumbersFigure', 'QuaternionFigure', 'SequenceExplorer',
+           'SuccessiveFigure', 'TriadFigure']
