@@ -1,0 +1,118 @@
+"""Code in the page: time from pressing Run to the first result, and what is downloaded: ``python -m benchmarks.live``.
+
+One chapter of the book as ``make book`` built it, in headless Chromium, from a local server. Cold is a fresh browser with
+an empty cache; warm is a new visit in the same browser. The time runs from the press on the first SymPy cell's Run until
+its formula is typeset on the page. What each later cell costs beyond its own work is the time of an assignment:
+code, message, outcome and page together.
+"""
+
+import gzip
+import shutil
+import statistics
+import sys
+import tempfile
+import threading
+import urllib.request
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+from website.serve import server
+
+PAGE = 'chapters/direction-cosine-matrices'
+SITE = Path('_build/html')
+ROUNDS = 5
+CELLS = 30
+BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable')
+FLAGS = ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+         '--no-first-run', '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1']
+
+# Milliseconds from the press on a cell's Run until the cell has run and the page is painted.
+PRESS = """
+(number) => new Promise((resolve) => {
+  const cell = document.querySelectorAll('div.cell')[number];
+  const start = performance.now();
+  let begun = false;
+  const look = () => {
+    const busy = document.documentElement.classList.contains('live-busy');
+    begun ||= busy;
+    if (begun && !busy) requestAnimationFrame(() => resolve(performance.now() - start));
+    else setTimeout(look, 2);
+  };
+  cell.querySelector('button.run-cell').click();
+  look();
+})
+"""
+FIRST_SYMPY = """
+() => [...document.querySelectorAll('div.cell')].findIndex(
+  (cell) => cell.querySelector('pre').textContent.includes('import sympy') && cell.querySelector('.cell_output .katex'))
+"""
+WRITE = """
+([number, code]) => {
+  const content = document.querySelectorAll('div.cell')[number].querySelector('.cm-content');
+  content.focus();
+  document.execCommand('selectAll');
+  document.execCommand('insertText', false, code);
+}
+"""
+
+
+def visit(context, address):
+    """Press Run on the first SymPy cell; return the page, the cell's number, the seconds and what was asked for."""
+    page = context.new_page()
+    asked = []
+    page.on('requestfinished', lambda request: asked.append(request.url))
+    page.goto(address)
+    page.wait_for_load_state('networkidle')
+    before = len(asked)
+    number = page.evaluate(FIRST_SYMPY)
+    seconds = page.evaluate(PRESS, number) / 1000
+    return page, number, seconds, asked[before:]
+
+
+def cell_overhead(page, number):
+    """Median milliseconds of a cell that does nothing but give a name a value."""
+    page.evaluate(WRITE, [number, 'a = 1'])
+    page.evaluate(PRESS, number)
+    return statistics.median(page.evaluate(PRESS, number) for _ in range(CELLS))
+
+
+def weight(urls):
+    """Megabytes after gzip of what was asked for."""
+    bodies = [urllib.request.urlopen(url).read() for url in dict.fromkeys(urls) if url.startswith('http')]
+    return sum(len(gzip.compress(body, 6)) for body in bodies) / 1e6
+
+
+def main():
+    executable = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if executable is None:
+        sys.exit('There is no Chromium on this machine to open the pages with.')
+    if not (SITE / f'{PAGE}.html').is_file():
+        sys.exit('The book is not built: run `make book` first.')
+    book = server(folder=SITE)
+    threading.Thread(target=book.serve_forever, daemon=True).start()
+    address = f'http://127.0.0.1:{book.server_port}/{PAGE}.html'
+    cold, warm, overheads = [], [], []
+    with sync_playwright() as playwright:
+        for _ in range(ROUNDS):
+            with tempfile.TemporaryDirectory() as profile:
+                context = playwright.chromium.launch_persistent_context(profile, executable_path=executable, args=FLAGS)
+                page, number, seconds, asked = visit(context, address)
+                cold.append(seconds)
+                overheads.append(cell_overhead(page, number))
+                page.evaluate('localStorage.clear()')
+                page.close()
+                page, _, seconds, _ = visit(context, address)
+                warm.append(seconds)
+                context.close()
+    print('| what | median | of', ROUNDS, '|')
+    print('|---|---|---|')
+    for what, values, unit in (('first SymPy result, cold', cold, 's'), ('first SymPy result, warm', warm, 's'),
+                               ('each later cell, beyond its own work', overheads, 'ms')):
+        every = ', '.join(f'{value:.2f}' for value in sorted(values))
+        print(f'| {what} | {statistics.median(values):.2f} {unit} | {every} |')
+    print(f'| download, MB after gzip | {weight(asked):.1f} | {len(set(asked))} files |')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,617 @@
+"""Code in the page: every cell, what a student would type, and what the browser asks for."""
+
+import gzip
+import hashlib
+import json
+import re
+import subprocess
+import sys
+import threading
+import zipfile
+
+import nbformat
+import pytest
+from conftest import HTML, REPOSITORY, html_pages
+from test_site import Visit, violations
+
+from website.browser import FLAGS, find
+from website.live import runtime, scripts
+from website.live.cells import kinds_of_cells
+from website.notebooks import all_notebooks
+from website.serve import Handler, server
+
+PAGES = [name for name in html_pages() if 'id="live-data"' in (HTML / name).read_text("utf8")]
+ELSEWHERE = "https://cdn.jsdelivr.net/**"
+QUIET = "chapters/simple-orientations.html"  # has cells with and without NumPy, and runs in a moment
+
+# The results of a page, as the reader sees them: each cell's output, without what differs on purpose.
+RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
+  const output = cell.querySelector(':scope > .cell_output');
+  if (!output) return '';
+  const copy = output.cloneNode(true);
+  copy.querySelectorAll('*').forEach((box) => ['tabindex', 'role', 'aria-label', 'data-name'].forEach((n) => box.removeAttribute(n)));
+  copy.querySelectorAll('pre > span:empty, button.copybtn').forEach((extra) => extra.remove());
+  copy.querySelectorAll('pre').forEach((pre) => pre.removeAttribute('id'));
+  return copy.innerHTML.replace(/\s+/g, ' ').replace(/> </g, '><').replace(/ <\/pre>/g, '</pre>').trim();
+})"""
+RAN = "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null && document.querySelector('#live-words')?.textContent !== ''"
+
+
+opened = []
+
+
+@pytest.fixture(autouse=True)
+def close_pages():
+    """Close what a test has opened, also where it fails: a forgotten page goes on working."""
+    yield
+    while opened:
+        page = opened.pop()
+        page.evaluate("location.protocol === 'file:' || localStorage.clear()")
+        page.close()
+
+
+class Page:
+    """A page of the book in a browser, driven as a reader drives it."""
+
+    def __init__(self, context, site, name, refuse=True):
+        self.page = context.new_page()
+        opened.append(self.page)
+        self.asked, self.errors = [], []
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        if refuse:
+            self.page.route(ELSEWHERE, lambda route: route.abort())
+        self.page.goto(site + name)
+        self.page.wait_for_selector("button.run-cell", state="attached")
+
+    def wait(self):
+        self.page.wait_for_function(RAN, timeout=120_000)
+
+    def run(self):
+        self.page.click("button.run-page")
+        self.page.wait_for_selector("html.live-busy", state="attached")
+        self.wait()
+        assert "ran." in self.words(), self.words()
+
+    def cell(self, number):
+        return self.page.locator("div.cell").nth(number - 1)
+
+    def write(self, number, code):
+        """Replace the code of a cell, from the keyboard."""
+        self.cell(number).locator(".cm-content").focus()
+        self.page.keyboard.press("Control+a")
+        self.page.keyboard.insert_text(code)
+        self.page.wait_for_function(
+            "([number, code]) => document.querySelectorAll('div.cell')[number - 1].querySelector('.cm-content')"
+            ".innerText.replace(/\\s/g, '') === code.replace(/\\s/g, '')",
+            arg=[number, code],
+        )
+
+    def try_code(self, number, code, wait=True):
+        """Write ``code`` into a cell, run it with the keyboard, and return what stands below it."""
+        self.write(number, code)
+        self.page.keyboard.press("Shift+Enter")
+        if wait:
+            self.wait()
+        return self.below(number)
+
+    def below(self, number):
+        return self.cell(number).locator(".cell_output").inner_text()
+
+    def words(self):
+        return self.page.inner_text("#live-words")
+
+    def outside(self):
+        return [url for url in self.asked if not url.startswith(("http://127.0.0.1", "data:", "blob:"))]
+
+
+@pytest.fixture(scope="module")
+def context(browser):
+    made = browser.new_context(viewport={"width": 1300, "height": 900})
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def page_that_has_run(context, site):
+    page = Page(context, site, QUIET)
+    opened.remove(page.page)
+    page.run()
+    yield page
+
+
+@pytest.fixture
+def shared(page_that_has_run):
+    """A page whose cells have run once; a test that leaves it running spoils no other."""
+    yield page_that_has_run
+    assert page_that_has_run.errors == []
+    page_that_has_run.page.evaluate("localStorage.clear()")  # or the next page would bring the edits back
+    if page_that_has_run.page.locator("html.live-busy").count():
+        page_that_has_run.page.reload()
+
+
+@pytest.fixture(scope="module")
+def not_isolated():
+    """The address of the book on a server that gives no page shared memory, as most servers are."""
+
+    class Plain(Handler):
+        isolated = False
+
+    book = server(folder=HTML, handler=Plain)
+    threading.Thread(target=book.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{book.server_port}/"
+    book.shutdown()
+    book.server_close()
+
+
+def kinds(name):
+    return kinds_of_cells()[name.removesuffix(".html")]
+
+
+# --- every cell of the book ---------------------------------------------------------------------
+
+
+def test_every_notebook_is_a_page_with_code():
+    notebooks = {str(path.relative_to(REPOSITORY).with_suffix(".html")) for path in all_notebooks(REPOSITORY)}
+    assert notebooks <= set(PAGES) == {f"{name}.html" for name in kinds_of_cells()}
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_results_equal_the_stored_ones(context, site, name):
+    """Every cell that needs SymPy only gives what is printed; the others say why they did not run."""
+    page = Page(context, site, name)
+    before = page.page.evaluate(RESULTS)
+    page.run()
+    after = page.page.evaluate(RESULTS)
+    for number, kind in enumerate(kinds(name), start=1):
+        note = page.cell(number).locator(".live-note, .live-error")
+        if not kind["needs"]:
+            assert after[number - 1] == before[number - 1], f"cell {number}"
+            assert note.count() == 0, f"cell {number}: {note.inner_text()}"
+        elif kind["skip"]:
+            assert note.count() == 0
+        else:
+            assert "Not run here" in note.inner_text(), f"cell {number}"
+            built = before[number - 1].partition("<figcaption>")[0]
+            assert after[number - 1].startswith(built), f"cell {number} has lost its printed result"
+    assert page.errors == []
+    needed = any(kind["needs"] and not kind["skip"] for kind in kinds(name))
+    assert needed or page.outside() == []
+
+
+def test_the_list_of_cells_is_that_of_the_build(site):
+    text = (HTML / "appendix" / "code-in-the-page.html").read_text("utf8")
+    every = [kind for page in kinds_of_cells().values() for kind in page]
+    alone = sum(not kind["needs"] for kind in every)
+    assert f"Of {len(every)} cells, {alone} need nothing but SymPy" in text
+    assert alone > len(every) / 2
+
+
+# --- what is loaded, and when -------------------------------------------------------------------
+
+
+def test_nothing_is_loaded_before_the_reader_asks(context, site):
+    page = Page(context, site, QUIET)
+    assert not [url for url in page.asked if "/runtime/" in url]
+    assert not page.page.is_visible(".live-bar")
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_pages_hardly_grow(name):
+    data = re.search(r'<script type="application/json" id="live-data">.*?</script>', (HTML / name).read_text("utf8"))
+    button = '<button class="run-page">Run this page</button>' * 3
+    added = [(HTML / "_static" / file).read_bytes() for file in ("live.js", "live.css")]
+    added.append((data[0] + button).encode())
+    assert sum(len(gzip.compress(part)) for part in added) < 5000
+
+
+def test_browser_asks_nobody_else(site, browser, tmp_path):
+    """By the browser's own log of the network, from its start to its end."""
+    log = tmp_path / "network.json"
+    name = "chapters/orientation-with-sympy.html"
+    logged = browser.browser_type.launch(
+        executable_path=find(), args=[*FLAGS, f"--log-net-log={log}", "--net-log-capture-mode=Everything"]
+    )
+    page = Page(logged.new_context(), site, name, refuse=False)
+    page.run()
+    opened.remove(page.page)
+    logged.close()
+    events = [event.get("params", {}) for event in json.loads(log.read_text("utf8"))["events"]]
+    # The browser asks its maker for things of its own: those have no page as their origin.
+    asked = {params["url"] for params in events if params.get("initiator", "").startswith("http") and "url" in params}
+    assert any(url.endswith(".whl") for url in asked), "the log tells what the worker asks for"
+    assert {url for url in asked if not url.startswith((site, "data:", "blob:"))} == set()
+
+
+def test_download_is_small_enough():
+    lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
+    first = runtime.with_dependencies([runtime.DISTRIBUTION], lock["packages"])
+    files = [HTML / runtime.FOLDER / "pyodide" / name for name in runtime.PYODIDE_FILES]
+    files += [HTML / runtime.FOLDER / lock["packages"][name]["file_name"] for name in first]
+    assert lock["bytes"] == sum(path.stat().st_size for path in files)
+    files += (HTML / scripts.folder_name()).iterdir()
+    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_000_000
+
+
+def test_lock_names_what_is_there():
+    lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
+    official = runtime.official_lock()["packages"]
+    for name, package in lock["packages"].items():
+        if "://" in package["file_name"]:
+            assert package["file_name"].startswith(runtime.official_address())
+            assert package["sha256"] == official[name]["sha256"]
+        else:
+            wheel = HTML / runtime.FOLDER / package["file_name"]
+            assert hashlib.sha256(wheel.read_bytes()).hexdigest() == package["sha256"]
+            assert not [member for member in zipfile.ZipFile(wheel).namelist() if "/tests/" in member]
+        assert all(needed in lock["packages"] for needed in package["depends"])
+
+
+def test_versions_are_those_of_the_book():
+    constraints = (REPOSITORY / "constraints.txt").read_text("utf8").splitlines()
+    lines = (REPOSITORY / "src/website/live/wheels.txt").read_text("utf8").splitlines()
+    pins = [line.split()[0] for line in lines if not line.startswith("#")]
+    assert {pin.split("==")[0] for pin in pins} == {"sympy", "mpmath"}
+    assert set(pins) <= set(constraints)
+
+
+# --- NumPy and Matplotlib: official, a folder, off ------------------------------------------------
+
+
+@pytest.fixture
+def made_wheels(tmp_path):
+    """Wheels that stand for the official ones, and a list of packages that names them."""
+    packages = {}
+    for name in runtime.with_dependencies(runtime.NUMERICAL, runtime.official_lock()["packages"]):
+        package = dict(runtime.official_lock()["packages"][name])
+        wheel = tmp_path / package["file_name"]
+        with zipfile.ZipFile(wheel, "w") as file:
+            file.writestr(f"{package['imports'][0]}.py", f"__version__ = 'made {name}'\npi = 3\n")
+            info = f"{name.replace('-', '_')}-{package['version']}.dist-info"
+            file.writestr(f"{info}/METADATA", f"Metadata-Version: 2.1\nName: {name}\nVersion: {package['version']}\n")
+            file.writestr(f"{info}/RECORD", "")
+        packages[name] = package | {"sha256": hashlib.sha256(wheel.read_bytes()).hexdigest()}
+    return tmp_path, {"packages": packages}
+
+
+def test_numpy_from_a_folder(made_wheels, tmp_path_factory):
+    folder, official = made_wheels
+    target = tmp_path_factory.mktemp("runtime")
+    packages = runtime.numerical_packages(str(folder), target, official, "unused")
+    assert set(packages) == set(official["packages"])
+    for package in packages.values():
+        content = (target / package["file_name"]).read_bytes()
+        assert hashlib.sha256(content).hexdigest() == package["sha256"]
+    numpy = folder / official["packages"]["numpy"]["file_name"]
+    numpy.write_bytes(numpy.read_bytes() + b"more")
+    with pytest.raises(Exception, match="numpy-.* is not the official file"):
+        runtime.numerical_packages(str(folder), target, official, "unused")
+    numpy.unlink()
+    with pytest.raises(Exception, match="there is no numpy-"):
+        runtime.numerical_packages(str(folder), target, official, "unused")
+
+
+@pytest.mark.parametrize("setting", ["off", False])
+def test_numpy_off(setting, tmp_path):
+    assert runtime.numerical_packages(setting, tmp_path, runtime.official_lock(), "unused") == {}
+
+
+def numpy_page(context, site, lock, wheel):
+    """A page whose list of packages is ``lock``; the official address gives ``wheel``."""
+    page = Page(context, site, QUIET, refuse=False)
+    page.page.route("**/pyodide-lock.json", lambda route: route.fulfill(json=lock))
+    headers = {"Access-Control-Allow-Origin": "*", "Content-Type": "application/octet-stream"}
+    page.page.route(ELSEWHERE, lambda route: route.fulfill(body=wheel, headers=headers))
+    return page
+
+
+def test_numpy_is_fetched_and_checked(context, site, made_wheels):
+    folder, made = made_wheels
+    lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
+    lock["packages"]["numpy"]["sha256"] = made["packages"]["numpy"]["sha256"]
+    wheel = (folder / made["packages"]["numpy"]["file_name"]).read_bytes()
+    page = numpy_page(context, site, lock, wheel)
+    page.page.click("button.run-cell >> nth=2")  # a cell of SymPy: nothing is asked for
+    page.wait()
+    assert page.outside() == []
+    assert "made numpy" in page.try_code(3, "import numpy as np\nprint(np.__version__)\nnp.pi")
+    assert page.outside() == [lock["packages"]["numpy"]["file_name"]]
+    assert page.outside()[0].startswith("https://cdn.jsdelivr.net/pyodide/v")
+
+    page = numpy_page(context, site, lock, wheel + b"one byte too many")
+    page.page.click("button.run-cell >> nth=4")
+    page.wait()
+    page.try_code(3, "import numpy as np\nnp.pi")
+    assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
+
+
+# --- what a student would type ------------------------------------------------------------------
+
+
+def test_edit_and_run(shared):
+    assert "42" in shared.try_code(3, "print(6 * 7)")
+    assert "cell 3 ran. Result: 42" in shared.words().replace("Cell", "cell")
+    assert shared.try_code(3, "a = 1; a;").strip() == ""
+    assert shared.try_code(3, "a, b = 'é', '数'\nprint(a + b)\nnäme = '\\N{GREEK SMALL LETTER PSI}'\nnäme").split() == ["é数", "'ψ'"]
+    assert "made anew" in shared.try_code(3, "a = 'made anew'\na")
+    assert "made anew" in shared.try_code(5, "a")
+
+
+def test_typo(shared):
+    text = shared.try_code(3, "import sympy as sm\nsm.Matrx([1])")
+    assert "AttributeError" in text and 'File "cell 3", line 2' in text
+    assert "sm.Matrx([1])" in text and "session" not in text and "pyodide" not in text
+    text = shared.try_code(3, "for i in range(3)\n    print(i)")
+    assert "SyntaxError: expected ':'" in text
+    text = shared.try_code(3, "thta + 1")
+    assert "NameError" in text and "theta" in text, "Python suggests the name"
+    assert "error" in shared.words()
+
+
+def test_failing_cell_keeps_its_printed_result(context, site):
+    """Beside an error stands what the book has printed; it comes back alone with the book's code."""
+    page = Page(context, site, QUIET)
+    before = page.page.evaluate(RESULTS)[2]
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    page.try_code(3, "1 / 0")
+    assert "ZeroDivisionError" in page.below(3)
+    page.cell(3).locator("details.live-built summary").click()
+    assert page.cell(3).locator(".katex").first.is_visible()
+    page.cell(3).get_by_role("button", name="Bring back").click()
+    page.page.keyboard.press("Shift+Enter")
+    page.wait()
+    assert page.page.evaluate(RESULTS)[2] == before
+
+
+def test_questions_and_exits(shared):
+    assert "input() cannot ask" in shared.try_code(3, "input('Your name? ')")
+    assert "SystemExit" in shared.try_code(3, "import sys; sys.exit('enough')")
+    assert "still here" in shared.try_code(3, "print('still here')")
+
+
+def test_endless_printing_is_cut(shared):
+    text = shared.try_code(3, "for i in range(1_000_000):\n    print('line', i)")
+    assert "more characters, which are not shown" in text and "line 100" in text
+    assert len(text) < 100_000
+
+
+def test_infinite_recursion(shared):
+    text = shared.try_code(3, "def f(n):\n    return f(n + 1)\nf(0)")
+    assert "RecursionError" in text or "Python broke off" in text
+    assert len(text) < 5000
+    assert "and on" in shared.try_code(3, "print('and on')")
+
+
+def test_sleep(shared):
+    assert "awake" in shared.try_code(3, "import time\ntime.sleep(0.3)\nprint('awake')")
+
+
+def test_forms_of_values(shared):
+    shared.try_code(3, "class Reply:\n    def _repr_html_(self):\n        return '<p class=\"reply\">Right.</p>'\nReply()")
+    assert shared.cell(3).locator("p.reply").inner_text() == "Right."
+    shared.try_code(3, "import sympy as sm\nx = sm.Symbol('x')\ndisplay(x**2)\ndisplay(x/3, 'text')")
+    assert shared.cell(3).locator(".katex").count() == 2
+    assert "'text'" in shared.below(3)
+    shared.try_code(3, "from IPython.display import HTML, Math\ndisplay(HTML('<b>bold</b>'))\nMath(r'\\hat{a}_x')")
+    assert shared.cell(3).locator("b").count() == 1 and shared.cell(3).locator(".katex").count() == 1
+    figure = "<figure class=orientation-figure><svg role=img><title>A line of four words</title></svg></figure>"
+    shared.try_code(3, f"HTML({figure!r})")
+    assert shared.cell(3).locator("figure svg").count() == 1
+
+
+def test_orientation_and_coursework(shared):
+    code = "from orientation import dcm_from_body_fixed\nimport coursework, sympy as sm\n"
+    code += "dcm_from_body_fixed(sm.symbols('psi, theta, phi'), 'zxy').shape"
+    assert "(3, 3)" in shared.try_code(3, code).replace("\n", "") or shared.cell(3).locator(".katex").count()
+
+
+def solution(name):
+    """The instructors' code of one answer: the cell above its check."""
+    path = REPOSITORY / "tests" / "solutions" / f"{name.partition('/')[0]}.ipynb"
+    codes = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    (place,) = (number for number, code in enumerate(codes) if code.startswith(f"check('{name}'"))
+    return codes[place - 1]
+
+
+def test_exercise_is_checked_in_the_page(context, site):
+    name = "exercises/simple-orientations.html"
+    page = Page(context, site, name)
+    blank, check = 2, 3  # the first answer and its check
+    page.page.click(f"button.run-cell >> nth={check - 1}")
+    page.wait()
+    outcome = page.cell(check).locator("[data-outcome]")
+    assert outcome.get_attribute("data-outcome") == "not attempted"
+    right = solution("simple-orientations/crank")
+    for code, expected in (
+        (right, "correct"),
+        (f"{right}\nA_C_N = A_C_N.T", "wrong"),
+        (right, "correct"),
+    ):
+        page.write(blank, code)
+        page.page.click(f"button.run-cell >> nth={check - 1}")  # the edited cell above runs first
+        page.wait()
+        assert outcome.get_attribute("data-outcome") == expected, page.below(check)
+        if expected == "wrong":
+            assert "transpose" in page.below(check)
+    assert page.outside() == [] and page.errors == []
+
+
+# --- stopping and starting afresh -----------------------------------------------------------------
+
+ENDLESS = "kept = 'kept'\nprint('begun')\nwhile True:\n    pass"
+HUGE = "print('begun')\nimport sympy as sm\nM = sm.Matrix(60, 60, lambda i, j: sm.Symbol(f'a{i}{j}'))\nM.det(method='berkowitz')"
+ONE_STEP = "print('begun')\nmax(range(10 ** 15))"  # one operation, in which Python does not listen
+
+
+def stop(page, number, code):
+    """Run endless code, press Stop once it has begun, and return what stands below the cell then."""
+    page.try_code(number, code, wait=False)
+    page.page.wait_for_function(
+        "number => document.querySelectorAll('div.cell')[number - 1].querySelector('.cell_output').innerText.includes('begun')",
+        arg=number,
+    )
+    page.page.click(".live-bar button:has-text('Stop')")
+    page.wait()
+    return page.below(number)
+
+
+@pytest.mark.parametrize("code", [ENDLESS, HUGE])
+def test_stop_keeps_the_names_in_an_isolated_page(shared, code):
+    assert shared.page.evaluate("crossOriginIsolated")
+    shared.try_code(3, "kept = 'kept'")
+    text = stop(shared, 3, code)
+    assert "Stopped." in text and "still there" in text
+    assert "kept" in shared.try_code(3, "kept")
+
+
+def test_stop_ends_what_does_not_listen(shared):
+    assert "Stopped." in stop(shared, 3, ONE_STEP)
+    assert "here again" in shared.try_code(3, "print('here again')")
+
+
+def test_stop_in_a_page_without_shared_memory(context, not_isolated):
+    page = Page(context, not_isolated, QUIET)
+    assert not page.page.evaluate("crossOriginIsolated")
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    text = stop(page, 4, ENDLESS)
+    assert "Stopped." in text and "starts anew" in text
+    # The cells above run again first, so that their names are there.
+    text = page.try_code(4, "theta, kept if 'kept' in globals() else 'new'")
+    assert "new" in text and page.errors == []
+
+
+def test_start_afresh(context, site):
+    page = Page(context, site, QUIET)
+    before = page.page.evaluate(RESULTS)
+    page.run()
+    page.try_code(3, "gone = 1\nprint('something else')")
+    page.page.click(".live-bar button:has-text('Start afresh')")
+    assert page.page.evaluate(RESULTS) == before
+    assert "NameError" in page.try_code(3, "gone")
+
+
+# --- the reader's edits ---------------------------------------------------------------------------
+
+
+def test_edits_survive_a_reload_and_can_be_undone(browser, site):
+    context = browser.new_context()
+    page = Page(context, site, QUIET)
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    original = page.cell(3).locator(".cm-content").inner_text()
+    page.try_code(3, "print('mine')")
+    page.page.reload()
+    page.page.wait_for_selector(".cm-content", state="attached")
+    assert "print('mine')" in page.cell(3).locator(".cm-content").inner_text()
+    assert "Your edits are here again" in page.words()
+    assert not [url for url in page.asked[-20:] if url.endswith(".wasm")], "only the editor is loaded"
+    page.page.click(".live-bar button:has-text('Book’s code')")
+    assert page.cell(3).locator(".cm-content").inner_text() == original
+    page.page.reload()
+    page.page.wait_for_load_state("networkidle")
+    assert page.page.locator(".cm-content").count() == 0
+    opened.remove(page.page)
+    context.close()
+
+
+def test_edit_of_code_that_has_changed_is_offered(browser, site):
+    context = browser.new_context()
+    page = Page(context, site, QUIET)
+    edits = [{"number": 3, "original": "of another edition", "code": "print('old edit')"}]
+    key = f"code of {QUIET.removesuffix('.html')}"
+    page.page.evaluate("([key, edits]) => localStorage.setItem(key, JSON.stringify(edits))", [key, edits])
+    page.page.reload()
+    choice = page.page.locator(".live-choice")
+    choice.wait_for()
+    assert "has changed since you edited it" in choice.inner_text()
+    assert "old edit" not in page.cell(3).locator(".cm-content").inner_text()
+    choice.get_by_role("button", name="Use mine").click()
+    assert "old edit" in page.cell(3).locator(".cm-content").inner_text()
+    page.page.reload()
+    page.page.wait_for_selector(".cm-content", state="attached")
+    assert "old edit" in page.cell(3).locator(".cm-content").inner_text()
+    assert choice.count() == 0
+    opened.remove(page.page)
+    context.close()
+
+
+# --- keyboard, screen readers, small screens ------------------------------------------------------
+
+
+def test_keyboard(shared):
+    shared.page.locator(".cm-content").first.wait_for(state="attached")
+    shared.write(3, "if True:")
+    shared.page.keyboard.press("Enter")
+    shared.page.keyboard.type("print('by keyboard')")
+    shared.page.keyboard.press("Control+Enter")
+    shared.wait()
+    assert "by keyboard" in shared.below(3)
+    shared.page.keyboard.press("Escape")
+    focused = "document.activeElement.getAttribute('aria-label')"
+    assert shared.page.evaluate(focused) == "Run cell 3"
+    shared.page.keyboard.press("Tab")
+    assert shared.page.evaluate(focused) != "Code of cell 3"
+
+
+@pytest.mark.parametrize(("theme", "width"), [("light", 1300), ("dark", 380)])
+def test_accessible_in_use(browser, site, theme, width):
+    with Visit(browser, site, QUIET, theme, {"width": width, "height": 800}) as visit:
+        page = visit.page
+        page.route(ELSEWHERE, lambda route: route.abort())
+        page.click("button.run-page")
+        page.wait_for_selector("html.live-busy", state="attached")
+        assert violations(page) == []
+        page.wait_for_function(RAN, timeout=120_000)
+        page.locator(".cm-content").nth(2).focus()
+        page.keyboard.press("Control+a")
+        page.keyboard.insert_text("print('a' * 500)\nthis_is_not_a_name")
+        page.keyboard.press("Shift+Enter")
+        page.wait_for_selector(".live-error")
+        page.wait_for_function(RAN)
+        assert violations(page) == []
+        sideways = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+        assert page.evaluate(sideways) <= 0
+
+
+def test_page_from_disk_says_what_to_do(browser):
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto((HTML / QUIET).as_uri())
+    page.click("button.run-page")
+    assert "python serve.py" in page.inner_text("#live-words")
+    context.close()
+
+
+# --- without NumPy, and the same forms as IPython's -----------------------------------------------
+
+WITHOUT_NUMPY = """
+import sys
+for name in ("numpy", "matplotlib", "scipy", "anywidget", "IPython"):
+    sys.modules[name] = None
+import coursework
+import orientation
+import sympy as sm
+psi, theta, phi = sm.symbols("psi, theta, phi", real=True)
+dcm = orientation.dcm_from_body_fixed((psi, theta, phi), "zxy")
+assert orientation.same_orientation(dcm.T.T, dcm)
+assert orientation.simple_dcm("z", psi) * orientation.simple_dcm("z", psi).T != 0
+try:
+    orientation.dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy")
+except ImportError as error:
+    print("numbers need", error.name)
+"""
+
+
+def test_symbols_need_no_numpy():
+    done = subprocess.run([sys.executable, "-c", WITHOUT_NUMPY], capture_output=True, text=True)
+    assert (done.returncode, done.stdout.strip()) == (0, "numbers need numpy"), done.stderr
+
+
+def test_pages_that_need_numpy_do_not_import_it_in_vain():
+    """A cell that only imports NumPy for later ones runs without it."""
+    cells = nbformat.read(REPOSITORY / "appendix" / "solutions.ipynb", as_version=4).cells
+    first = next(cell for cell in cells if cell.cell_type == "code")
+    assert "import numpy as np" in first.source
+    assert kinds("appendix/solutions.html")[0]["needs"] == []
