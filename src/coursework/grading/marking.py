@@ -6,10 +6,8 @@ reached by the same functions. An answer that cannot be decided is put aside for
 as wrong; nothing is earned by default.
 """
 
-import concurrent.futures
 import hashlib
 import json
-import multiprocessing
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -63,29 +61,16 @@ def _canonical_of(question):
 def load_questions(paths, kept):
     """The questions of several notebooks with solutions, by name.
 
-    A source takes a second or two to be worked out; what came of it is kept in the folder ``kept`` under a
-    name that follows from its bytes and from ours.
+    What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
+    notebook and of this package.
     """
-    kept = Path(kept)
-    kept.mkdir(parents=True, exist_ok=True)
-    ours = _digest_of_package()
-    places = {path: kept / f'{Path(path).stem}-{hashlib.sha256(ours + Path(path).read_bytes()).hexdigest()[:16]}.json'
-              for path in paths}
-    missing = [path for path in paths if not places[path].exists()]
-    for path, questions in zip(missing, _questions_of_each(missing)):
-        write(places[path], json.dumps(questions, ensure_ascii=False))
-    found = {}
-    for path in paths:
-        found.update(json.loads(places[path].read_text('utf8')))
+    ours, found = _digest_of_package(), {}
+    for path in map(Path, paths):
+        place = Path(kept) / f'{path.stem}-{hashlib.sha256(ours + path.read_bytes()).hexdigest()[:16]}.json'
+        if not place.exists():
+            write(place, json.dumps(questions_of(path), ensure_ascii=False))
+        found.update(json.loads(place.read_text('utf8')))
     return found
-
-
-def _questions_of_each(paths):
-    if len(paths) < 2:
-        return map(questions_of, paths)
-    context = multiprocessing.get_context('spawn')
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), 4), mp_context=context) as pool:
-        return list(pool.map(questions_of, paths))
 
 
 def _digest_of_package():

@@ -1,0 +1,153 @@
+"""Grading a class: ours, nbgrader and plain nbclient on the same notebooks: ``python -m benchmarks.grading``.
+
+The class is the sample class: 200 notebooks of ten questions with their mistakes, broken cells and attacks. The
+whole of it goes through ``coursework grade`` with two workers, from an empty folder to the report. The others are
+given the first honest notebooks of it, one after the other, as they work; nbclient runs the cells and grades
+nothing. Processor times count all processes, and do not depend on what else the machine does; times by the clock do.
+"""
+
+import argparse
+import contextlib
+import io
+import json
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from coursework.grading.grade import grade
+from coursework.grading.sample_class import make_class
+
+NOTEBOOKS = ('reference-frames', 'unit-quaternions')
+ASSIGNMENT = 'homework'
+CONFIGURATION = """c = get_config()
+c.CourseDirectory.root = {root!r}
+c.ExecutePreprocessor.kernel_name = 'python3'
+c.Exchange.enabled = False
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--students', type=int, default=200)
+    parser.add_argument('--sample', type=int, default=8, help='how many notebooks the others are given')
+    parser.add_argument('--workers', type=int, default=2)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as place:
+        place = Path(place)
+        submissions = make_class(place, options.students, 1, NOTEBOOKS)
+        about = json.loads((place / 'expected.json').read_text())
+        questions = len(next(iter(about.values()))['questions'])
+        good = [student for student in about if not any(did.startswith(('hostile', 'refused')) for did in about[student]['did'])]
+        honest = _only(good, submissions, place / 'honest')
+        start = of_grading(_only(good[:options.workers], submissions, place / 'few'), place, options.workers)
+        ours = of_grading(honest, place, options.workers)
+        paths = [next((honest / student).glob('*.ipynb')) for student in good]
+        alone = of_cells(paths)
+        sample = [next((honest / student).glob('*.ipynb')) for student in good if not about[student]['did']][:options.sample]
+        rows = (
+            ('coursework grade: all, with the attacks', *of_grading(submissions, place, options.workers)),
+            ('coursework grade: the honest ones', *ours),
+            ('their cells alone, in one warm process', *alone),
+            ('nbclient, which grades nothing', *of_nbclient(sample)),
+            ('nbgrader autograde', *of_nbgrader(sample, place)),
+        )
+        print(f'{options.students} notebooks of {questions} questions, {options.workers} workers.\n')
+        print('| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times ours, processor |')
+        print('|---|---|---|---|---|---|---|')
+        own = ours[1] / ours[0], ours[2] / ours[0]
+        for what, count, clock, processor in rows:
+            print(f'| {what} | {count} | {clock:.1f} s | {1000 * clock / count:.0f} ms | {1000 * processor / count:.0f} ms '
+                  f'| {clock / count / own[0]:.2g} | {processor / count / own[1]:.2g} |')
+        each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
+        print(f'\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor time. Beyond it and beyond the cells '
+              f'a notebook costs {1000 * each:.0f} ms of processor time.')
+
+
+def _only(students, submissions, place):
+    """A copy of the submissions of some students."""
+    for student in students:
+        shutil.copytree(submissions / student, place / student)
+    return place
+
+
+@contextlib.contextmanager
+def measured():
+    """The seconds by the clock and of processor time, of this process and all that it waited for."""
+    def used():
+        return sum(usage.ru_utime + usage.ru_stime for usage in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+
+    seconds, clock, processor = [], time.perf_counter(), used()
+    yield seconds
+    seconds += [time.perf_counter() - clock, used() - processor]
+
+
+def of_grading(submissions, place, workers):
+    out = Path(tempfile.mkdtemp(dir=place))
+    with measured() as seconds:
+        done = grade(submissions, out, assignments={ASSIGNMENT: list(NOTEBOOKS)}, workers=workers, show=io.StringIO())
+    return done['graded'], *seconds
+
+
+def of_cells(paths):
+    """Run the code of notebooks in one process that has loaded everything, with a check that does nothing."""
+    code = ('import io, json, sys, contextlib, types, warnings\n'
+            'import sympy, numpy, sympy.physics.mechanics, orientation\n'
+            'warnings.simplefilter("ignore")\n'
+            'sys.modules["coursework"] = types.SimpleNamespace(check=lambda *answers: None)\n'
+            'def run(path):\n'
+            '    names = {"__name__": "__main__"}\n'
+            '    for cell in json.load(open(path))["cells"]:\n'
+            '        if cell["cell_type"] == "code":\n'
+            '            with contextlib.suppress(Exception), contextlib.redirect_stdout(io.StringIO()):\n'
+            '                exec(compile("".join(cell["source"]), "cell", "exec"), names)\n'
+            'import resource, time\n'
+            'run(sys.argv[1])\n'
+            'start = time.perf_counter(), time.process_time()\n'
+            'for path in sys.argv[1:]:\n'
+            '    run(path)\n'
+            'print(time.perf_counter() - start[0], time.process_time() - start[1])\n')
+    said = subprocess.run([sys.executable, '-W', 'ignore', '-c', code, *map(str, paths)], check=True, capture_output=True, text=True)
+    return len(paths), *map(float, said.stdout.split())
+
+
+def of_nbclient(paths):
+    import nbformat
+    from nbclient import NotebookClient
+    with measured() as seconds:
+        for path in paths:
+            NotebookClient(nbformat.read(path, as_version=4), kernel_name='python3', allow_errors=True).execute()
+    return len(paths), *seconds
+
+
+def of_nbgrader(paths, place):
+    """nbgrader's own commands; what its gradebook needs to know of the assignment is made before, and not timed."""
+    course = place / 'course'
+    name = paths[0].name
+    for path in paths:
+        folder = course / 'submitted' / path.parent.name / ASSIGNMENT
+        folder.mkdir(parents=True)
+        shutil.copy(path, folder / name)
+    (course / 'source' / ASSIGNMENT).mkdir(parents=True)
+    shutil.copy(paths[0], course / 'source' / ASSIGNMENT / name)
+    (course / 'nbgrader_config.py').write_text(CONFIGURATION.format(root=str(course)))
+    environment = {**os.environ, 'PATH': f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}',
+                   'JUPYTER_CONFIG_DIR': str(course), 'PYTHONWARNINGS': 'ignore'}
+
+    def run(*command):
+        done = subprocess.run([sys.executable, '-m', 'nbgrader', *command], cwd=course, env=environment, capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(done.stderr[-3000:])
+
+    run('generate_assignment', ASSIGNMENT, '--force')
+    with measured() as seconds:
+        run('autograde', ASSIGNMENT)
+    return len(paths), *seconds
+
+
+if __name__ == '__main__':
+    main()
