@@ -62,7 +62,7 @@ def test_the_exercise_has_blanks_where_the_solution_was(trial):
 
 def test_a_figure_becomes_a_picture_with_its_text(trial):
     picture = nbformat.read(trial / 'exercises' / 'trial.ipynb', as_version=4).cells[2].source
-    text, data = re.fullmatch(r'<img alt="(.*)" width="\d+" src="data:image/svg\+xml;base64,(.*)">', picture).groups()
+    text, data = re.fullmatch(r'<p><img alt="(.*)" width="\d+" src="data:image/svg\+xml;base64,(.*)"></p>', picture).groups()
     assert 'long enough to stand for the picture' in text
     assert base64.b64decode(data).startswith(b'<svg xmlns=')
 

@@ -242,7 +242,7 @@ def _image(drawing):
                f'<g class="orientation-figure">{inner.replace("<svg ", f"<svg x={chr(34)}{left}{chr(34)} y={chr(34)}{top}{chr(34)} width={chr(34)}{width}{chr(34)} height={chr(34)}{height}{chr(34)} ", 1)}</g></svg>')
     data = base64.b64encode(picture.encode('utf8')).decode('ascii')
     # As HTML: Markdown readers that are careful refuse this kind of address in an image of their own.
-    return f'<img alt="{html.escape(drawing.alt)}" width="{width}" src="data:image/svg+xml;base64,{data}">'
+    return f'<p><img alt="{html.escape(drawing.alt)}" width="{width}" src="data:image/svg+xml;base64,{data}"></p>'
 
 
 def run_notebook(notebook, folder):
