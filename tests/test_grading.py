@@ -48,6 +48,8 @@ def students():
     yield "nearly", handed_in(sum="sine = sm.sin(alpha + beta)*1.0004")
     yield "warns", handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)")
     yield "corrects", handed_in(sum="sine = -sm.sin(alpha + beta)", also=[RIGHT["turns/sum"], "check('turns/sum', sine)"])
+    yield "blank-again", handed_in(also=["sine = ...\ncheck('turns/sum', sine)"])
+    yield "later", handed_in(sum="sine = ...", also=[RIGHT["turns/sum"]])
     yield "=1+1", handed_in(sum=f"sine = sm.Symbol('{SCRIPT}')")
     yield SCRIPT.replace("/", ""), handed_in(
         doubled=f"def doubled(x):\n    raise ValueError('{SCRIPT} $\\\\href{{javascript:alert(1)}}{{x}}$ ` `')",
@@ -65,7 +67,7 @@ def course(tmp_path_factory):
     put(submissions, SCRIPT.replace("/", ""), "no notebook", "answers.pdf")
     (submissions / "refused" / "link.ipynb").symlink_to(submissions / "right" / "turns.ipynb")
     said = grade(submissions, place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
-    assert said == {"graded": 13, "kept": 0, "refused": 3}
+    assert said == {"graded": 15, "kept": 0, "refused": 3}
     return place
 
 
@@ -115,6 +117,8 @@ def contents(folder):
     ("nearly", ["correct", "undecided", "correct"], 5),
     ("warns", ["correct"] * 3, 6),
     ("corrects", ["correct"] * 3, 6),
+    ("blank-again", ["correct"] * 3, 6),
+    ("later", ["correct"] * 3, 6),
     ("=1+1", ["correct", "invalid", "correct"], 5),
     (SCRIPT.replace("/", ""), ["correct", "correct", "invalid"], 3),
 ])
@@ -168,7 +172,7 @@ class Tags(HTMLParser):
 
 def test_pages_hold_nothing_that_could_run_or_load(course):
     paths = [*(course / "out").rglob("*.html")]
-    assert len(paths) == 14
+    assert len(paths) == 16
     for path in paths:
         tags = Tags()
         tags.feed(path.read_text("utf8"))
@@ -225,9 +229,9 @@ def test_an_answer_is_printed_in_bounded_length():
 def test_the_report_tells_what_was_misunderstood(course):
     text = re.sub(r"<[^>]+>", " ", (course / "out" / "report.html").read_text("utf8"))
     text = " ".join(text.split())
-    assert "13 students" in text
-    assert "8 % gave the transpose in question 1, about x (1 of 13)" in text
-    assert "8 % gave the opposite in question 2, sum (1 of 13)" in text
+    assert "15 students" in text
+    assert "7 % gave the transpose in question 1, about x (1 of 15)" in text
+    assert "7 % gave the opposite in question 2, sum (1 of 15)" in text
     assert "link to another place" in text and "not well-formed JSON" in text
     assert "agrees with the right one to about three digits" in text
 
@@ -267,17 +271,17 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     (out / "records" / "right").mkdir(exist_ok=True)
     (out / "records" / "right" / ".half-written").write_text("{")
     said = grade(course / "submissions", out, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
-    assert 3 <= done < 13 and said == {"graded": 13 - done, "kept": done, "refused": 3}
+    assert 3 <= done < 15 and said == {"graded": 15 - done, "kept": done, "refused": 3}
     lines = graded_lines(out)
     # The last one may have been recorded and not yet logged when the run was killed.
-    assert len(set(lines)) == len(lines) and len(lines) in (12, 13)
+    assert len(set(lines)) == len(lines) and len(lines) in (14, 15)
     assert contents(out) == contents(course / "out")
 
 
 def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
     monkeypatch.setattr("coursework.grading.sandbox.run_notebooks", lambda *arguments, **options: pytest.fail("it was run"))
     said = grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
-    assert said == {"graded": 0, "kept": 13, "refused": 3}
+    assert said == {"graded": 0, "kept": 15, "refused": 3}
     assert contents(copied) == contents(course / "out")
 
 
@@ -285,7 +289,7 @@ def test_what_changed_is_graded_again(course, copied, tmp_path):
     submissions = shutil.copytree(course / "submissions", tmp_path / "submissions", symlinks=True)
     put(submissions, "right", handed_in(sum="sine = 0"))
     said = grade(submissions, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
-    assert said == {"graded": 1, "kept": 12, "refused": 3}
+    assert said == {"graded": 1, "kept": 14, "refused": 3}
     assert Store(copied).read("right", "turns")["points"] == 5
 
 
@@ -349,7 +353,7 @@ def test_a_cluster_that_loses_a_worker_changes_no_byte(course, prepared):
         finally:
             over.set()
             killer.join()
-    assert lost and said["graded"] == 13
+    assert lost and said["graded"] == 15
     assert contents(prepared) == contents(course / "out")
 
 

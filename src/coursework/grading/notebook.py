@@ -174,7 +174,7 @@ class _Notebook:
         if end["outcome"] != "done":
             found.pop("plain", None)
             self.emit(found | {"unreadable": end["error"]})
-        elif "plain" in found:
+        elif "plain" in found and found["plain"]["value"] != ["blank"]:
             self.answered.add(question)
 
     def calls(self, question):

@@ -323,7 +323,7 @@ class _Run:
     def result(self):
         number = len(self.job["cells"])
         cells, answers, finished = self.in_order(list(range(number)))
-        if any(self.has_not(answers, question) for question in self.questions) and any(
+        if any(has_not(answers, question) for question in self.questions) and any(
                 cell.get("error", "").startswith("NameError") for cell in cells.values()):
             self.try_order_of_execution(answers)
         if self.damaged:
@@ -340,11 +340,6 @@ class _Run:
             "isolation": self.sandbox.isolation_in_force(),
         }
 
-    @staticmethod
-    def has_not(answers, question):
-        answer = answers.get(question, {})
-        return answer.get("outcome") != "recorded" or answer["plain"]["value"] == ["blank"]
-
     def try_order_of_execution(self, answers):
         """Fill in the answers that the notebook gives only in the order in which its cells once ran."""
         cells = self.job["cells"]
@@ -357,7 +352,7 @@ class _Run:
         if order == list(range(len(cells))):
             return
         _, others, _ = self.in_order(order)
-        gained = [q for q in self.questions if self.has_not(answers, q) and not self.has_not(others, q)]
+        gained = [q for q in self.questions if has_not(answers, q) and not has_not(others, q)]
         for question in gained:
             answers[question] = others[question]
         if gained:
@@ -393,6 +388,12 @@ class _Run:
                 break
             skip = [*skip, culprit]
         return cells, answers, finished
+
+
+def has_not(answers, question):
+    """Whether there is no answer yet to a question: a blank is none."""
+    answer = answers.get(question, {})
+    return answer.get("outcome") != "recorded" or answer["plain"]["value"] == ["blank"]
 
 
 class _Once:
@@ -518,7 +519,7 @@ class _Once:
             answer = {"outcome": "recorded", "plain": record["plain"]} if "plain" in record else {
                 "outcome": "unreadable", "why": record["unreadable"]}
             answer |= {"from": record["from"], "cell": record["cell"]}
-            if "plain" in record or "plain" not in self.answers.get(question, {}):
+            if not has_not({question: answer}, question) or has_not(self.answers, question):
                 self.answers[question] = answer
         elif "done" in record and not self.finished:
             self.finished = True
