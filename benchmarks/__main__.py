@@ -1,7 +1,7 @@
 """One table of ratios, all measured in this run: ``python -m benchmarks``.
 
 Pages have a table of their own, for which the book must be built: ``python -m benchmarks.pages``; so have the
-figures that move: ``python -m benchmarks.moving``.
+figures that move: ``python -m benchmarks.moving``, and grading: ``python -m benchmarks.grading``.
 """
 
 import itertools
