@@ -2,7 +2,8 @@
 
 One chapter of the book as ``make book`` built it, in headless Chromium, from a local server. Cold is a fresh browser with
 an empty cache; warm is a new visit in the same browser. The time runs from the press on the first SymPy cell's Run until
-its formula is typeset on the page. What each later cell costs beyond its own work is the time of an assignment:
+its formula is typeset on the page. Beside it stands the time of the bare runtime in the same browser: Pyodide started
+in a worker, and SymPy imported. What each later cell costs beyond its own work is the time of an assignment:
 code, message, outcome and page together.
 """
 
@@ -30,17 +31,31 @@ FLAGS = ['--no-sandbox', '--disable-background-networking', '--disable-component
 # Milliseconds from the press on a cell's Run until the cell has run and the page is painted.
 PRESS = """
 (number) => new Promise((resolve) => {
-  const cell = document.querySelectorAll('div.cell')[number];
+  const root = document.documentElement, start = performance.now();
+  const watch = new MutationObserver(() => {
+    if (root.classList.contains('live-busy')) return;
+    watch.disconnect();
+    requestAnimationFrame(() => resolve(performance.now() - start));
+  });
+  document.querySelectorAll('div.cell button.run-cell')[number].click();
+  watch.observe(root, { attributeFilter: ['class'] });
+})
+"""
+# Milliseconds until a worker of its own, with nothing of the book, has imported SymPy.
+BARE = """
+(runtime) => new Promise((resolve, reject) => {
   const start = performance.now();
-  let begun = false;
-  const look = () => {
-    const busy = document.documentElement.classList.contains('live-busy');
-    begun ||= busy;
-    if (begun && !busy) requestAnimationFrame(() => resolve(performance.now() - start));
-    else setTimeout(look, 2);
+  const program = `
+    import { loadPyodide } from "${runtime}pyodide/pyodide.mjs";
+    const python = await loadPyodide({ lockFileURL: "${runtime}pyodide-lock.json", packages: ["sympy"] });
+    python.runPython("import sympy");
+    postMessage("imported");`;
+  const worker = new Worker(URL.createObjectURL(new Blob([program], { type: "text/javascript" })), { type: "module" });
+  worker.onerror = (event) => reject(new Error(event.message));
+  worker.onmessage = () => {
+    worker.terminate();
+    resolve(performance.now() - start);
   };
-  cell.querySelector('button.run-cell').click();
-  look();
 })
 """
 FIRST_SYMPY = """
@@ -70,6 +85,15 @@ def visit(context, address):
     return page, number, seconds, asked[before:]
 
 
+def bare(context, site):
+    """Seconds until SymPy is imported without the book around it."""
+    page = context.new_page()
+    page.goto(f'{site}search.html')
+    seconds = page.evaluate(BARE, f'{site}runtime/') / 1000
+    page.close()
+    return seconds
+
+
 def cell_overhead(page, number):
     """Median milliseconds of a cell that does nothing but give a name a value."""
     page.evaluate(WRITE, [number, 'a = 1'])
@@ -91,10 +115,16 @@ def main():
         sys.exit('The book is not built: run `make book` first.')
     book = server(folder=SITE)
     threading.Thread(target=book.serve_forever, daemon=True).start()
-    address = f'http://127.0.0.1:{book.server_port}/{PAGE}.html'
-    cold, warm, overheads = [], [], []
+    site = f'http://127.0.0.1:{book.server_port}/'
+    address = f'{site}{PAGE}.html'
+    cold, warm, overheads, bare_cold, bare_warm = [], [], [], [], []
     with sync_playwright() as playwright:
         for _ in range(ROUNDS):
+            with tempfile.TemporaryDirectory() as profile:
+                context = playwright.chromium.launch_persistent_context(profile, executable_path=executable, args=FLAGS)
+                bare_cold.append(bare(context, site))
+                bare_warm.append(bare(context, site))
+                context.close()
             with tempfile.TemporaryDirectory() as profile:
                 context = playwright.chromium.launch_persistent_context(profile, executable_path=executable, args=FLAGS)
                 page, number, seconds, asked = visit(context, address)
@@ -107,7 +137,8 @@ def main():
                 context.close()
     print('| what | median | of', ROUNDS, '|')
     print('|---|---|---|')
-    for what, values, unit in (('first SymPy result, cold', cold, 's'), ('first SymPy result, warm', warm, 's'),
+    for what, values, unit in (('first SymPy result, cold', cold, 's'), ('bare runtime and SymPy, cold', bare_cold, 's'),
+                               ('first SymPy result, warm', warm, 's'), ('bare runtime and SymPy, warm', bare_warm, 's'),
                                ('each later cell, beyond its own work', overheads, 'ms')):
         every = ', '.join(f'{value:.2f}' for value in sorted(values))
         print(f'| {what} | {statistics.median(values):.2f} {unit} | {every} |')

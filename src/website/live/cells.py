@@ -123,12 +123,22 @@ def names_taken(code):
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - imported
 
 
-def classify(cells, strict=True):
+def needs_of_names(names, codes, kinds):
+    """What the cells need, of ``codes`` and ``kinds``, that gave ``names`` their last meaning."""
+    needs = set()
+    for code, kind in zip(reversed(codes), reversed(kinds)):
+        bound = names_bound(code)
+        if names & bound:
+            needs |= set(kind["needs"])
+        names = names - bound
+    return needs
+
+
+def classify(cells):
     """For each code cell what it needs beyond SymPy, and whether a run of the page may leave it out.
 
     A run leaves out a cell that only draws a figure, needs more for it, and gives names to other such cells
-    at most: its picture is there already. With ``strict``, a result that differs from the stored one without such
-    a reason is an error.
+    at most: its picture is there already. A result that differs from the stored one without such a reason is an error.
     """
     codes = [cell.source for cell in cells]
     kinds = []
@@ -136,16 +146,14 @@ def classify(cells, strict=True):
         outcome = told["outcome"]
         same = outcome["status"] == "ok" and outputs_of_messages(told["messages"]) == stored_outputs(cell)
         needs = set()
-        if outcome["status"] == "missing":
-            needs = {outcome["package"]}
-        elif not same:
-            used = names_taken(cell.source)
-            for earlier in reversed(range(position)):
-                if kinds[earlier]["needs"] and used & names_bound(codes[earlier]):
-                    needs |= set(kinds[earlier]["needs"])
-            if not needs and strict:
+        if not same:
+            needs = needs_of_names(names_taken(cell.source), codes[:position], kinds)
+            if outcome["status"] == "missing":
+                needs.add(outcome["package"])
+            if not needs:
                 raise RuntimeError(
-                    f"cell {position + 1} gives another result in the page than the stored one (is that one old? `make notebooks`):\n"
+                    f"cell {position + 1} gives another result in the page than the stored one "
+                    f"(is that one old? `make notebooks`):\n"
                     f"{cell.source}\n{outcome.get('traceback', told['messages'])}"
                 )
         kinds.append({"needs": sorted(needs), "figure": "hide-input" in cell.metadata.get("tags", [])})
@@ -162,8 +170,7 @@ def kinds_of_cells():
     """The kinds of the code cells of every notebook, by the names of the pages."""
     from ..notebooks import all_notebooks
 
-    exercises = sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))
-    notebooks = [*all_notebooks(REPOSITORY), *exercises]
+    notebooks = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
     inputs = fingerprint(
         Path(__file__), PYTHON, *notebooks, REPOSITORY / "constraints.txt",
         REPOSITORY / "src" / "orientation", REPOSITORY / "src" / "coursework",
@@ -173,8 +180,7 @@ def kinds_of_cells():
         def classify_page(path):
             notebook = nbformat.read(path, as_version=4)
             try:
-                cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-                return classify(cells, strict=path not in exercises)
+                return classify([cell for cell in notebook.cells if cell.cell_type == "code"])
             except RuntimeError as error:
                 raise RuntimeError(f"{path}: {error}") from None
 

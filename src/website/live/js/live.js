@@ -20,9 +20,13 @@ class Page {
       "Start afresh": () => this.reset(),
       "Book’s code": () => this.undoEdits(),
     });
-    for (const cell of this.cells) cell.edit();
     this.bring();
     this.show();
+  }
+
+  // The editors are made while Python is being loaded, which takes longer.
+  edit() {
+    for (const cell of this.cells) cell.edit();
   }
 
   // --- the reader's edits ----------------------------------------------------------------------
@@ -46,7 +50,10 @@ class Page {
       else this.unplaced.push(edit);
     }
     for (const edit of this.unplaced) this.offer(edit);
-    if (edits.length) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
+    if (edits.length) {
+      this.edit();
+      this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
+    }
   }
 
   offer(edit) {
@@ -120,6 +127,7 @@ class Page {
     this.bar.say("Python is being loaded ...");
     this.python = new Python(this.runtime, (message, cell) => this.hear(message, cell));
     const { python } = this;
+    setTimeout(() => this.edit());
     try {
       this.has = await python.ready;
     } catch (error) {
