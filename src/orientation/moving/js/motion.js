@@ -309,7 +309,7 @@ export function render({ model, el }) {
       moment.mark(refused ? 'refused' : '');
     });
     AXES.forEach((about, k) => write(ranks[k], `${about} (${rank(settings.moments, k)})`));
-    writeWords(aside, `Dashed: the reference, with steps ten times finer. $\\mathbf{H}$: angular momentum of the ${body}, fixed in $N$.`);
+    writeWords(aside, `Dashed: the reference, with steps ten times finer. The arrow $\\mathbf{H}$ is the angular momentum of the ${body}, which keeps its direction.`);
     axis.show(settings.axis);
     method.show(settings.method);
     step.show(settings.step);

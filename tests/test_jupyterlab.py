@@ -1,0 +1,182 @@
+"""All moving figures in JupyterLab itself: Python's attributes and the figures move together."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+import urllib.request
+
+import nbformat
+import pytest
+from figure_pages import FIGURES, KINDS
+
+pytest.importorskip("jupyterlab")
+from jupyter_client import BlockingKernelClient  # noqa: E402
+
+TOKEN = "figures"
+PATIENCE = 120  # seconds, for a busy machine; nothing waits longer than it must
+# What Python sets, and where the figure then shows it.
+SET = {
+    "triad": ("angle", 0.3, "theta in degrees", 17.19),
+    "gimbal": ("angles", (0.3, 0.2, 0.1), "psi in degrees", 17.19),
+    "nine_numbers": ("matrix", ((0, 1, 0), (-1, 0, 0), (0, 0, 1)), "row x, column y", 1),
+    "successive": ("turns", (("z", 0.3),), "Turn 1, to frame A in degrees", 17.19),
+    "quaternion": ("angle", 0.3, "theta in degrees", 17.19),
+    "motion": ("time", 3.0, "Time in seconds", 3),
+}
+FIRST_CELL = f"""
+from orientation import moving
+figures = {{name: getattr(moving, figure)() for name, figure in {({kind: FIGURES[kind].__name__ for kind in KINDS})!r}.items()}}
+heard = []
+for name, figure in figures.items():
+    figure.observe(lambda change, name=name: heard.append((name, change.name, change.new)), list(figure.state()))
+"""
+
+
+@pytest.fixture(scope="module")
+def laboratory(tmp_path_factory):
+    """The address of a JupyterLab of our own, with a notebook that shows every figure."""
+    folder = tmp_path_factory.mktemp("laboratory")
+    cells = [FIRST_CELL, *(f"figures[{kind!r}]" for kind in KINDS), "explorer = moving.SequenceExplorer('zyx')\nexplorer"]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source, id=f"c{k}") for k, source in enumerate(cells)])
+    notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    nbformat.write(notebook, folder / "figures.ipynb")
+    # Every cell stands in the page, also those out of sight; no questions about news.
+    for name, values in (("notebook-extension/tracker", {"windowingMode": "none"}),
+                         ("apputils-extension/notification", {"fetchNews": "false", "checkForUpdates": False})):
+        file = folder / "settings" / "@jupyterlab" / f"{name}.jupyterlab-settings"
+        file.parent.mkdir(parents=True)
+        file.write_text(json.dumps(values), "utf8")
+    homes = ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR", "IPYTHONDIR")
+    places = {name: str(folder / name.lower()) for name in homes}
+    environment = os.environ | places | {"JUPYTERLAB_SETTINGS_DIR": str(folder / "settings"), "JUPYTER_PREFER_ENV_PATH": "1"}
+    with (folder / "log").open("w") as log:
+        server = subprocess.Popen(
+            [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--port=0", "--ip=127.0.0.1",
+             f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={folder}", "--LabApp.expose_app_in_browser=True"],
+            env=environment, stdout=log, stderr=log)  # fmt: skip
+        try:
+            yield folder, wait_for_address(server, folder)
+        finally:
+            server.terminate()
+            server.wait()
+
+
+def wait_for_address(server, folder):
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        for file in (folder / "jupyter_runtime_dir").glob("jpserver-*.json"):
+            if file.name.endswith(f"{server.pid}.json") and (text := file.read_text("utf8")).endswith("}"):
+                return json.loads(text)["url"]
+        if server.poll() is not None:
+            break
+        time.sleep(0.1)
+    pytest.fail(f"JupyterLab does not start: {(folder / 'log').read_text('utf8')[-2000:]}")
+
+
+class Kernel:
+    """The notebook's own kernel, asked directly."""
+
+    def __init__(self, folder, address):
+        sessions = json.load(urllib.request.urlopen(f"{address}api/sessions?token={TOKEN}"))
+        file = folder / "jupyter_runtime_dir" / f"kernel-{sessions[0]['kernel']['id']}.json"
+        self.client = BlockingKernelClient(connection_file=str(file))
+        self.client.load_connection_file()
+        self.client.start_channels()
+        self.client.wait_for_ready(timeout=PATIENCE)
+
+    def run(self, code):
+        reply = self.client.execute_interactive(code, store_history=False, timeout=PATIENCE, allow_stdin=False,
+                                                output_hook=lambda message: None)["content"]  # fmt: skip
+        assert reply["status"] == "ok", reply
+
+    def value(self, code):
+        reply = self.client.execute(
+            "", store_history=False, reply=True, timeout=PATIENCE, user_expressions={"value": f"__import__('json').dumps({code})"})
+        return json.loads(eval(reply["content"]["user_expressions"]["value"]["data"]["text/plain"]))
+
+
+# What Lab itself waits for before a reader can run a cell.
+RUN_ALL = """async () => {
+  const picture = () => new Promise((done) => requestAnimationFrame(done)), { shell, commands, restored } = window.jupyterapp;
+  await restored;
+  while (!shell.currentWidget?.sessionContext) await picture();
+  const { context, revealed, sessionContext } = shell.currentWidget;
+  await Promise.all([context.ready, revealed, sessionContext.ready]);
+  while (sessionContext.session?.kernel?.status !== 'idle') await picture();
+  commands.execute('notebook:run-all-cells');
+}"""
+DRAWN = "cell => [...cell.querySelectorAll('.marks path')].map(mark => mark.getAttribute('d')).join()"
+
+
+def test_python_and_every_figure_move_together(browser, laboratory):
+    folder, address = laboratory
+    context = browser.new_context(viewport={"width": 1300, "height": 1000})
+    context.set_default_timeout(1000 * PATIENCE)
+    page, faults, asked = context.new_page(), [], []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("request", lambda request: request.url.startswith((address, "data:", "blob:")) or asked.append(request.url))
+    page.goto(f"{address}lab/tree/figures.ipynb?token={TOKEN}")
+    page.wait_for_function("document.querySelectorAll('.jp-CodeCell').length > 7 && window.jupyterapp")
+    page.evaluate(RUN_ALL)
+    page.wait_for_function("document.querySelectorAll('.jp-OutputArea-output .moving .sheet').length >= 6")
+    kernel = Kernel(folder, address)
+    cells = page.locator(".jp-CodeCell")
+
+    def until(change, was):
+        """Wait until the value in Python is another."""
+        for _ in range(1000):
+            if (now := kernel.value(change)) != was:
+                return now
+            page.wait_for_timeout(50)
+        pytest.fail(f"{change} stays {was}")
+
+    for number, kind in enumerate(KINDS, start=1):
+        cell, (name, value, label, shown) = cells.nth(number), SET[kind]
+        element = cell.element_handle()
+        cell.locator(".sheet").first.scroll_into_view_if_needed()
+        before = page.evaluate(DRAWN, element)
+        # Python moves the figure.
+        kernel.run(f"figures[{kind!r}].{name} = {value!r}")
+        field = cell.get_by_label(label, exact=True).first
+        page.wait_for_function("([field, value]) => Math.abs(field.value - value) < 0.01", arg=[field.element_handle(), shown])
+        page.wait_for_function(f"([cell, before]) => ({DRAWN})(cell) !== before", arg=[element, before])
+        assert kernel.value("heard[-1][:2]") == [kind, name]
+        # Keys move Python, and nothing else of the notebook.
+        count = kernel.value("len(heard)")
+        control = cell.locator("input[type=range]:visible, .entries input").first
+        control.focus()
+        page.keyboard.press("ArrowDown")
+        count = until("len(heard)", count)
+        assert kernel.value("heard[-1][0]") == kind
+        assert page.evaluate("document.activeElement.closest('.jp-CodeCell') !== null")
+        # A drag turns the view by itself, and moves Python where it takes hold of a part.
+        state, drawn = kernel.value(f"figures[{kind!r}].state()"), page.evaluate(DRAWN, element)
+        box = cell.locator(".sheet").first.bounding_box()
+        drag(page, (box["x"] + 8, box["y"] + box["height"] - 8), (60, 0))
+        page.wait_for_function(f"([cell, before]) => ({DRAWN})(cell) !== before", arg=[element, drawn])
+        assert kernel.value(f"figures[{kind!r}].state()") == state
+        part = cell.locator(".plot" if kind == "motion" else ".grip:not([visibility=hidden])").last
+        box = part.bounding_box()
+        drag(page, (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2), (-30, 24))
+        until("len(heard)", count)
+        assert kernel.value("heard[-1][0]") == kind
+
+    explorer = cells.nth(len(KINDS) + 1)
+    assert "z-y-x locks at" in explorer.locator("[role=status]").inner_text()
+    explorer.locator("select").first.select_option(label="x-y-x")
+    explorer.get_by_text("x-y-x locks at θ = 0").wait_for()
+    explorer.locator("input[type=text]").nth(1).fill("0")
+    explorer.get_by_text("Here it is locked.").wait_for()
+    assert kernel.value("str(explorer.dcm[0, 0])") == "1"
+    kernel.client.stop_channels()
+    context.close()
+    assert faults == [] and asked == []
+
+
+def drag(page, start, way):
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(start[0] + way[0], start[1] + way[1], steps=5)
+    page.mouse.up()
