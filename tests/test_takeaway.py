@@ -74,7 +74,7 @@ def test_every_notebook_is_offered():
 def test_the_wheel_holds_the_package_and_no_more(environment):
     (wheel,) = FOLDER.glob("*.whl")
     names = zipfile.ZipFile(wheel).namelist()
-    assert {name.split("/")[0] for name in names if "dist-info" not in name} == {"orientation"}
+    assert {name.split("/")[0] for name in names if "dist-info" not in name} == {"orientation", "coursework"}
     code = "import orientation; print(orientation.__file__)"
     place = subprocess.check_output([sys.executable, "-c", code], env=environment, text=True)
     assert place.startswith(environment["PYTHONPATH"])
