@@ -20,7 +20,7 @@ def shown_matrices(explorer):
 
 
 def tex_of(matrix):
-    return [[sm.latex(entry) for entry in row] for row in matrix.tolist()]
+    return [[sm.latex(entry, fold_func_brackets=True) for entry in row] for row in matrix.tolist()]
 
 
 @pytest.mark.parametrize("fixed, build", [("body", dcm_from_body_fixed), ("space", dcm_from_space_fixed)])

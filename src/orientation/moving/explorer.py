@@ -155,7 +155,8 @@ def angle_from_text(text, name='angle'):
 
 def _tex(value):
     """Return TeX with four digits for each decimal number."""
-    return sm.latex(value.xreplace({number: sm.Float(number, 4) for number in value.atoms(sm.Float)}))
+    return sm.latex(value.xreplace({number: sm.Float(number, 4) for number in value.atoms(sm.Float)}),
+                    fold_func_brackets=True)
 
 
 def _escaped(text):
