@@ -435,7 +435,9 @@ def test_exercise_is_checked_in_the_page(context, site):
         page.wait()
         assert outcome.get_attribute("data-outcome") == expected, page.below(check)
         if expected == "wrong":
-            assert "transpose" in page.below(check)
+            assert "transpose" in page.below(check) and "$" not in page.below(check)
+            assert page.cell(check).locator("[data-outcome] .katex").count() > 0
+            assert "transpose" in page.words()
     assert page.outside() == [] and page.errors == []
 
 

@@ -28,7 +28,7 @@ def row(page, kinds):
         if kind["needs"]:
             cells[column(kind)].append(str(number))
     numbers = " | ".join(", ".join(cells[name]) for name in COLUMNS)
-    return f"| {{doc}}`/{page}` | {sum(not kind['needs'] for kind in kinds)} of {len(kinds)} | {numbers} |"
+    return f"| {{doc}}`/{page}` | {sum(not kind['needs'] for kind in kinds)}\u00a0of\u00a0{len(kinds)} | {numbers} |"
 
 
 class NeedsMore(SphinxDirective):
@@ -37,15 +37,17 @@ class NeedsMore(SphinxDirective):
         pages = {page: kinds for page, kinds in kinds_of_cells().items() if page in order}
         setting = self.config.numpy_in_the_page or "off"
         every = [kind for kinds in pages.values() for kind in kinds]
+        some = [page for page, kinds in pages.items() if any(kind["needs"] for kind in kinds)]
         lines = [
             SOURCES.get(setting, SOURCES["folder"]),
             f"Of {len(every)} cells, {sum(not kind['needs'] for kind in every)} need nothing but SymPy and this",
-            "book's own packages, and run in the page with the results printed here. The others, by their numbers",
-            "from the top of each page, are these; a cell that takes a name from one of them needs the same.",
+            f"book's own packages, and run in the page with the results printed here; {len(pages) - len(some)} pages run",
+            "whole. The other cells, by their numbers from the top of each page, are these; a cell that takes a name from",
+            "one of them needs the same.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",
             "|---|---|" + "---|" * len(COLUMNS),
-            *(row(page, pages[page]) for page in sorted(pages, key=order.index)),
+            *(row(page, pages[page]) for page in sorted(some, key=order.index)),
         ]
         for page in pages:
             self.env.note_dependency(self.env.doc2path(page))

@@ -101,8 +101,8 @@ class Page {
         next.box.classList.add("waiting");
       }
     }
-    if (!cell || before.length) this.tally = { ran: 0, failed: [], missing: new Set(), alone: false };
-    else this.tally ??= { ran: 0, failed: [], missing: new Set(), alone: true };
+    this.tally ??= { ran: 0, failed: [], missing: new Set(), alone: true };
+    this.tally.alone &&= Boolean(cell);
     if (!this.busy) this.work();
   }
 
@@ -125,6 +125,7 @@ class Page {
 
   async load() {
     this.bar.say("Python is being loaded ...");
+    this.has = null;
     this.python = new Python(this.runtime, (message, cell) => this.hear(message, cell));
     const { python } = this;
     setTimeout(() => this.edit());
@@ -138,7 +139,7 @@ class Page {
   }
 
   hear(message, cell) {
-    if (message.type === "progress") this.bar.progress(message.bytes, message.all);
+    if (message.type === "progress" && !this.has) this.bar.progress(message.bytes, message.all);
     else if (message.type === "fetching") this.bar.say(`${named(message.name)} is being fetched from ${message.place} ...`);
     else if (message.type === "output") cell.take(message.message);
   }
@@ -151,7 +152,7 @@ class Page {
       return this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
     }
     if (this.unreachable && needs.length) return this.leave(cell, this.unreachable);
-    if (!this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
+    if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
     const outcome = await this.python.run(cell.code, cell.name, needs, cell);
     this.settle(cell, outcome);
   }
@@ -198,8 +199,9 @@ class Page {
   report() {
     const { ran, failed, missing, alone, stopped } = this.tally;
     const parts = [`${plural(ran, "cell")} ran.`];
+    const last = `${this.last[0].toUpperCase()}${this.last.slice(1)}`;
     if (missing.size) parts.push(`${plural(missing.size, "cell was", "cells were")} not run; the reason stands below each.`);
-    this.bar.say(alone || stopped || failed.length ? `${this.last[0].toUpperCase()}${this.last.slice(1)}` : parts.join(" "));
+    this.bar.say(alone || stopped || failed.length ? last : parts.join(" "));
   }
 
   empty() {

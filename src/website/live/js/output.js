@@ -58,9 +58,27 @@ function picture(form, data, name) {
   return element("div", "output image_svg", image);
 }
 
+// Formulas in the text of such an output are set as a notebook sets them.
+function setFormulas(box) {
+  const walker = document.createTreeWalker(box, NodeFilter.SHOW_TEXT);
+  const texts = [];
+  while (walker.nextNode()) texts.push(walker.currentNode);
+  for (const text of texts) {
+    if (!/\$[^$]+\$/.test(text.data) || text.parentElement.closest("code, pre, script, style, svg")) continue;
+    const parts = text.data.split(/\$([^$]+)\$/).map((part, place) => {
+      if (place % 2 === 0) return part;
+      const math = element("span", "math");
+      math.innerHTML = katex.renderToString(part, { output: "htmlAndMathml", throwOnError: false, strict: "ignore" });
+      return math;
+    });
+    text.replaceWith(...parts);
+  }
+}
+
 function html(text) {
   const box = element("div", "output text_html");
   box.innerHTML = text;
+  setFormulas(box);
   // Scripts that are set in as text do not run; a copy does.
   for (const script of box.querySelectorAll("script")) {
     const copy = element("script");
@@ -77,7 +95,7 @@ export function shown(data, name) {
   const form = ORDER.find((known) => known in data);
   if (form === "text/html") {
     const box = html(data[form]);
-    return [box, box.querySelector("figure, svg, img") ? "a figure" : box.textContent.trim()];
+    return [box, box.querySelector("figure, svg, img") ? "a figure" : box.innerText.trim() || box.textContent.trim()];
   }
   if (form === "text/latex") return [formula(data[form]), data["text/plain"]?.includes("\n") ? "a formula" : data["text/plain"] ?? "a formula"];
   if (form?.startsWith("image/")) return [picture(form, data[form], name), "a picture"];

@@ -101,7 +101,12 @@ async function run({ code, name, needs = [] }) {
   for (const module of needs) if (!(await bring(module))) break;
   for (;;) {
     const outcome = JSON.parse(shell.run(code, name));
-    if (outcome.status !== "missing" || !(await bring(outcome.package))) return outcome;
+    if (outcome.status !== "missing") return outcome;
+    if (!(await bring(outcome.package))) {
+      // It may have been asked for only now: the reason is the newest one.
+      const name = absentModules().find(([module]) => module === outcome.package)?.[1];
+      return { ...outcome, reason: refused[name] ?? outcome.reason };
+    }
     postMessage({ type: "output", job, message: { type: "clear" } });
   }
 }
