@@ -92,6 +92,9 @@ class Page {
 
   // Run one cell, and before it what has not run yet; without a cell, the whole page.
   run(cell) {
+    if (!cell && this.cells.every((other) => this.leftOut(other))) {
+      return this.bar.say("Each cell of this page draws a picture that is there already. Run below a cell draws it anew.");
+    }
     const upTo = cell ? cell.number : this.cells.length;
     const before = this.cells.slice(0, upTo).filter((other) =>
       other !== cell && !(cell && other.ran) && !(this.leftOut(other) && !(cell?.kind.skip)));

@@ -95,7 +95,7 @@ export function shown(data, name) {
   const form = ORDER.find((known) => known in data);
   if (form === "text/html") {
     const box = html(data[form]);
-    return [box, box.querySelector("figure, svg, img") ? "a figure" : box.innerText.trim() || box.textContent.trim()];
+    return [box, box.querySelector("figure, svg, img") ? "a figure" : data["text/plain"] ?? box.textContent.trim()];
   }
   if (form === "text/latex") return [formula(data[form]), data["text/plain"]?.includes("\n") ? "a formula" : data["text/plain"] ?? "a formula"];
   if (form?.startsWith("image/")) return [picture(form, data[form], name), "a picture"];
