@@ -1,8 +1,10 @@
 """Every attack of the corpus fails, and costs nobody else anything; without its layer it succeeds."""
 
+import contextlib
 import ctypes
 import dataclasses
 import json
+import multiprocessing
 import os
 import select
 import socket
@@ -102,8 +104,8 @@ def taken(result):
     return result["answers"]["loot"].get("plain", {}).get("value") == ["text", "taken"]
 
 
-@pytest.fixture(scope="module")
-def surroundings():
+@contextlib.contextmanager
+def attackable():
     # Not pytest's own folder, which is closed to other users: that is not what must keep attacks out.
     folder = Path(tempfile.mkdtemp(prefix="attacked-"))
     folder.chmod(0o755)
@@ -114,28 +116,42 @@ def surroundings():
 
 
 @pytest.fixture(scope="module")
-def aftermath(surroundings):
-    """All attacks, each followed by an honest notebook, on two workers; and what they left behind."""
+def surroundings():
+    with attackable() as attacked:
+        yield attacked
+
+
+def suffer(answer):
+    """Run all attacks, each followed by an honest notebook, on two workers; send what they left behind."""
     # Orphans become children of this process, so that none can hide.
     assert ctypes.CDLL(None).prctl(36, 1, 0, 0, 0) == 0
     os.environ["TOKEN"] = "SEALED"
-    temporary = surroundings.folder / "temporary"
-    temporary.mkdir(mode=0o755)
-    tempfile.tempdir = str(temporary)
-    before = {child.pid for child in psutil.Process().children(recursive=True)}
-    try:
-        results = {}
+    results = {}
+    with attackable() as surroundings:
+        temporary = surroundings.folder / "temporary"
+        temporary.mkdir(mode=0o755)
+        tempfile.tempdir = str(temporary)
         for limits, waits in ((LIMITS, False), (SHORT, True)):
             jobs = [job for number, attack in enumerate(ATTACKS) if attack.waits == waits
                     for job in (surroundings.job(attack), neighbour(number))]
             results |= {result["id"]: result for result in run_notebooks(jobs, workers=2, limits=limits)}
-        left = {child.pid for child in psutil.Process().children(recursive=True)} - before
-    finally:
-        del os.environ["TOKEN"]
-        tempfile.tempdir = None
-        ctypes.CDLL(None).prctl(36, 0, 0, 0, 0)
-    return {"results": results, "left": left, "state": surroundings.state(), "heard": surroundings.heard(),
-            "temporary": os.listdir(temporary)}
+        left = [str(child) for child in psutil.Process().children(recursive=True)]
+        answer.send({"results": results, "left": left, "state": surroundings.state(),
+                     "heard": surroundings.heard(), "temporary": os.listdir(temporary)})
+
+
+@pytest.fixture(scope="module")
+def aftermath():
+    """What all attacks left behind, in a process of their own: nobody else's children are there."""
+    spawn = multiprocessing.get_context("spawn")
+    receiver, sender = spawn.Pipe(duplex=False)
+    process = spawn.Process(target=suffer, args=(sender,))
+    process.start()
+    sender.close()
+    with receiver:
+        found = receiver.recv()
+    process.join()
+    return found
 
 
 def test_the_corpus_is_large_and_its_names_differ():
@@ -164,10 +180,10 @@ def test_the_neighbours_are_unharmed(aftermath):
         assert result["answers"]["question"]["plain"] == integer(number)
 
 
-def test_nothing_is_written_sent_or_left_running(aftermath, surroundings):
+def test_nothing_is_written_sent_or_left_running(aftermath):
     assert aftermath["state"] == (["canary"], (0o100666, 1_000_000_000, 6))
     assert aftermath["heard"] == 0
-    assert aftermath["left"] == set()
+    assert aftermath["left"] == []
     assert aftermath["temporary"] == []
 
 
