@@ -39,10 +39,13 @@ node_modules/ready: package-lock.json $(VENV)/ready
 	@PATH="$(CURDIR)/$(VENV)/bin:$$PATH" npm ci --silent --ignore-scripts --no-audit --no-fund
 	@touch $@
 
-$(VENV)/runtime/ready: src/website/live/wheels.txt $(VENV)/ready
-	@echo "Setting up SymPy for browsers in $(VENV)/runtime ..."
+$(VENV)/runtime/ready: src/website/live/wheels.txt src/website/lite/wheels.txt $(VENV)/ready
+	@echo "Setting up Python packages for browsers in $(VENV)/runtime ..."
 	@rm -rf $(@D)
-	@$(RUN) -m pip download --quiet --disable-pip-version-check --no-deps --only-binary=:all: --require-hashes --requirement $< --dest $(@D)
+	@for place in live lite; do \
+	  $(RUN) -m pip download --quiet --disable-pip-version-check --no-deps --only-binary=:all: --python-version 3.14 \
+	    --platform any --implementation py --abi none --require-hashes --requirement src/website/$$place/wheels.txt --dest $(@D)/$$place || exit 1; \
+	done
 	@touch $@
 
 $(KERNEL_SETTINGS): src/website/ipython_kernel_config.py

@@ -6,7 +6,7 @@ import sys
 import time
 from pathlib import Path
 
-from . import whole_book
+from . import lite, whole_book
 from .paths import BUILD, HTML, pages
 
 
@@ -33,6 +33,7 @@ def main():
         for folder in (HTML, BUILD / ".doctrees"):
             shutil.rmtree(folder, ignore_errors=True)
         sys.exit("The book was not built: see the warnings above.")
+    lite.write(HTML)
     whole_book.withdraw_outdated()
     print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
 

@@ -15,7 +15,7 @@ import nbformat
 from coursework import release
 
 from .markdown import MarkdownWriter
-from .paths import REPOSITORY, package
+from .paths import REPOSITORY, package, pages
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
@@ -25,11 +25,17 @@ KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
 
 
-def introduction(config, wheel):
+def notebook_pages():
+    """The names of the pages that are notebooks."""
+    return [page for page in pages() if Path(f"{page}.ipynb").is_file()]
+
+
+def introduction(title):
+    """What the notebook of a page says first, below its title."""
     return (
-        f"> This is a page of *{config.html_title}*. To run it, install the package that it "
-        f"imports: download `{wheel}` from the page's menu and run "
-        f"`python -m pip install {wheel}`. Text: CC BY 4.0. Code: BSD-3-Clause."
+        f"> This is a page of *{title}*. To run it, install the package that it "
+        f"imports: download `{wheel_name()}` from the page's menu and run "
+        f"`python -m pip install {wheel_name()}`. Text: CC BY 4.0. Code: BSD-3-Clause."
     )
 
 
@@ -56,7 +62,7 @@ def make_notebook(app, docname, doctree):
         else:
             cells.append(nbformat.v4.new_markdown_cell(piece))
     add_code(len(source.cells))
-    note = introduction(app.config, wheel_name())
+    note = introduction(app.config.html_title)
     title, _, rest = cells[0].source.partition("\n\n")
     cells[0].source = "\n\n".join(filter(None, [title, note, rest]))
     for position, cell in enumerate(cells):

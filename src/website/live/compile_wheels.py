@@ -1,7 +1,7 @@
 """Runs inside Pyodide: byte-compile every wheel in /wheels/in into /wheels/out.
 
-Importing SymPy from its sources takes the browser twice as long as from byte code. Tests are left
-out, and so are the sources of other people's packages, which would double the download; our own
+Importing SymPy from its sources takes the browser twice as long as from byte code. What is not needed is
+left out, and so are the sources of other people's packages, which would double the download; our own
 sources stay, because error messages show their lines.
 """
 
@@ -17,6 +17,8 @@ from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
 OURS = ("orientation/", "coursework/")
+# What nobody needs in a browser: tests, and what Jedi, which completes names, knows of 200 packages.
+LEFT_OUT = ("/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
 THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)  # the same sources give the same bytes
 
 
@@ -37,7 +39,7 @@ def compile_wheel(path, target):
     files = {}
     with zipfile.ZipFile(path) as wheel:
         for name in wheel.namelist():
-            if "/tests/" not in name and not name.endswith((".dist-info/RECORD", "/")):
+            if not any(part in name for part in LEFT_OUT) and not name.endswith((".dist-info/RECORD", "/")):
                 files |= compiled(name, wheel.read(name))
         (record,) = (name for name in wheel.namelist() if name.endswith(".dist-info/RECORD"))
     lines = []

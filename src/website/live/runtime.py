@@ -19,7 +19,7 @@ from ..take_away import FOLDER as TAKE_AWAY
 from ..take_away import wheel_name
 
 HERE = Path(__file__).parent
-FETCHED = REPOSITORY / ".venv" / "runtime"  # where `make setup` puts the wheels of wheels.txt
+FETCHED = REPOSITORY / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
 PYODIDE_FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")

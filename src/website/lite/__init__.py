@@ -1,0 +1,145 @@
+"""JupyterLite: the notebooks of the book in the reader's browser, in the site's folder ``lite``.
+
+It shares the interpreter and the wheels of the folder ``runtime`` (see :mod:`website.live`), and adds to
+them what a notebook's kernel needs. A lock file of its own lists them all, so that a plain ``import`` works.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from hashlib import sha256
+from pathlib import Path
+
+import nbformat
+import yaml
+
+from ..live import runtime
+from ..live.cells import kinds_of_cells
+from ..paths import BUILD, fingerprint, moment_of_sources
+from ..take_away import FOLDER as TAKE_AWAY
+from ..take_away import introduction, notebook_pages
+
+HERE = Path(__file__).parent
+FOLDER = "lite"
+LOCK = "lite-lock.json"
+FETCHED = runtime.FETCHED.with_name("lite")  # where `make setup` puts the wheels of wheels.txt
+WORKSHOP = BUILD / FOLDER
+APPS = ("notebooks", "tree", "edit")  # one notebook, the list of all of them, a text file
+# The parts of the interface that are not JupyterLite's own: the kernel, sliders, and the moving figures.
+EXTENSIONS = ("@jupyterlite/pyodide-kernel-extension", "@jupyter-widgets/jupyterlab-manager", "anywidget")
+LABEXTENSIONS = Path(sys.prefix) / "share" / "jupyter" / "labextensions"
+KERNEL_WHEELS = LABEXTENSIONS / EXTENSIONS[0] / "static" / "pypi"
+KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
+# What the moving figures import when they are made.
+FIGURES = ["anywidget"]
+NOTE = (
+    "> This page of *{title}* runs in your browser. What you change is kept in this browser, on this machine; "
+    "*File > Download* gives you the notebook. Text: CC BY 4.0. Code: BSD-3-Clause."
+)
+NUMERICAL = (
+    "Some cells of this page compute or draw with NumPy and Matplotlib. The next cell fetches them from {place}.",
+    "import matplotlib\nimport numpy",
+)
+
+
+def write_lock(site):
+    """Put the wheels of the kernel beside the others, and list all of them; return the names of what to load."""
+    target = site / runtime.FOLDER
+    lock = json.loads((target / runtime.LOCK).read_text("utf8"))
+    kernel = [wheel for name in KERNEL for wheel in KERNEL_WHEELS.glob(f"{name}-*.whl")]
+    added = runtime.own_packages(runtime.compile_wheels([*sorted(FETCHED.glob("*.whl")), *kernel]), target)
+    packages = lock["packages"] | added
+    packages[runtime.DISTRIBUTION]["depends"] = [*packages[runtime.DISTRIBUTION]["depends"], *FIGURES]
+    (target / LOCK).write_text(json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8")
+    numerical = runtime.with_dependencies([name for name in runtime.NUMERICAL if name in packages], packages)
+    return sorted(set(packages) - set(numerical))
+
+
+def notebook_for(site, page, settings):
+    """The notebook of a page: exercises as they were released, others as they are taken away."""
+    if page.startswith("exercises/"):
+        return (site / TAKE_AWAY / f"{page}.ipynb").read_text("utf8")
+    notebook = nbformat.read(site / TAKE_AWAY / f"{page.rsplit('/', 1)[-1]}.ipynb", as_version=4)
+    first = notebook.cells[0]
+    note = introduction(settings["title"])
+    if note not in first.source:
+        raise RuntimeError(f"the notebook of {page} does not say how to run it, or says it in other words")
+    first.source = first.source.replace(note, NOTE.format(title=settings["title"]))
+    setting = settings["sphinx"]["config"]["numpy_in_the_page"]
+    needed = {name for kind in kinds_of_cells()[page] for name in kind["needs"]}
+    if needed & set(runtime.NUMERICAL) and setting not in (False, "off"):
+        place = "`cdn.jsdelivr.net`" if setting == "official" else "the place of these pages"
+        text, code = NUMERICAL
+        notebook.cells[1:1] = [
+            nbformat.v4.new_markdown_cell(text.format(place=place), id="numpy-why"),
+            nbformat.v4.new_code_cell(code, id="numpy"),
+        ]
+    return nbformat.writes(notebook)
+
+
+def write_workshop(site, settings, names):
+    """Write what the interface is made from: the notebooks, and the settings."""
+    shutil.rmtree(WORKSHOP, ignore_errors=True)
+    for page in notebook_pages():
+        path = WORKSHOP / "files" / f"{page}.ipynb"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(notebook_for(site, page, settings), "utf8")
+    lock = sha256((site / runtime.FOLDER / LOCK).read_bytes()).hexdigest()[:12]
+    kernel = {
+        # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
+        "pyodideUrl": f"./../{runtime.FOLDER}/pyodide/pyodide.mjs",
+        "disablePyPIFallback": True,
+        # The name is the same in every version of the book: what follows it tells them apart.
+        "loadPyodideOptions": {"lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}", "packages": names},
+    }
+    page = {
+        "appName": settings["title"],
+        "faviconUrl": "../_static/favicon.svg",
+        "litePluginSettings": {f"{EXTENSIONS[0]}:kernel": kernel},
+    }
+    build = {
+        "apps": APPS,
+        "contents": ["files"],
+        "ignore_sys_prefix": ["federated_extensions"],
+        "federated_extensions": [str(LABEXTENSIONS / name) for name in EXTENSIONS],
+        "no_sourcemaps": True,
+        "no_unused_shared_packages": True,
+    }
+    for name, content in (
+        ("jupyter-lite.json", {"jupyter-lite-schema-version": 0, "jupyter-config-data": page}),
+        ("jupyter_lite_config.json", {"LiteBuildConfig": build}),
+        ("overrides.json", {"@jupyterlab/apputils-extension:themes": {"adaptive-theme": True}}),
+    ):
+        (WORKSHOP / name).write_text(json.dumps(content, indent=1), "utf8")
+
+
+def write(site):
+    """Write the notebook interface into ``site``, a folder with the built pages, if anything has changed."""
+    settings = yaml.safe_load(Path("_config.yml").read_text("utf8"))
+    names = write_lock(site)
+    write_workshop(site, settings, names)
+    target = site / FOLDER
+    stamp = target / "made-from.txt"
+    made_from = fingerprint(WORKSHOP, HERE, *(LABEXTENSIONS / name for name in EXTENSIONS))
+    if stamp.exists() and stamp.read_text("utf8") == made_from:
+        return
+    shutil.rmtree(target, ignore_errors=True)
+    # It drops local settings without a word if it finds the notes of an older run: the workshop is new each time.
+    command = [sys.executable, "-m", "jupyterlite_core", "build", "--output-dir", target.resolve()]
+    environment = os.environ | {"SOURCE_DATE_EPOCH": str(int(moment_of_sources().timestamp()))}
+    done = subprocess.run(command, cwd=WORKSHOP, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if done.returncode:
+        sys.exit(f"JupyterLite was not built:\n{done.stdout.decode()}")
+    stamp.write_text(made_from, "utf8")
+
+
+def add_link(app, pagename, templatename, context, doctree):
+    """Give a page with a notebook the address that opens it."""
+    if pagename in notebook_pages():
+        context["notebook_interface"] = context["pathto"](f"{FOLDER}/{APPS[0]}/index.html", 1) + f"?path={pagename}.ipynb"
+
+
+def setup(app):
+    app.connect("html-page-context", add_link)
