@@ -15,8 +15,9 @@ import pytest
 
 from orientation import dcm_from_axis_angle, dcm_from_body_fixed, simple_dcm
 from orientation.drawing import (
-    BARB, DARK, HEADS, IN_SPACE, LIGHT, STROKES, Drawing, looking_down, path_data, typeset, view_from)
+    BARB, HEADS, IN_SPACE, Drawing, looking_down, path_data, typeset, view_from)
 from orientation.drawing_animation import Animation, one_after_another
+from orientation.drawing_style import DARK, LIGHT, STROKES
 from orientation.drawing_objects import draw_book, draw_eye, gimbal_drawing, plane_drawing, turning_frames_animation
 
 ALT = 'A triad of unit vectors, drawn for a test: x to the left, y to the right, z up.'

@@ -5,7 +5,8 @@ from html import escape
 
 import numpy as np
 
-from .drawing import STYLE, collapsed, pair, path_data
+from .drawing import collapsed, pair, path_data
+from .drawing_style import STYLE
 
 # Without this script the figure is a still. It shows the controls, and lets the browser's own animation
 # clock (SMIL) be set by the slider or run by the button.

@@ -5,7 +5,7 @@ import io
 import re
 from html import escape
 
-from .drawing import LIGHT, STYLE
+from .drawing_style import LIGHT, STYLE
 
 SETTINGS = {
     'svg.fonttype': 'path', 'mathtext.fontset': 'cm', 'font.family': 'serif', 'font.serif': ['cmr10'],
