@@ -24,7 +24,8 @@ from orientation import (
     quaternion_rate,
 )
 from orientation.moving import MotionFigure, bundle
-from orientation.moving.motion import DESCRIPTIONS, MOMENTS, SPIN
+from orientation.moving.motion import DESCRIPTIONS, MOMENTS
+from orientation.moving.tumbling import SPIN
 
 NODE = Path(sys.executable).with_name("node")
 SETTINGS = ("moments", "axis", "disturbance", "method", "step", "restored")

@@ -2,19 +2,22 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
+import sympy as sm
 from bs4 import BeautifulSoup
 from traitlets import TraitError
 
 import orientation as module
 from orientation import moving
-from orientation.moving import GimbalFigure, NineNumbersFigure, TriadFigure, bundle
+from orientation.moving import GimbalFigure, MotionFigure, NineNumbersFigure, SuccessiveFigure, TriadFigure, bundle, glyphs
 from website.moving import WIDGET
 from website.notebooks import normalise
 
@@ -29,6 +32,94 @@ FIGURES = [
 def test_the_module_alone_loads_no_widgets():
     check = "import sys, orientation; assert not {'anywidget', 'ipywidgets', 'matplotlib'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", check], check=True)
+
+
+WITHOUT_NUMPY = r"""
+import sys
+for name in ("numpy", "matplotlib", "scipy"):
+    sys.modules[name] = None
+import traitlets
+from orientation import moving
+
+def refused(error, ask):
+    try:
+        ask()
+    except error as refusal:
+        return refusal
+    raise AssertionError(f"no {error.__name__}")
+
+SET = {
+    "triad": ("angle", 0.3), "gimbal": ("angles", (0.1, 0.2, 0.3)), "nine_numbers": ("matrix", ((1.0,) * 3,) * 3),
+    "successive": ("turns", (("z", 0.3),)), "quaternion": ("first", (0.1, 0.2, 0.3)), "motion": ("time", 3.0),
+}
+COMPUTED = {"nine_numbers": "nearest"}
+figures = [getattr(moving, name) for name in moving.__all__ if name not in ("MovingFigure", "SequenceExplorer")]
+assert sorted(SET) == sorted(figure.kind for figure in figures)
+for kind in figures:
+    figure, heard = kind(), []
+    (name, value), before = SET[figure.kind], figure.state()
+    figure.observe(lambda change: heard.append(change.new), name)
+    setattr(figure, name, value)
+    assert heard == [value] and figure.state() == before | {name: value}
+    figure.set_state({name: before[name]})  # what a message from the front end does
+    assert heard == [value, before[name]]
+    refused(traitlets.TraitError, lambda: setattr(figure, name, float("nan")))
+    assert figure.state() == before
+    data, _ = figure._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in data and "text/html" not in data, data
+    assert figure._esm.endswith("export default { render };\n") and ".moving" in figure._css
+    # What is written stands for the figure: it makes the same one again.
+    assert eval(repr(figure), vars(moving)).state() == before
+    for ask in (lambda: getattr(figure, COMPUTED.get(figure.kind, "dcm")), figure.drawing, figure.still):
+        assert refused(ImportError, ask).name == "numpy"
+gimbal = moving.GimbalFigure(angles=(0.1, 0.2, 0.3))
+assert round(gimbal.margin, 6) == 1.370796
+explorer = moving.SequenceExplorer("zxz")
+explorer.angles[1].value = "pi/6"
+assert "0.524 rad away" in explorer.message.value and "frac" in explorer.result.value
+assert explorer.dcm.shape == (3, 3) and "text/latex" in explorer._repr_mimebundle_()
+print(gimbal)
+"""
+
+
+def test_figures_are_alive_without_numpy():
+    done = subprocess.run([sys.executable, "-c", WITHOUT_NUMPY], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "GimbalFigure(angles=(0.1, 0.2, 0.3), sequence='zxy')\n"
+
+
+def test_the_labels_are_kept_as_they_are_set():
+    kept = glyphs.FILE.read_text("utf8")
+    assert kept == glyphs.glyphs(), f"{glyphs.FILE.name} is not what its generator makes: run `{glyphs.COMMAND}`"
+
+
+def texts_of(source):
+    """The strings in a module of the front end, with a null where a value is filled in."""
+    found, stack = [], []
+    for token in re.findall(r"\\.|\$\{|.", re.sub(" {2,}// .*", "", source), re.DOTALL):
+        if stack and stack[-1][0] in "'`":
+            if token == stack[-1][0]:
+                found.append(stack.pop()[1])
+            elif token == "${" and stack[-1][0] == "`":
+                stack[-1][1] += "\0"
+                stack.append(["{", ""])
+            else:
+                stack[-1][1] += token[token[0] == "\\" :]
+        elif token in ("'", "`", "{"):
+            stack.append([token, ""])
+        elif token == "}":
+            stack.pop()
+    assert stack == []
+    return found
+
+
+@pytest.mark.parametrize("kind", [figure.kind for figure in FIGURES])
+def test_every_formula_of_a_figure_can_be_set(kind):
+    found = [formula for text in texts_of(bundle.source(kind)) for formula in text.split("$")[1::2]]
+    patterns = {formula: "[^ ]+".join(map(re.escape, formula.split("\0"))) for formula in found}
+    assert patterns, "no formulas were found"
+    missing = [formula for formula in found if not any(re.fullmatch(patterns[formula], one) for one in glyphs.LABELS)]
+    assert missing == [], f"add them to LABELS in orientation/moving/glyphs.py, then run `{glyphs.COMMAND}`"
 
 
 def bundle_of(figure):
@@ -117,6 +208,19 @@ def test_angel_is_not_angle():
         (NineNumbersFigure, "matrix", np.eye(2), r"\(3, 3\)"),
         (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1, 0], [0, 0, None]], "real numbers"),
         (NineNumbersFigure, "matrix", 100 * np.eye(3), "from -10 to 10"),
+        (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1], [0, 0, 1]], "regular shape"),
+        (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1, math.nan], [0, 0, 1]], r"matrix\[1, 2\] is nan"),
+        (NineNumbersFigure, "matrix", np.eye(3, dtype=bool), "real numbers"),
+        (NineNumbersFigure, "matrix", sm.diag(1, 1, sm.Symbol("x")), "holds x, .* needs numbers"),
+        (GimbalFigure, "angles", np.array((0, 1j, 0)), "real numbers"),
+        (GimbalFigure, "angles", (0, True, 0), "real numbers"),
+        (GimbalFigure, "angles", (0, 10**400, 0), "real numbers"),
+        (GimbalFigure, "angles", np.ma.array((0, 1, 2), mask=(0, 1, 0)), r"angles\[1\] is nan"),
+        (SuccessiveFigure, "turns", [("x", (1,))], r"angle has shape \(1,\), where one number"),
+        (SuccessiveFigure, "turns", [("x", sm.I)], "holds I"),
+        (MotionFigure, "time", "3", "real numbers"),
+        (MotionFigure, "time", math.nan, "time is nan"),
+        (MotionFigure, "time", 21, "from 0 to 20 seconds"),
     ],
 )
 def test_bad_values_are_refused_and_change_nothing(figure, name, value, message):
@@ -147,6 +251,23 @@ def test_what_comes_from_the_page_is_checked_and_heard():
     with pytest.raises(TraitError):
         figure.set_state({"angles": [0.1, 0.2, None]})
     assert figure.angles == (0.1, 0.2, 0.3)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        range(3),
+        np.array((0, 1, 2), "f4"),
+        [np.int8(0), np.float64(1), np.array(2)],
+        sm.Matrix((0, 1, 2)),
+        sm.Tuple(0, 1, 2),
+        [0, sm.sqrt(4) / 2, Fraction(4, 2)],
+        np.array((sm.Integer(0), Fraction(1), 2), object),
+    ],
+)
+def test_numbers_come_in_many_kinds(value):
+    figure = GimbalFigure(angles=value)
+    assert figure.angles == (0, 1, 2) and set(map(type, figure.angles)) == {float}
 
 
 def test_the_end_of_a_slider_is_within_bounds():

@@ -12,6 +12,7 @@ so symbols work where there is no NumPy.
 import functools
 import math
 import numbers
+from collections.abc import Sequence
 from types import SimpleNamespace
 
 #: Largest departure from orthogonality, or from unit length, that still counts as rounding.
@@ -141,8 +142,7 @@ def number_array(value, item, name):
         raise ValueError(f'{name} is a sequence of {len(value)} arrays, which can be read in two ways: '
                          f'join separate components with numpy.stack(..., axis=-1), '
                          f'or a list of items with numpy.stack(...)')
-    if hasattr(value, 'filled'):  # a masked array: what is masked is missing
-        value = value.astype(float).filled(numpy.nan)
+    value = _unmasked(value)
     try:
         array = numpy.asarray(value)
         if array.dtype == object and all(isinstance(entry, numbers.Real) and not isinstance(entry, bool)
@@ -151,18 +151,77 @@ def number_array(value, item, name):
         if array.dtype.kind not in 'iuf':
             raise ValueError
     except (ValueError, OverflowError):
-        raise TypeError(f'{name} must hold real numbers or SymPy expressions in a regular shape, '
-                        f'not {value!r}') from None
+        raise _not_numbers(name, value) from None
     array = array.astype(float, copy=False)
     if array.ndim < len(item) or array.shape[array.ndim - len(item):] != item:
         raise WrongShape(_shape_message(name, array.shape, item))
     finite = numpy.isfinite(array)
     if not finite.all():
         index = tuple(int(k) for k in numpy.argwhere(~finite)[0])
-        where = f'[{", ".join(map(str, index))}]' if index else ''
-        raise ValueError(f'{name}{where} is {array[index]}: a number is missing or a division by '
-                         f'zero happened before')
+        raise _not_finite(name, index, array[index])
     return array
+
+
+def number_tuples(value, shape, name):
+    """Return a float, or nested tuples of floats of exactly this shape, or raise an error that explains.
+
+    What :func:`number_array` takes, without batches, and without NumPy; True and False are no numbers here.
+    """
+    result = _tuples(value, name, value)
+    found = _shape(result)
+    if found is None:
+        raise _not_numbers(name, value)
+    if found != shape:
+        raise WrongShape(f'{name} has shape {found}, where {shape or "one number"} was expected')
+    _demand_finite(result, name)
+    return result
+
+
+def _tuples(value, name, whole):
+    if hasattr(value, 'free_symbols'):
+        value = _floats(_listed(value), name)
+    elif hasattr(value, 'tolist'):  # an array, or a number of NumPy
+        value = _unmasked(value).tolist()
+    if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
+        return tuple(_tuples(entry, name, whole) for entry in value)
+    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+        raise _not_numbers(name, whole)
+    try:
+        return float(value)
+    except OverflowError:
+        raise _not_numbers(name, whole) from None
+
+
+def _shape(value):
+    """Return the shape of nested tuples, None if they are ragged."""
+    if not isinstance(value, tuple):
+        return ()
+    shapes = set(map(_shape, value)) or {()}
+    if len(shapes) > 1 or None in shapes:
+        return None
+    return (len(value), *shapes.pop())
+
+
+def _demand_finite(value, name, index=()):
+    if isinstance(value, tuple):
+        for k, entry in enumerate(value):
+            _demand_finite(entry, name, (*index, k))
+    elif not math.isfinite(value):
+        raise _not_finite(name, index, value)
+
+
+def _unmasked(value):
+    # A masked array: what is masked is missing.
+    return value.astype(float).filled(math.nan) if hasattr(value, 'filled') else value
+
+
+def _not_numbers(name, value):
+    return TypeError(f'{name} must hold real numbers or SymPy expressions in a regular shape, not {value!r}')
+
+
+def _not_finite(name, index, value):
+    where = f'[{", ".join(map(str, index))}]' if index else ''
+    return ValueError(f'{name}{where} is {value}: a number is missing or a division by zero happened before')
 
 
 def _floats(value, name):

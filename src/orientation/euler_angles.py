@@ -233,6 +233,11 @@ def gimbal_lock_margin(angles, sequence):
     >>> gimbal_lock_margin((0.3, math.pi / 2 - 0.01, 0.1), 'zxy').__round__(12)
     0.01
     """
+    return evaluate(lock_margin_formula(sequence), (), ('angles', angles, (3,)), symbols=False)
+
+
+def lock_margin_formula(sequence):
+    """Formula of :func:`gimbal_lock_margin`, for the components of the angles."""
     layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
@@ -242,7 +247,7 @@ def gimbal_lock_margin(angles, sequence):
             along, across = across, along
         return [f.atan2(abs(across), abs(along))]
 
-    return evaluate(formula, (), ('angles', angles, (3,)), symbols=False)
+    return formula
 
 
 def _reversed(angles):

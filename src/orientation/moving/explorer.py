@@ -9,14 +9,15 @@ import ipywidgets as widgets
 import sympy as sm
 from sympy.parsing.sympy_parser import parse_expr
 
+from .._kinds import NUMBERS
 from ..direction_cosines import simple_dcm
 from ..euler_angles import (
-    PROPER_EULER, SEQUENCES, dcm_from_body_fixed, dcm_from_space_fixed, gimbal_lock_margin, layout_of)
+    PROPER_EULER, SEQUENCES, dcm_from_body_fixed, dcm_from_space_fixed, layout_of, lock_margin_formula)
 
 NAMES = ('psi', 'theta', 'phi')
 #: What an angle may be made of besides numbers and symbols.
 FUNCTIONS = {name: getattr(sm, name) for name in ('pi', 'sqrt', 'sin', 'cos', 'tan', 'asin', 'acos', 'atan')}
-NUMBERS = {name: getattr(sm, name) for name in ('Integer', 'Float', 'Rational')}
+KINDS_OF_NUMBERS = {name: getattr(sm, name) for name in ('Integer', 'Float', 'Rational')}
 TURN = 2 * sm.pi   # beyond it, degrees may have been meant
 
 
@@ -100,7 +101,7 @@ class SequenceExplorer(widgets.VBox):
         theta = self.values[1]
         if not theta.is_number:
             return said
-        margin = float(gimbal_lock_margin((0, float(theta), 0), self.sequence.value))
+        [margin] = lock_margin_formula(self.sequence.value)(NUMBERS, 0, float(theta), 0)
         return f'{said} Here it is {margin:.3g} rad away from that.' if margin > 1e-12 else f'{said} Here it is locked.'
 
     def _dcm(self, angles):
@@ -145,7 +146,7 @@ def angle_from_text(text, name='angle'):
     try:
         if not allowed:
             raise SyntaxError
-        angle = parse_expr(text, {**symbols, **FUNCTIONS}, global_dict={'__builtins__': {}, 'Symbol': sm.Symbol, **NUMBERS})
+        angle = parse_expr(text, {**symbols, **FUNCTIONS}, global_dict={'__builtins__': {}, 'Symbol': sm.Symbol, **KINDS_OF_NUMBERS})
     except (SyntaxError, TypeError, AttributeError, NameError, ValueError, RecursionError):
         raise ValueError(f'{name} is {text!r}: a symbol, a number of radians or an expression such as pi/6 was expected') from None
     if not isinstance(angle, sm.Expr) or angle.is_number and not (angle.is_real and angle.is_finite):

@@ -2,12 +2,13 @@
 import json
 from difflib import get_close_matches
 from html import escape
+from importlib import import_module
+from importlib.util import find_spec
 
 import anywidget
-import numpy as np
 import traitlets
 
-from ..drawing import STYLE
+from ..drawing_style import STYLE
 from . import bundle
 
 
@@ -18,9 +19,9 @@ class MovingFigure(anywidget.AnyWidget):
     and calls what ``observe`` has registered. In Jupyter a kernel keeps both in step; a page of the book
     runs the same front end without one, in place of the still.
 
-    A figure has a ``kind``, the name of its module in ``js``; traits tagged ``state=True``; and a method
-    ``drawing`` that returns its still. ``sheet`` gives left, top, right and bottom of what may be drawn, in
-    pixels from the origin: still and figure have the same size. ``room`` is the height of the whole figure
+    A figure has a ``kind``, the name of its modules in ``js`` and in ``stills``, and traits tagged
+    ``state=True``. ``sheet`` gives left, top, right and bottom of what may be drawn, in pixels from the
+    origin: still and figure have the same size. ``room`` is the height of the whole figure
     in pixels, beside and below its controls, which a page keeps free so that nothing moves.
     """
 
@@ -59,7 +60,8 @@ class MovingFigure(anywidget.AnyWidget):
 
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
-        raise NotImplementedError
+        # Imported only now: a still needs NumPy and Matplotlib, the figure itself does not.
+        return import_module(f'.stills.{self.kind}', __package__).drawing(self)
 
     def state(self):
         """Return the attributes that the figure shows, by their names."""
@@ -67,8 +69,7 @@ class MovingFigure(anywidget.AnyWidget):
 
     def still(self):
         """Return the HTML for pages without a kernel: the still, and the state to start from."""
-        # The drawing adds a margin of 8 pixels to the bounds it is given.
-        svg = self.drawing().svg(bounds=np.add(self.sheet, (8, 8, -8, -8)))
+        svg = svg_on(self.sheet, self.drawing())
         state = escape(json.dumps(self.state(), separators=(',', ':')), quote=False).replace("'", '&#39;')
         return (f'<figure class="orientation-figure moving" data-figure="{self.kind}" '
                 f'style="--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px" data-state=\'{state}\'>'
@@ -76,7 +77,24 @@ class MovingFigure(anywidget.AnyWidget):
 
     def _repr_mimebundle_(self, **kwargs):
         data, metadata = super()._repr_mimebundle_(**kwargs)
-        return data | {'text/html': self.still()}, metadata
+        return (data | {'text/html': self.still()} if stills_can_be_drawn() else data), metadata
 
     def __repr__(self):
-        return f'{type(self).__name__}: {self.drawing().alt}'
+        if stills_can_be_drawn():
+            return f'{type(self).__name__}: {self.drawing().alt}'
+        state = ', '.join(f'{name}={value!r}' for name, value in self.state().items())
+        return f'{type(self).__name__}({state})'
+
+
+def stills_can_be_drawn():
+    """Return whether NumPy and Matplotlib are there."""
+    # They are looked for, not imported in vain: where they are missing, as in a browser, a figure is shown by
+    # its front end and needs no still; where they are there, no error of a still must be lost.
+    return all(map(find_spec, ('numpy', 'matplotlib')))
+
+
+def svg_on(sheet, drawing):
+    """Return the SVG element of a drawing, as large as the sheet."""
+    left, top, right, bottom = sheet
+    # The drawing adds a margin of 8 pixels to the bounds it is given.
+    return drawing.svg(bounds=(left + 8, top + 8, right - 8, bottom - 8))

@@ -3,7 +3,7 @@ import math
 
 import traitlets
 
-from .._kinds import number_array
+from .._kinds import number_tuples
 from ..euler_angles import SEQUENCES
 
 
@@ -22,24 +22,21 @@ class Numbers(traitlets.TraitType):
     info_text = 'real numbers'
 
     def __init__(self, default, shape=(), largest=math.inf, **more):
-        super().__init__(_tuples(number_array(default, shape, 'default')), **more)
+        super().__init__(number_tuples(default, shape, 'default'), **more)
         self.shape, self.largest = shape, largest
 
     def validate(self, obj, value):
         try:
-            array = number_array(value, self.shape, self.name)
+            numbers = number_tuples(value, self.shape, self.name)
         except (TypeError, ValueError) as error:
             raise traitlets.TraitError(str(error)) from None
-        if array.shape != self.shape:
-            raise traitlets.TraitError(f'{self.name} has shape {array.shape}, where {self.shape or "one number"} '
-                                       'was expected')
-        worst = abs(array).max()
+        worst = max(map(abs, _entries(numbers)))
         # A slider's end, converted from degrees, may be a rounding beyond.
         if worst > self.largest + 1e-12:
             cause = '. Angles are in radians, not degrees' if (self.largest / math.pi).is_integer() else ''
             raise traitlets.TraitError(f'{self.name} is {value!r}: numbers from -{self.largest:.6g} to '
                                        f'{self.largest:.6g} were expected{cause}')
-        return _tuples(array)
+        return numbers
 
 
 class Direction(Numbers):
@@ -70,5 +67,5 @@ def _unit(vector):
     return vector if abs(length - 1) < 1e-15 else tuple(entry / length for entry in vector)
 
 
-def _tuples(array):
-    return tuple(map(_tuples, array)) if array.ndim else float(array)
+def _entries(numbers):
+    return [one for entry in numbers for one in _entries(entry)] if isinstance(numbers, tuple) else [numbers]

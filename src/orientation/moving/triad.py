@@ -1,16 +1,10 @@
 """A triad turned in a frame about an axis, with every description of its orientation beside it."""
 import math
 
-import numpy as np
-
 from ..axis_angle import dcm_from_axis_angle, quaternion_from_axis_angle
-from ..drawing import Drawing
 from ..euler_angles import body_fixed_from_dcm
 from .figure import MovingFigure
 from .state import Direction, Numbers, Sequence
-
-REACH, KNOB = 1.25, 1.55   # of the arrows of N and of the line of the axis: labels keep clear of those of A
-SIZE = 112
 
 
 class TriadFigure(MovingFigure):
@@ -59,20 +53,3 @@ class TriadFigure(MovingFigure):
     def angles(self):
         """Body fixed angles ``(psi, theta, phi)`` for ``sequence``, in radians."""
         return body_fixed_from_dcm(self.dcm, self.sequence)
-
-    def drawing(self):
-        rows = [f'{name} at ({", ".join(f"{entry:.2f}" for entry in row)})' for name, row in zip('xyz', self.dcm)]
-        axis = np.array(self.axis)
-        drawing = Drawing(
-            f'The triad of frame N, and from the same origin the triad of A: turned from N through theta, '
-            f'{math.degrees(self.angle):.0f} degrees, about the unit vector e, which has the components '
-            f'({", ".join(f"{entry:.2f}" for entry in axis)}) in both frames. Along N, a '
-            f'{", a ".join(rows)}. Thin arcs show the way of each tip, all about e.', scale=SIZE)
-        drawing.line([-axis, KNOB * axis], 'accent', 'guide')
-        for start in np.eye(3):
-            foot = start @ axis * axis
-            if (radius := np.linalg.norm(start - foot)) > 1e-6:
-                drawing.turn(axis, self.angle, start - foot, radius, origin=foot, colour='muted', head=False)
-        drawing.triad('N', REACH * np.eye(3)).triad('A', self.dcm)
-        drawing.arrow(axis, colour='accent').dot(KNOB * axis, 'accent', 5)
-        return drawing.label(KNOB * axis, r'$\hat{e}$', 'accent', (15, -9))
