@@ -18,6 +18,7 @@ from traitlets import TraitError
 import orientation as module
 from orientation import moving
 from orientation.moving import GimbalFigure, MotionFigure, NineNumbersFigure, SuccessiveFigure, TriadFigure, bundle, glyphs
+from orientation.moving.stills.quaternion import TOPS
 from website.moving import WIDGET
 from website.notebooks import normalise
 
@@ -120,6 +121,11 @@ def test_every_formula_of_a_figure_can_be_set(kind):
     assert patterns, "no formulas were found"
     missing = [formula for formula in found if not any(re.fullmatch(patterns[formula], one) for one in glyphs.LABELS)]
     assert missing == [], f"add them to LABELS in orientation/moving/glyphs.py, then run `{glyphs.COMMAND}`"
+
+
+def test_every_top_of_the_plot_of_speeds_can_be_set():
+    tops = json.loads(re.search(r"TOPS = (\[.*?\])", bundle.source("quaternion"))[1])
+    assert tuple(tops) == TOPS and {rf"{top}^\circ/\mathrm{{s}}" for top in tops} <= set(glyphs.LABELS)
 
 
 def bundle_of(figure):
