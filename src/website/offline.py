@@ -18,8 +18,8 @@ Unpack the zip, then open index.html in a browser. Everything that you read
 works from there: the pages, the mathematics, the moving figures, the search
 and the downloads.
 
-Code that runs in the page is the one exception: browsers load Python only
-from a server. If Python is on your computer, start one in this folder with
+Code that runs in the page, or in a notebook in the browser, is the one
+exception: browsers load Python only from a server. If Python is on your computer, start one in this folder with
 
     python serve.py
 

@@ -30,7 +30,8 @@ class Handler(SimpleHTTPRequestHandler):
     isolated = True
 
     def end_headers(self):
-        if self.isolated:
+        # JupyterLite's kernel hangs in an isolated page when a file is written, or an error is shown.
+        if self.isolated and not self.path.startswith("/lite/"):
             self.send_header("Cross-Origin-Opener-Policy", "same-origin")
             self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
         super().end_headers()

@@ -67,7 +67,7 @@ def make_notebook(app, docname, doctree):
     cells[0].source = "\n\n".join(filter(None, [title, note, rest]))
     for position, cell in enumerate(cells):
         cell["id"] = f"cell-{position}"  # not random, so that builds are the same
-    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL})
+    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
 
 
 def wheel_name():

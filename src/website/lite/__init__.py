@@ -39,9 +39,11 @@ NOTE = (
     "*File > Download* gives you the notebook. Text: CC BY 4.0. Code: BSD-3-Clause."
 )
 NUMERICAL = (
-    "Some cells of this page compute or draw with NumPy and Matplotlib. The next cell fetches them from {place}.",
+    "*From here on, cells of this page compute or draw with NumPy and Matplotlib. The next cell fetches them from "
+    "{place}.*",
     "import matplotlib\nimport numpy",
 )
+PLACES = {"official": "`cdn.jsdelivr.net`, where Pyodide's makers serve them", "folder": "the place of these pages"}
 
 
 def write_lock(site):
@@ -53,8 +55,23 @@ def write_lock(site):
     packages = lock["packages"] | added
     packages[runtime.DISTRIBUTION]["depends"] = [*packages[runtime.DISTRIBUTION]["depends"], *FIGURES]
     (target / LOCK).write_text(json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8")
-    numerical = runtime.with_dependencies([name for name in runtime.NUMERICAL if name in packages], packages)
-    return sorted(set(packages) - set(numerical))
+    return sorted({*added, *runtime.with_dependencies([runtime.DISTRIBUTION], packages)})
+
+
+def announce_numpy(notebook, kinds, place):
+    """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws with it.
+
+    The kernel fetches what a cell imports; most cells here use NumPy through our own package only.
+    """
+    codes = [position for position, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
+    for position, kind in zip(codes, kinds, strict=True):
+        if set(kind["needs"]) & set(runtime.NUMERICAL):
+            words, code = NUMERICAL
+            notebook.cells[position:position] = [
+                nbformat.v4.new_markdown_cell(words.format(place=PLACES[place]), id="numpy-why"),
+                nbformat.v4.new_code_cell(code, id="numpy"),
+            ]
+            return
 
 
 def notebook_for(site, page, settings):
@@ -68,14 +85,8 @@ def notebook_for(site, page, settings):
         raise RuntimeError(f"the notebook of {page} does not say how to run it, or says it in other words")
     first.source = first.source.replace(note, NOTE.format(title=settings["title"]))
     setting = settings["sphinx"]["config"]["numpy_in_the_page"]
-    needed = {name for kind in kinds_of_cells()[page] for name in kind["needs"]}
-    if needed & set(runtime.NUMERICAL) and setting not in (False, "off"):
-        place = "`cdn.jsdelivr.net`" if setting == "official" else "the place of these pages"
-        text, code = NUMERICAL
-        notebook.cells[1:1] = [
-            nbformat.v4.new_markdown_cell(text.format(place=place), id="numpy-why"),
-            nbformat.v4.new_code_cell(code, id="numpy"),
-        ]
+    if setting not in (False, "off"):
+        announce_numpy(notebook, kinds_of_cells()[page], "official" if setting == "official" else "folder")
     return nbformat.writes(notebook)
 
 
@@ -87,8 +98,8 @@ def write_workshop(site, settings, names):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(notebook_for(site, page, settings), "utf8")
     lock = sha256((site / runtime.FOLDER / LOCK).read_bytes()).hexdigest()[:12]
+    # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
     kernel = {
-        # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
         "pyodideUrl": f"./../{runtime.FOLDER}/pyodide/pyodide.mjs",
         "disablePyPIFallback": True,
         # The name is the same in every version of the book: what follows it tells them apart.
@@ -96,7 +107,8 @@ def write_workshop(site, settings, names):
     }
     page = {
         "appName": settings["title"],
-        "faviconUrl": "../_static/favicon.svg",
+        "appUrl": f"./{APPS[1]}",
+        "faviconUrl": "./../_static/favicon.svg",
         "litePluginSettings": {f"{EXTENSIONS[0]}:kernel": kernel},
     }
     build = {

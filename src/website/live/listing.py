@@ -15,7 +15,7 @@ COLUMNS = ("draw with NumPy", "compute with NumPy", "need SciPy", "need a notebo
 
 
 def column(kind):
-    if "anywidget" in kind["needs"]:
+    if {"anywidget", "ipywidgets"} & set(kind["needs"]):
         return "need a notebook"
     if "scipy" in kind["needs"]:
         return "need SciPy"

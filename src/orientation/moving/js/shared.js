@@ -41,7 +41,7 @@ export const spoken = (text) => text.replace(/\$([^$]*)\$/g, (_, tex) => tex
 
 function glyphs(tex) {
   const label = LABELS[tex];
-  if (!label) throw new Error(`no glyphs for ${tex}: add it to LABELS in orientation/moving/bundle.py`);
+  if (!label) throw new Error(`no glyphs for ${tex}: add it to LABELS in orientation/moving/glyphs.py`);
   return label.glyphs.map(([outline, x, y, size]) => element('path', {
     d: OUTLINES[outline], transform: `translate(${x} ${y})${size === 1 ? '' : ` scale(${size})`}` }));
 }

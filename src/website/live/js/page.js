@@ -39,12 +39,17 @@
     },
   };
 
+  const fromDisk = location.protocol === "file:";
+  const FROM_DISK = "A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints.";
+  document.querySelector("a.open-notebook")?.addEventListener("click", (event) => {
+    if (!fromDisk) return;
+    event.preventDefault();
+    tools.say(FROM_DISK);
+  });
+
   let page;
   const ask = async (number) => {
-    if (location.protocol === "file:") {
-      tools.say("A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints.");
-      return;
-    }
+    if (fromDisk) return tools.say(FROM_DISK);
     try {
       page ??= import(new URL(data.script, location.href)).then(({ open }) => open({ data, boxes, bar: tools }));
       const opened = await page;

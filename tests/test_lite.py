@@ -1,0 +1,225 @@
+"""Notebooks in the browser: JupyterLite opens a chapter and an exercise, runs them, and asks nobody else."""
+
+import hashlib
+import json
+import re
+
+import nbformat
+import pytest
+from conftest import HTML, REPOSITORY
+from test_live import ELSEWHERE, solution
+
+from website.lite import FOLDER, LOCK
+from website.live import runtime
+from website.live.cells import kinds_of_cells, stored_outputs
+from website.take_away import notebook_pages
+
+LITE = HTML / FOLDER
+PATIENCE = 120_000  # milliseconds, for a busy machine; nothing waits longer than it must
+CHAPTER, EXERCISE = "chapters/gimbal-lock", "exercises/simple-orientations"
+SETTINGS = json.loads((LITE / "jupyter-lite.json").read_text("utf8"))["jupyter-config-data"]
+KERNEL = SETTINGS["litePluginSettings"]["@jupyterlite/pyodide-kernel-extension:kernel"]
+
+
+def notebook(page):
+    return nbformat.read(LITE / "files" / f"{page}.ipynb", as_version=4)
+
+
+def codes(page):
+    return [cell.source for cell in notebook(page).cells if cell.cell_type == "code"]
+
+
+# --- what is there --------------------------------------------------------------------------------
+
+
+def test_every_notebook_is_there_and_its_page_opens_it():
+    assert len(notebook_pages()) > 30
+    for page in notebook_pages():
+        link = re.search(r'<a [^>]*open-notebook[^>]*href="([^"]*)"', (HTML / f"{page}.html").read_text("utf8"))[1]
+        up = "../" * page.count("/")
+        assert link == f"{up}{FOLDER}/notebooks/index.html?path={page}.ipynb"
+        nbformat.validate(notebook(page))
+
+
+@pytest.mark.parametrize("page", notebook_pages())
+def test_notebook_is_the_page_ready_to_run(page):
+    """Exercises as they were released; chapters with all their code, and a word where NumPy comes in."""
+    source = nbformat.read(REPOSITORY / f"{page}.ipynb", as_version=4)
+    if page.startswith("exercises/"):
+        assert notebook(page) == source
+        return
+    assert "pip install" not in notebook(page).cells[0].source
+    announced = [cell.get("id") == "numpy" for cell in notebook(page).cells if cell.cell_type == "code"]
+    needs = ["numpy" in kind["needs"] or "matplotlib" in kind["needs"] for kind in kinds_of_cells()[page]]
+    if any(needs):
+        assert announced.index(True) == needs.index(True)
+    expected = [cell.source for cell in source.cells if cell.cell_type == "code"]
+    assert [code for code, new in zip(codes(page), announced) if not new] == expected
+
+
+def test_lock_lists_what_is_there():
+    packages = json.loads((HTML / runtime.FOLDER / LOCK).read_text("utf8"))["packages"]
+    for package in packages.values():
+        if "://" not in package["file_name"]:
+            content = (HTML / runtime.FOLDER / package["file_name"]).read_bytes()
+            assert hashlib.sha256(content).hexdigest() == package["sha256"]
+        assert set(package["depends"]) <= set(packages)
+    loaded = KERNEL["loadPyodideOptions"]["packages"]
+    # "comm" among them, or the kernel hangs without a word.
+    assert {"sympy", "ipywidgets", "anywidget", "comm", "orientation-of-reference-frames"} <= set(loaded)
+    assert all("://" not in packages[name]["file_name"] for name in loaded)
+
+
+def test_nothing_is_asked_of_others_by_setting():
+    address, lock = KERNEL["pyodideUrl"], KERNEL["loadPyodideOptions"]["lockFileURL"]
+    assert (LITE / address).is_file() and (LITE / lock.partition("?")[0]).is_file()
+    assert KERNEL["disablePyPIFallback"] is True
+
+
+# --- in a browser ---------------------------------------------------------------------------------
+
+
+class Interface:
+    """A notebook of the book, opened from its page as a reader opens it."""
+
+    def __init__(self, context, site, page):
+        self.asked, self.errors = [], []
+        self.site = site
+        context.set_default_timeout(PATIENCE)
+        context.on("request", lambda request: self.asked.append(request.url))
+        context.on("weberror", lambda error: self.errors.append(str(error.error)))
+        context.route(ELSEWHERE, lambda route: route.abort())
+        # The tests read the notebook as the interface holds it; a reader has no need of this.
+        shown = {**SETTINGS, "exposeAppInBrowser": True}
+        settings = {"jupyter-lite-schema-version": 0, "jupyter-config-data": shown}
+        context.route(f"**/{FOLDER}/jupyter-lite.json", lambda route: route.fulfill(json=settings))
+        front = context.new_page()
+        front.goto(f"{site}{page}.html")
+        with context.expect_page() as opened:
+            front.click("a.open-notebook")
+        front.close()
+        self.page = opened.value
+        self.wait_until_open()
+
+    def wait_until_open(self):
+        self.page.wait_for_function(
+            "window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle'"
+        )
+
+    def cells(self):
+        """The cells as the interface holds them, also those that are out of sight."""
+        return self.page.evaluate(
+            "() => jupyterapp.shell.currentWidget.content.widgets.map(cell => cell.model.toJSON())"
+        )
+
+    def number(self, code):
+        """The place of the cell that begins with ``code``."""
+        (found,) = (place for place, cell in enumerate(self.cells()) if "".join(cell["source"]).startswith(code))
+        return found
+
+    def enter(self, place):
+        """Put the cursor into the code of a cell."""
+        self.page.evaluate("place => { jupyterapp.shell.currentWidget.content.activeCellIndex = place; }", place)
+        self.page.locator(".jp-Notebook .jp-Cell.jp-mod-active .cm-content").focus()
+
+    def run(self, place):
+        """Run a cell with the keyboard; give what it put out."""
+        model = "jupyterapp.shell.currentWidget.content.widgets[place].model"
+        self.page.evaluate(f"place => {{ {model}.executionCount = null; }}", place)
+        self.enter(place)
+        self.page.keyboard.press("Control+Enter")
+        self.page.wait_for_function(f"place => {model}.executionCount !== null", arg=place)
+        return self.cells()[place]["outputs"]
+
+    def write(self, place, code):
+        self.enter(place)
+        self.page.keyboard.press("Control+a")
+        self.page.keyboard.insert_text(code)
+        assert "".join(self.cells()[place]["source"]) == code
+
+    def outside(self):
+        return [url for url in self.asked if not url.startswith((self.site, "data:", "blob:"))]
+
+
+def reply(outputs):
+    """The outcome and the words of a checked answer."""
+    (output,) = outputs
+    html = "".join(output["data"]["text/html"])
+    return re.search(r'data-outcome="([^"]*)"', html)[1], html
+
+
+# Some browsers cannot let Python wait for JavaScript: WebAssembly there has no stack switching.
+NO_SWITCHING = "delete WebAssembly.Suspending; delete WebAssembly.promising; delete WebAssembly.Suspender;"
+
+
+@pytest.mark.parametrize("switching", [True, False], ids=["", "without stack switching"])
+def test_exercise_is_solved_kept_and_downloaded(browser, site, switching):
+    context = browser.new_context(viewport={"width": 1300, "height": 900}, accept_downloads=True)
+    if not switching:
+        script = NO_SWITCHING + (HTML / runtime.FOLDER / "pyodide" / "pyodide.mjs").read_text("utf8")
+        context.route("**/pyodide.mjs", lambda route: route.fulfill(body=script, content_type="text/javascript"))
+    interface = Interface(context, site, EXERCISE)
+    assert interface.run(interface.number("from math")) == []
+    answer, check = (interface.number(code) for code in ("A_C_N = ...", "check('simple-orientations/crank'"))
+    right = solution("simple-orientations/crank").replace("### BEGIN SOLUTION\n", "").replace("\n### END SOLUTION", "")
+    for code, outcome in (("A_C_N = ...", "not attempted"), (f"{right}\nA_C_N = A_C_N.T", "wrong"), (right, "correct")):
+        interface.write(answer, code)
+        assert interface.run(answer) == []
+        found, html = reply(interface.run(check))
+        assert found == outcome, html
+        assert outcome != "wrong" or "transpose" in html
+    # Progress is kept beside the notebook, in this browser.
+    interface.write(check, "from coursework import progress\nprogress()")
+    assert "1 " in reply(interface.run(check))[1]
+    interface.page.keyboard.press("Control+s")
+    interface.page.wait_for_function("!jupyterapp.shell.currentWidget.context.model.dirty")
+    interface.page.reload()
+    interface.wait_until_open()
+    assert "".join(interface.cells()[answer]["source"]) == right, "the answer outlives the page"
+    interface.page.get_by_role("menuitem", name="File").click()
+    with interface.page.expect_download() as download:
+        interface.page.get_by_role("menuitem", name="Download", exact=True).click()
+    handed_in = nbformat.reads(download.value.path().read_text("utf8"), as_version=4)
+    assert right in [cell.source for cell in handed_in.cells]
+    original = nbformat.read(REPOSITORY / f"{EXERCISE}.ipynb", as_version=4)
+    assert handed_in.cells[answer].metadata.get("nbgrader") == original.cells[answer].metadata.get("nbgrader")
+    assert interface.outside() == [] and interface.errors == []
+    context.close()
+
+
+def test_chapter_runs_and_its_figure_moves(browser, site):
+    context = browser.new_context(viewport={"width": 1300, "height": 900})
+    interface = Interface(context, site, CHAPTER)
+    page = interface.page
+    figure = next(code for code in codes(CHAPTER) if "GimbalFigure" in code)
+    place = interface.number("from orientation.moving")
+    interface.write(place, figure.replace("GimbalFigure(a", "figure = GimbalFigure(a") + "\nfigure")
+    interface.run(place)
+    slider = page.get_by_label("theta in degrees", exact=True).first
+    slider.wait_for()
+    before = float(slider.input_value())
+    slider.focus()
+    page.keyboard.press("ArrowDown")
+    assert float(slider.input_value()) != before
+    # The SymPy cells give what the book prints, with the kernel that has heard of the slider.
+    stored = nbformat.read(REPOSITORY / f"{CHAPTER}.ipynb", as_version=4)
+    cells = [cell for cell in stored.cells if cell.cell_type == "code"]
+    ran = 0
+    for cell, kind in zip(cells, kinds_of_cells()[CHAPTER], strict=True):
+        if not kind["needs"]:
+            outputs = [nbformat.from_dict(output) for output in interface.run(interface.number(cell.source))]
+            assert stored_outputs(cell) == stored_outputs(nbformat.from_dict({"outputs": outputs})), cell.source
+            ran += 1
+    assert ran >= 8
+    place = interface.number("sm.trigsimp(M.det())")
+    interface.write(place, "figure.angles = (0.5, 0.25, 0)")
+    interface.run(place)
+    page.wait_for_function("field => Math.abs(field.value - 14.32) < 0.1", arg=slider.element_handle())
+    interface.write(place, "figure.angles[1]")
+    slider.focus()
+    page.keyboard.press("ArrowUp")
+    page.wait_for_timeout(0)
+    (output,) = interface.run(place)
+    assert float("".join(output["data"]["text/plain"])) != 0.25, "Python hears of the slider"
+    assert [url for url in interface.outside() if "jsdelivr" not in url] == [] and interface.errors == []
+    context.close()
