@@ -64,7 +64,7 @@ take-away: book
 # The PDF is printed by a browser; where there is none, the tests that need one are skipped.
 test: book
 	@if $(RUN) -m website.browser; then $(RUN) -m website.whole_book; fi
-	@$(RUN) -m pytest -n 2
+	@$(RUN) -m pytest -n 3
 
 notebooks: setup
 	@$(RUN) -m website.notebooks

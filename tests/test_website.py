@@ -1,6 +1,8 @@
 """The build refuses a faulty book: tiny books, each with one fault."""
 
 import json
+import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -65,8 +67,8 @@ Do it.
 """
 
 
-def build(folder, cells):
-    """Build a book of one chapter with the real settings; return the exit code and the words."""
+def build(folder, chapters):
+    """Build a book of ``chapters``, cells by file name, with the real settings; return the exit code and the words."""
     settings = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
     settings["sphinx"]["local_extensions"] = {"website": str(REPOSITORY / "src")}
     settings["html"].pop("favicon")
@@ -78,16 +80,18 @@ def build(folder, cells):
     contents = {
         "format": "jb-book",
         "root": "index",
-        "parts": [{"caption": "Part", "numbered": True, "chapters": [{"file": "chapter"}]}],
+        "parts": [{"caption": "Part", "numbered": True, "chapters": [{"file": name} for name in chapters]}],
     }
     (folder / "_toc.yml").write_text(json.dumps(contents))
     (folder / "index.md").write_text("# Front\n\nWords.\n")
     kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    nbformat.write(new_notebook(cells=cells, metadata=kernel), folder / "chapter.ipynb")
+    for name, cells in chapters.items():
+        nbformat.write(new_notebook(cells=cells, metadata=kernel), folder / f"{name}.ipynb")
     jupyter_book = Path(sys.executable).with_name("jupyter-book")
     done = subprocess.run(
-        [jupyter_book, "build", folder, "-W", "-n", "--keep-going"], capture_output=True, text=True
-    )
+        [jupyter_book, "build", folder, "-q", "-W", "-n", "--keep-going"],
+        env=os.environ | {"NO_COLOR": "1"}, capture_output=True, text=True,
+    )  # fmt: skip
     return done.returncode, done.stdout + done.stderr
 
 
@@ -97,11 +101,16 @@ def chapter(text=GOOD_TEXT, code=GOOD_FIGURE, metadata=None):
     return [new_markdown_cell(text), cell]
 
 
+ALTERNATIVE = "A straight line that rises from one to two."
+
+
 def test_good_book(tmp_path):
-    code, words = build(tmp_path, chapter())
+    plot = chapter(code=PLOT, metadata={"image": {"alt": ALTERNATIVE}})
+    code, words = build(tmp_path, {"chapter": chapter(), "plot": own_labels(plot, "plot")})
     assert code == 0, words
     html = (tmp_path / "_build/html/chapter.html").read_text("utf8")
     assert "Figure 1.1" in html and "(1.1)" in html and "Exercise 1.1" in html
+    assert ALTERNATIVE in (tmp_path / "_build/html/plot.html").read_text("utf8")
     assert 'class="katex"' in html and "<math" in html
     assert "mathjax@" not in html.lower() and "thebe" not in html.lower()
     markdown = nbformat.read(tmp_path / "_build/html/take-away/chapter.ipynb", as_version=4)
@@ -121,54 +130,59 @@ def test_good_book(tmp_path):
         assert expected in text, text
 
 
-@pytest.mark.parametrize(
-    "cells, expected",
-    [
-        pytest.param(chapter(code="1 / 0"), "ZeroDivisionError", id="a cell fails"),
-        pytest.param(
-            chapter(code="import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE), "stderr", id="a cell warns"
-        ),
-        pytest.param(
-            chapter(GOOD_TEXT + "\nSee {numref}`fig-nowhere`.\n"), "fig-nowhere", id="a figure is not there"
-        ),
-        pytest.param(
-            chapter(GOOD_TEXT + "\nSee {eq}`eq-nowhere`.\n"), "eq-nowhere", id="an equation is not there"
-        ),
-        pytest.param(chapter(GOOD_TEXT + "\nSee {ref}`nowhere`.\n"), "nowhere", id="a section is not there"),
-        pytest.param(chapter(GOOD_TEXT + "\nSee [it](#nowhere).\n"), "nowhere", id="a link leads nowhere"),
-        pytest.param(
-            chapter(GOOD_TEXT + "\nA {term}`thing`.\n"), "thing", id="a term is not in the glossary"
-        ),
-        pytest.param(
-            chapter(GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here")),
-            "chapter.ipynb:26 (cell 1): WARNING: bad TeX",
-            id="inline TeX is wrong",
-        ),
-        pytest.param(
-            chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")),
-            "Undefined control sequence",
-            id="TeX is unknown",
-        ),
-        pytest.param(chapter(code=FIGURE.format("")), "no alternative text", id="a figure says nothing"),
-        pytest.param(
-            chapter(code=FIGURE.format('role="img" aria-label="figure"')),
-            "found 'figure'",
-            id="it says too little",
-        ),
-        pytest.param(chapter(code=PLOT), "no alternative text", id="a plot says nothing"),
-    ],
-)
-def test_faulty_book(tmp_path, cells, expected):
-    code, words = build(tmp_path, cells)
-    assert code != 0, words
-    assert expected in words.replace("\n", " "), words
+FAULTS = {
+    "a cell fails": (chapter(code="1 / 0"), "ZeroDivisionError"),
+    "a cell warns": (chapter(code="import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE), "stderr"),
+    "a figure is not there": (chapter(GOOD_TEXT + "\nSee {numref}`fig-nowhere`.\n"), "fig-nowhere"),
+    "an equation is not there": (chapter(GOOD_TEXT + "\nSee {eq}`eq-nowhere`.\n"), "eq-nowhere"),
+    "a section is not there": (chapter(GOOD_TEXT + "\nSee {ref}`nowhere`.\n"), "nowhere"),
+    "a link leads nowhere": (chapter(GOOD_TEXT + "\nSee [it](#nowhere).\n"), "nowhere"),
+    "a term is not in the glossary": (chapter(GOOD_TEXT + "\nA {term}`thing`.\n"), "thing"),
+    "inline TeX is wrong": (
+        chapter(GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here")),
+        "inline-tex-is-wrong.ipynb:26 (cell 1): WARNING: bad TeX",
+    ),
+    "TeX is unknown": (chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")), "Undefined control sequence"),
+    "a figure says nothing": (chapter(code=FIGURE.format("")), "no alternative text"),
+    "a figure says too little": (chapter(code=FIGURE.format('role="img" aria-label="figure"')), "found 'figure'"),
+    "a plot says nothing": (chapter(code=PLOT), "no alternative text"),
+}
+LABELS = ("chapter-one", "eq-first", "eq-second", "exercise-one", "fig-line")
 
 
-def test_plot_with_alternative_text(tmp_path):
-    alt = {"image": {"alt": "A straight line that rises from one to two."}}
-    code, words = build(tmp_path, chapter(code=PLOT, metadata=alt))
-    assert code == 0, words
-    assert alt["image"]["alt"] in (tmp_path / "_build/html/chapter.html").read_text("utf8")
+def file_name(fault):
+    return fault.lower().replace(" ", "-")
+
+
+def own_labels(cells, name):
+    """The same cells with labels that no other chapter has."""
+    text = json.dumps(cells)
+    for label in LABELS:
+        text = text.replace(label, f"{label}-{name}")
+    return nbformat.from_dict(json.loads(text))
+
+
+@pytest.fixture(scope="module")
+def faulty_book(tmp_path_factory):
+    """One book with a chapter for each fault: the exit code, and the warnings, each with its lines."""
+    names = {file_name(fault): cells for fault, (cells, _) in FAULTS.items()}
+    chapters = {name: own_labels(cells, name) for name, cells in names.items()}
+    code, words = build(tmp_path_factory.mktemp("faulty"), chapters | {"good": own_labels(chapter(), "good")})
+    return code, re.split(r"^(?=\S+?\.(?:ipynb|md)\S*(?: \(cell \d+\))?: )", words, flags=re.MULTILINE)
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faulty_book(faulty_book, fault):
+    code, warnings = faulty_book
+    assert code != 0
+    own = [warning for warning in warnings if f"/{file_name(fault)}.ipynb" in warning.partition(": ")[0]]
+    assert own, warnings
+    assert all("WARNING" in warning or "ERROR" in warning for warning in own), own
+    assert any(FAULTS[fault][1] in warning.replace("\n", " ") for warning in own), own
+
+
+def test_nothing_is_said_of_a_good_chapter_among_faulty_ones(faulty_book):
+    assert [warning for warning in faulty_book[1] if "/good.ipynb" in warning.partition(": ")[0]] == []
 
 
 def test_alternative_text_needs_words():
