@@ -4,7 +4,8 @@ One chapter of the book as ``make book`` built it, in headless Chromium, from a 
 an empty cache; warm is a new visit in the same browser. The time runs from the press on the first SymPy cell's Run until
 its formula is typeset on the page. Beside it stands the time of the bare runtime in the same browser: Pyodide started
 in a worker, and SymPy imported. What each later cell costs beyond its own work is the time of an assignment:
-code, message, outcome and page together.
+code, message, outcome and page together. JupyterLite's time runs from opening the notebook of an exercise until its
+first cell, which imports SymPy and ``coursework``, has run.
 """
 
 import gzip
@@ -13,6 +14,7 @@ import statistics
 import sys
 import tempfile
 import threading
+import time
 import urllib.request
 from pathlib import Path
 
@@ -21,6 +23,7 @@ from playwright.sync_api import sync_playwright
 from website.serve import server
 
 PAGE = 'chapters/direction-cosine-matrices'
+NOTEBOOK = 'lite/notebooks/index.html?path=exercises/direction-cosine-matrices.ipynb'
 SITE = Path('_build/html')
 ROUNDS = 5
 CELLS = 30
@@ -85,6 +88,21 @@ def visit(context, address):
     return page, number, seconds, asked[before:]
 
 
+def open_notebook(context, site):
+    """Open a notebook in JupyterLite and run its first cell; return the seconds and what was asked for."""
+    page = context.new_page()
+    asked = []
+    context.on('requestfinished', lambda request: asked.append(request.url))
+    start = time.monotonic()
+    page.goto(f'{site}{NOTEBOOK}')
+    page.locator('.jp-CodeCell').first.click()
+    page.keyboard.press('Shift+Enter')
+    page.wait_for_function(r"document.querySelector('.jp-CodeCell .jp-InputPrompt')?.innerText.match(/\d/)", timeout=120_000)
+    seconds = time.monotonic() - start
+    page.close()
+    return seconds, asked
+
+
 def bare(context, site):
     """Seconds until SymPy is imported without the book around it."""
     page = context.new_page()
@@ -117,7 +135,7 @@ def main():
     threading.Thread(target=book.serve_forever, daemon=True).start()
     site = f'http://127.0.0.1:{book.server_port}/'
     address = f'{site}{PAGE}.html'
-    cold, warm, overheads, bare_cold, bare_warm = [], [], [], [], []
+    cold, warm, overheads, bare_cold, bare_warm, lite_cold, lite_warm = ([] for _ in range(7))
     with sync_playwright() as playwright:
         for _ in range(ROUNDS):
             with tempfile.TemporaryDirectory() as profile:
@@ -135,14 +153,23 @@ def main():
                 page, _, seconds, _ = visit(context, address)
                 warm.append(seconds)
                 context.close()
+            with tempfile.TemporaryDirectory() as profile:
+                context = playwright.chromium.launch_persistent_context(profile, executable_path=executable, args=FLAGS)
+                seconds, lite_asked = open_notebook(context, site)
+                lite_cold.append(seconds)
+                lite_warm.append(open_notebook(context, site)[0])
+                context.close()
     print('| what | median | of', ROUNDS, '|')
     print('|---|---|---|')
     for what, values, unit in (('first SymPy result, cold', cold, 's'), ('bare runtime and SymPy, cold', bare_cold, 's'),
                                ('first SymPy result, warm', warm, 's'), ('bare runtime and SymPy, warm', bare_warm, 's'),
-                               ('each later cell, beyond its own work', overheads, 'ms')):
+                               ('each later cell, beyond its own work', overheads, 'ms'),
+                               ('JupyterLite until a cell has run, cold', lite_cold, 's'),
+                               ('JupyterLite until a cell has run, warm', lite_warm, 's')):
         every = ', '.join(f'{value:.2f}' for value in sorted(values))
         print(f'| {what} | {statistics.median(values):.2f} {unit} | {every} |')
-    print(f'| download, MB after gzip | {weight(asked):.1f} | {len(set(asked))} files |')
+    for what, urls in (('download', asked), ("JupyterLite's download", lite_asked)):
+        print(f'| {what}, MB after gzip | {weight(urls):.1f} | {len(set(urls))} files |')
 
 
 if __name__ == '__main__':

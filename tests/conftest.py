@@ -14,6 +14,17 @@ BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
+def pytest_collection_modifyitems(items):
+    """Share the tests out among processes by file: the cells of a notebook have one kernel, many tests one fixture.
+
+    Those that stand apart come last, one by one, so that no process is left without work.
+    """
+    together = [item for item in items if not item.get_closest_marker("apart")]
+    for item in together:
+        item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
+    items[:] = together + [item for item in items if item.get_closest_marker("apart")]
+
+
 def html_pages():
     """The addresses of all pages of the built site, relative to its root; notebooks in ``lite`` are not pages."""
     found = [path.relative_to(HTML) for path in HTML.rglob("*.html")]

@@ -159,12 +159,10 @@ def reply(outputs):
 NO_SWITCHING = "delete WebAssembly.Suspending; delete WebAssembly.promising; delete WebAssembly.Suspender;"
 
 
-@pytest.mark.parametrize("switching", [True, False], ids=["", "without stack switching"])
-def test_exercise_is_solved_kept_and_downloaded(browser, site, switching):
+def test_exercise_is_solved_kept_and_downloaded(browser, site):
     context = browser.new_context(viewport={"width": 1300, "height": 900}, accept_downloads=True)
-    if not switching:
-        script = NO_SWITCHING + (HTML / runtime.FOLDER / "pyodide" / "pyodide.mjs").read_text("utf8")
-        context.route("**/pyodide.mjs", lambda route: route.fulfill(body=script, content_type="text/javascript"))
+    script = NO_SWITCHING + (HTML / runtime.FOLDER / "pyodide" / "pyodide.mjs").read_text("utf8")
+    context.route("**/pyodide.mjs", lambda route: route.fulfill(body=script, content_type="text/javascript"))
     interface = Interface(context, site, EXERCISE)
     assert interface.run(interface.number("from math")) == []
     answer, check = (interface.number(code) for code in ("A_C_N = ...", "check('simple-orientations/crank'"))
@@ -231,15 +229,10 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
     (output,) = interface.run(place)
     assert abs(math.degrees(float("".join(output["data"]["text/plain"]))) - moved) < 0.01
     assert interface.outside() == [] and interface.errors == []
-    context.close()
 
-
-def test_cells_with_numpy_say_what_they_need(browser, site):
-    """Where NumPy cannot be fetched, the cell that fetches it fails, and the others run."""
-    context = browser.new_context(viewport={"width": 1300, "height": 900})
-    interface = Interface(context, site, CHAPTER)
+    # Where NumPy cannot be fetched, the cell that fetches it says so, and the others run.
     (output,) = interface.run(interface.number("import matplotlib"))
     assert output["output_type"] == "error"
     assert {url.split("/")[2] for url in interface.outside()} == {"cdn.jsdelivr.net"}
-    assert interface.run(interface.number("import sympy as sm"))[-1]["output_type"] == "execute_result"
+    assert interface.run(interface.number("sm.trigsimp(D_C_A.subs(theta, -sm.pi/2))"))[0]["output_type"] == "execute_result"
     context.close()
