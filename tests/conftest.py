@@ -6,6 +6,7 @@ import threading
 from pathlib import Path
 
 import pytest
+from xdist.scheduler import LoadFileScheduling
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 HTML = REPOSITORY / "_build" / "html"
@@ -14,15 +15,22 @@ BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
-def pytest_collection_modifyitems(items):
+# Tests that take long, each by itself, and share nothing with the others of their file.
+APART = ("tests/test_site.py::test_page_in_", "tests/test_live.py::test_results_equal_the_stored_ones[")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
     """Share the tests out among processes by file: the cells of a notebook have one kernel, many tests one fixture.
 
-    Those that stand apart come last, one by one, so that no process is left without work.
+    Those that stand apart come one by one, after the larger files, so that no process is left without work.
     """
-    together = [item for item in items if not item.get_closest_marker("apart")]
-    for item in together:
-        item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
-    items[:] = together + [item for item in items if item.get_closest_marker("apart")]
+
+    class ByFile(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return nodeid if nodeid.startswith(APART) else super()._split_scope(nodeid)
+
+    return ByFile(config, log)
 
 
 def html_pages():

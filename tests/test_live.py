@@ -158,7 +158,6 @@ def test_every_notebook_is_a_page_with_code():
 
 
 # The build has run all cells with the same Python code; pages of exercises are alike in a browser.
-@pytest.mark.apart
 @pytest.mark.parametrize("name", [name for name in PAGES if not name.startswith(STORED)])
 def test_results_equal_the_stored_ones(context, site, name):
     """Every cell that needs SymPy only gives what is printed; the others say why they did not run."""

@@ -32,8 +32,6 @@ EXTENSIONS = ("@jupyterlite/pyodide-kernel-extension", "@jupyter-widgets/jupyter
 LABEXTENSIONS = Path(sys.prefix) / "share" / "jupyter" / "labextensions"
 KERNEL_WHEELS = LABEXTENSIONS / EXTENSIONS[0] / "static" / "pypi"
 KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
-# What the moving figures import when they are made.
-FIGURES = ["anywidget"]
 NOTE = (
     "> This page of *{title}* runs in your browser. What you change is kept in this browser, on this machine; "
     "*File > Download* gives you the notebook. Text: CC BY 4.0. Code: BSD-3-Clause."
@@ -53,7 +51,6 @@ def write_lock(site):
     kernel = [wheel for name in KERNEL for wheel in KERNEL_WHEELS.glob(f"{name}-*.whl")]
     added = runtime.own_packages(runtime.compile_wheels([*sorted(FETCHED.glob("*.whl")), *kernel]), target)
     packages = lock["packages"] | added
-    packages[runtime.DISTRIBUTION]["depends"] = [*packages[runtime.DISTRIBUTION]["depends"], *FIGURES]
     (target / LOCK).write_text(json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8")
     return sorted({*added, *runtime.with_dependencies([runtime.DISTRIBUTION], packages)})
 

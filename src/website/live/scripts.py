@@ -3,10 +3,12 @@
 import os
 import shutil
 import subprocess
+import tempfile
+from pathlib import Path
 
 from ..page import NODE
 from ..paths import NODE_MODULES, fingerprint
-from .cells import PYTHON, RESULTS, write_python
+from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
@@ -29,15 +31,15 @@ def write(site):
     for outdated in (site / FOLDER).glob("scripts-*"):
         if outdated != target:
             shutil.rmtree(outdated)
-    workshop = RESULTS / "workshop"
-    shutil.rmtree(workshop, ignore_errors=True)
-    shutil.copytree(JS, workshop / "js")
-    write_python(workshop / "python")
     target.mkdir(parents=True, exist_ok=True)
-    esbuild(
-        workshop / "js" / "live.js", workshop / "js" / "worker.js", "--bundle", "--format=esm",
-        "--loader:.py=text", f"--outdir={target}",
-    )  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        workshop = Path(folder)
+        shutil.copytree(JS, workshop / "js")
+        write_python(workshop / "python")
+        esbuild(
+            workshop / "js" / "live.js", workshop / "js" / "worker.js", "--bundle", "--format=esm",
+            "--loader:.py=text", f"--outdir={target}",
+        )  # fmt: skip
     shutil.copyfile(JS / "live.css", target / "live.css")
     static = site / "_static"
     static.mkdir(exist_ok=True)
