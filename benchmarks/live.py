@@ -92,7 +92,7 @@ def open_notebook(context, site):
     """Open a notebook in JupyterLite and run its first cell; return the seconds and what was asked for."""
     page = context.new_page()
     asked = []
-    context.on('response', lambda response: response.status == 200 and asked.append(response.url))
+    context.on('response', lambda response: response.status == 200 and not response.from_service_worker and asked.append(response.url))
     start = time.monotonic()
     page.goto(f'{site}{NOTEBOOK}')
     page.locator('.jp-CodeCell').first.click()
