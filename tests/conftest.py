@@ -1,18 +1,18 @@
 """What the tests share: the built site, a server for it, and a browser."""
 
 import os
-import shutil
 import threading
 from pathlib import Path
 
 import pytest
 from xdist.scheduler import LoadFileScheduling
 
+from website.browser import FLAGS, find
+
 REPOSITORY = Path(__file__).resolve().parent.parent
 HTML = REPOSITORY / "_build" / "html"
 # Set where a missing browser must not pass unnoticed (.ci/run sets it).
 BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
 # Tests that take long, each by itself, and share nothing with the others of their file.
@@ -58,22 +58,11 @@ def browser():
     """Headless Chromium; skipped with a reason where there is none."""
     from playwright.sync_api import sync_playwright
 
-    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    found = find()
     if found is None:
         reason = "no Chromium on this machine: the built pages cannot be opened"
         pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(
-            executable_path=found,
-            # The first flag is for containers, where tests run as root; the others
-            # keep the browser from talking to its maker.
-            args=[
-                "--no-sandbox",
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--disable-sync",
-                "--no-first-run",
-            ],
-        )
+        chromium = playwright.chromium.launch(executable_path=found, args=list(FLAGS))
         yield chromium
         chromium.close()

@@ -30,6 +30,10 @@ def notebook_pages():
     return [page for page in pages() if Path(f"{page}.ipynb").is_file()]
 
 
+def is_notebook(app, pagename, doctree):
+    return doctree is not None and str(app.env.doc2path(pagename)).endswith(".ipynb")
+
+
 def introduction(title):
     """What the notebook of a page says first, below its title."""
     return (
@@ -77,7 +81,7 @@ def wheel_name():
 
 def write_page(app, pagename, templatename, context, doctree):
     context["downloads"] = []
-    if doctree is None or not str(app.env.doc2path(pagename)).endswith(".ipynb"):
+    if not is_notebook(app, pagename, doctree):
         return
     if pagename.startswith("exercises/"):
         context["downloads"] = exercise_downloads(app, pagename)

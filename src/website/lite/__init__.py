@@ -19,7 +19,7 @@ from ..live import runtime
 from ..live.cells import kinds_of_cells
 from ..paths import BUILD, fingerprint, moment_of_sources
 from ..take_away import FOLDER as TAKE_AWAY
-from ..take_away import introduction, notebook_pages
+from ..take_away import introduction, is_notebook, notebook_pages
 
 HERE = Path(__file__).parent
 FOLDER = "lite"
@@ -65,7 +65,7 @@ def announce_numpy(notebook, kinds, place):
         if set(kind["needs"]) & set(runtime.NUMERICAL):
             words, code = NUMERICAL
             notebook.cells[position:position] = [
-                nbformat.v4.new_markdown_cell(words.format(place=PLACES[place]), id="numpy-why"),
+                nbformat.v4.new_markdown_cell(words.format(place=place), id="numpy-why"),
                 nbformat.v4.new_code_cell(code, id="numpy"),
             ]
             return
@@ -83,7 +83,7 @@ def notebook_for(site, page, settings):
     first.source = first.source.replace(note, NOTE.format(title=settings["title"]))
     setting = settings["sphinx"]["config"]["numpy_in_the_page"]
     if setting not in (False, "off"):
-        announce_numpy(notebook, kinds_of_cells()[page], "official" if setting == "official" else "folder")
+        announce_numpy(notebook, kinds_of_cells()[page], PLACES.get(setting, PLACES["folder"]))
     return nbformat.writes(notebook)
 
 
@@ -146,7 +146,7 @@ def write(site):
 
 def add_link(app, pagename, templatename, context, doctree):
     """Give a page with a notebook the address that opens it."""
-    if pagename in notebook_pages():
+    if is_notebook(app, pagename, doctree):
         context["notebook_interface"] = context["pathto"](f"{FOLDER}/{APPS[0]}/index.html", 1) + f"?path={pagename}.ipynb"
 
 
