@@ -18,8 +18,8 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from orientation import moving
-from orientation.moving import bundle
+from orientation_figures import moving
+from orientation_figures.moving import bundle
 
 from .pages import BROWSERS
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from test_site import WATCH_SHIFTS
 
-from orientation import moving
-from orientation.moving import bundle
+from orientation_figures import moving
+from orientation_figures.moving import bundle
 
 FIGURES = {
     figure.kind: figure

@@ -11,18 +11,18 @@ import sympy as sm
 from sympy.physics.mechanics import ReferenceFrame
 
 import coursework
-from coursework import questions, sealing
-from coursework.author import AuthorError, question
-from coursework.forms import equivalent_forms, random_form
-from coursework.kinds import Fault, Undecidable, fault, read
-from coursework.plain import NotPlain, to_plain
-from coursework.questions import NoSuchQuestion
+from coursework.checking import questions, sealing
+from coursework.authoring.author import AuthorError, question
+from coursework.authoring.forms import equivalent_forms, random_form
+from coursework.checking.kinds import Fault, Undecidable, fault, read
+from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.questions import NoSuchQuestion
 from orientation import (
     SEQUENCES, body_fixed_from_dcm, dcm_from_body_fixed, dcm_from_quaternion, dcm_from_space_fixed,
     multiply_quaternions, quaternion_from_axis_angle, simple_dcm)
 
 # The package gives the function of this name; the module is looked up.
-check_module = sys.modules['coursework.check']
+check_module = sys.modules['coursework.checking.check']
 theta, alpha, phi = sm.symbols('theta alpha varphi')
 GIMBAL = dcm_from_body_fixed((theta, alpha, phi), 'zxy')
 TWO = simple_dcm('x', alpha) * simple_dcm('z', theta)

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from orientation import dcm_from_axis_angle, dcm_from_body_fixed, simple_dcm
-from orientation.drawing import (
+from orientation_figures.drawing import (
     BARB, HEADS, IN_SPACE, Drawing, looking_down, path_data, typeset, view_from)
-from orientation.drawing_animation import Animation, one_after_another
-from orientation.drawing_style import DARK, LIGHT, STROKES
-from orientation.drawing_objects import draw_book, draw_eye, gimbal_drawing, plane_drawing, turning_frames_animation
+from orientation_figures.animation import Animation, one_after_another
+from orientation_figures.style import DARK, LIGHT, STROKES
+from orientation_figures.objects import draw_book, draw_eye, gimbal_drawing, plane_drawing, turning_frames_animation
 
 ALT = 'A triad of unit vectors, drawn for a test: x to the left, y to the right, z up.'
 GIMBAL_ANGLES = np.radians((35, 25, 25))
@@ -271,7 +271,7 @@ def test_output_is_the_same_in_every_run():
 
 
 def test_the_module_loads_no_pictures_by_itself():
-    code = 'import sys, orientation; print([name for name in ("matplotlib", "orientation.drawing") if name in sys.modules])'
+    code = 'import sys, orientation; print([name for name in ("matplotlib", "orientation_figures.drawing") if name in sys.modules])'
     run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == '[]'
 

@@ -6,8 +6,8 @@ import pytest
 import sympy as sm
 
 from orientation import PROPER_EULER, SEQUENCES, dcm_from_body_fixed, dcm_from_space_fixed, simple_dcm
-from orientation.moving import SequenceExplorer
-from orientation.moving.explorer import angle_from_text
+from orientation_figures.moving import SequenceExplorer
+from orientation_figures.moving.explorer import angle_from_text
 from website.moving import WIDGET
 
 PSI, THETA, PHI = sm.symbols("psi, theta, varphi")

@@ -218,7 +218,7 @@ def test_an_answer_is_printed_in_bounded_length():
     deep = {"value": ["expression", 5_000], "nodes": [["symbol", "x"], *(["sin", order] for order in range(5_000))]}
     assert len(pages.answer_as_text(deep)) < 400
     import sympy as sm
-    from coursework.plain import to_plain
+    from coursework.checking.plain import to_plain
     x, y = sm.symbols("x y")
     for expression in (x - y, -x / 2, (x + y) ** 2, sm.sqrt(x) * (y - 1), 2 ** (x * y), x ** -y, sm.sin(x) / y, -(x + y), (x ** 2) ** y):
         assert sm.simplify(sm.sympify(pages.answer_as_text(to_plain(expression))) - expression) == 0

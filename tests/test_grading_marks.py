@@ -6,13 +6,13 @@ import pytest
 import sympy as sm
 from grading_class import write_sources
 
-from coursework.evaluate import MOST_WORK, TooLarge, values
+from coursework.checking.evaluate import MOST_WORK, TooLarge, values
 from coursework.grading import marking, reports
 from coursework.grading.marking import CUT_SHORT, mark, questions_of
-from coursework.mistakes import MESSAGES
-from coursework.plain import MOST_NODES, NotPlain, read_plain, to_plain
-from coursework.questions import judge
-from coursework.release import read_source
+from coursework.checking.mistakes import MESSAGES
+from coursework.checking.plain import MOST_NODES, NotPlain, read_plain, to_plain
+from coursework.checking.questions import judge
+from coursework.authoring.release import read_source
 
 
 @pytest.fixture(scope="module")

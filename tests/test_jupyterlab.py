@@ -26,7 +26,7 @@ SET = {
     "motion": ("time", 3.0, "Time in seconds", 3),
 }
 FIRST_CELL = f"""
-from orientation import moving
+from orientation_figures import moving
 figures = {{name: getattr(moving, figure)() for name, figure in {({kind: FIGURES[kind].__name__ for kind in KINDS})!r}.items()}}
 heard = []
 for name, figure in figures.items():

@@ -206,7 +206,7 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
             assert stored_outputs(cell) == stored_outputs(nbformat.from_dict({"outputs": outputs})), cell.source
             ran += 1
     assert ran >= 8
-    interface.run(interface.number("from orientation.moving"))
+    interface.run(interface.number("from orientation_figures.moving"))
     page.get_by_label("theta in degrees", exact=True).first.wait_for()
     assert interface.outside() == []
 

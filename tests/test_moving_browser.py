@@ -22,8 +22,8 @@ from figure_pages import (  # noqa: F401
 from test_site import SIDEWAYS, violations
 
 import orientation as module
-from orientation import moving
-from orientation.moving import bundle
+from orientation_figures import moving
+from orientation_figures.moving import bundle
 
 HEAVIEST = 60_000  # bytes of our own JavaScript for all figures together, compressed
 SMALLEST_TARGET = 24  # pixels

@@ -11,7 +11,7 @@ from orientations import angles_near, lock_angles, random_dcms, random_unit_vect
 from scipy.spatial.transform import Rotation, Slerp
 
 import orientation as module
-from orientation.moving import bundle
+from orientation_figures.moving import bundle
 
 LARGEST = 1e-12   # radians
 NODE = Path(sys.executable).with_name("node")

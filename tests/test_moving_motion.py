@@ -23,9 +23,9 @@ from orientation import (
     nearest_dcm,
     quaternion_rate,
 )
-from orientation.moving import MotionFigure, bundle
-from orientation.moving.motion import DESCRIPTIONS, MOMENTS
-from orientation.moving.tumbling import SPIN
+from orientation_figures.moving import MotionFigure, bundle
+from orientation_figures.moving.motion import DESCRIPTIONS, MOMENTS
+from orientation_figures.moving.tumbling import SPIN
 
 NODE = Path(sys.executable).with_name("node")
 SETTINGS = ("moments", "axis", "disturbance", "method", "step", "restored")

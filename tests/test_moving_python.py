@@ -16,9 +16,9 @@ from bs4 import BeautifulSoup
 from traitlets import TraitError
 
 import orientation as module
-from orientation import moving
-from orientation.moving import GimbalFigure, MotionFigure, NineNumbersFigure, SuccessiveFigure, TriadFigure, bundle, glyphs
-from orientation.moving.stills.quaternion import TOPS
+from orientation_figures import moving
+from orientation_figures.moving import GimbalFigure, MotionFigure, NineNumbersFigure, SuccessiveFigure, TriadFigure, bundle, glyphs
+from orientation_figures.moving.stills.quaternion import TOPS
 from website.moving import WIDGET
 from website.notebooks import normalise
 
@@ -40,7 +40,7 @@ import sys
 for name in ("numpy", "matplotlib", "scipy"):
     sys.modules[name] = None
 import traitlets
-from orientation import moving
+from orientation_figures import moving
 
 def refused(error, ask):
     try:

@@ -9,7 +9,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from coursework import release
+from coursework.authoring import release
 
 nbgrader_utils = pytest.importorskip('nbgrader.utils')
 

@@ -10,8 +10,8 @@ import pytest
 import sympy as sm
 import sympy.physics.mechanics as me
 
-from coursework.evaluate import FUNCTIONS, MP, Undefined, number, real, values
-from coursework.plain import NotPlain, read_plain, to_plain
+from coursework.checking.evaluate import FUNCTIONS, MP, Undefined, number, real, values
+from coursework.checking.plain import NotPlain, read_plain, to_plain
 
 x, y = sm.symbols('x y')
 POINT = {'x': MP.mpf('0.37'), 'y': MP.mpf('-0.81'), "x'": MP.mpf('2.5')}
@@ -182,6 +182,6 @@ def test_random_data_is_refused_or_read_without_any_other_error():
 
 def test_a_student_needs_no_numpy():
     code = ("import sys; sys.modules['numpy'] = None\n"
-            "import sympy\nfrom coursework import check\nfrom coursework.plain import to_plain\n"
+            "import sympy\nfrom coursework import check\nfrom coursework.checking.plain import to_plain\n"
             "to_plain(sympy.eye(3) * sympy.Symbol('x'))")
     subprocess.run([sys.executable, '-W', 'error', '-c', code], check=True)

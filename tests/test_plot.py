@@ -6,8 +6,8 @@ from xml.dom import minidom
 import matplotlib
 import pytest
 
-from orientation.drawing import LIGHT
-from orientation.drawing_plot import Plot
+from orientation_figures.drawing import LIGHT
+from orientation_figures.plot import Plot
 
 ALT = 'A line that rises from the origin to the point one, one, and a flat dashed line below it.'
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from coursework import release
-from coursework.author import AuthorError
-from coursework.selftest import leaks, released_texts, secrets_of
+from coursework.authoring import release
+from coursework.authoring.author import AuthorError
+from coursework.authoring.selftest import leaks, released_texts, secrets_of
 
 SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("theta")'
 SOLUTION = ('### BEGIN SOLUTION\nworking = sm.sin(theta)\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), working], '
@@ -23,7 +23,7 @@ FUNCTION = ('### BEGIN SOLUTION\ndef conjugate(quaternion):\n    """Return the c
             '    return [quaternion[0], *(-part for part in quaternion[1:])]\n### END SOLUTION')
 HIDDEN_FUNCTION = ("### BEGIN HIDDEN TESTS\nquestion('trial/conjugate', kind='function', result='quaternion', "
                    "calls=[[[0.5, 0.5, 0.5, 0.5]], [[0.6, 0, 0.8, 0]]])\n### END HIDDEN TESTS")
-FIGURE = ('import numpy as np\nfrom orientation.drawing import Drawing\n'
+FIGURE = ('import numpy as np\nfrom orientation_figures.drawing import Drawing\n'
           'd = Drawing("A triad whose three arrows are named, long enough to stand for the picture")\n'
           'd.triad("N", np.eye(3))\nd')
 
@@ -105,7 +105,7 @@ def test_an_author_is_told_what_is_wrong(tmp_path, cells, words):
 
 def test_what_is_committed_is_what_the_sources_make(tmp_path):
     release.release(release.SOURCES, tmp_path / 'exercises', tmp_path / 'sealed')
-    message = 'Run `make release` and commit exercises/ and src/coursework/sealed/: they are not what the sources make.'
+    message = 'Run `make release` and commit exercises/ and src/coursework/checking/sealed/: they are not what the sources make.'
     assert release.differences(release.SEALED, tmp_path / 'sealed', '*.json') == [], message
     assert release.differences(release.EXERCISES, tmp_path / 'exercises', '*.ipynb') == [], message
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from coursework import release
-from coursework.selftest import leaks, released_texts, selftest, try_question, write_page
+from coursework.authoring import release
+from coursework.authoring.selftest import leaks, released_texts, selftest, try_question, write_page
 
 SOURCES = {path.stem: path for path in sorted(release.SOURCES.glob('*.ipynb'))}
 

@@ -3,6 +3,6 @@
 A student needs ``from coursework import check`` and no more.
 """
 
-from .check import check, hint, progress
+from .checking.check import check, hint, progress
 
 __all__ = ['check', 'hint', 'progress']

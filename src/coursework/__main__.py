@@ -26,8 +26,8 @@ def main(arguments=None):
 
 
 def _release(no_archive, **folders):
-    from . import release
-    from .author import AuthorError
+    from .authoring import release
+    from .authoring.author import AuthorError
     try:
         given = {name: folder for name, folder in folders.items() if folder}
         # The notebooks are run with the questions of this package: sealed elsewhere, they are not there.
@@ -40,7 +40,7 @@ def _release(no_archive, **folders):
 
 
 def _selftest(page, sources):
-    from .selftest import selftest
+    from .authoring.selftest import selftest
     faults = selftest(**({'sources': sources} if sources else {}), page=page)
     print(f'The page: {page}')
     if faults:
@@ -49,7 +49,7 @@ def _selftest(page, sources):
 
 
 def _update(archive, folder):
-    from .release import update
+    from .authoring.release import update
     print(*update(archive, folder), sep='\n')
 
 

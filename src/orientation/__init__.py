@@ -4,7 +4,7 @@ Direction cosine matrices :math:`{}^A\\mathbf{C}^N` have :math:`A`'s unit vector
 in radians, quaternions have their scalar part first, and sequences are body fixed and lower case.
 """
 
-from ._kinds import SymbolsNotPossible
+from ._numbers_and_symbols import SymbolsNotPossible
 from .axis_angle import axis_angle_from_dcm, dcm_from_axis_angle, quaternion_from_axis_angle
 from .comparison import Diagnosis, diagnose, same_orientation
 from .direction_cosines import NearestDCM, check_dcm, nearest_dcm, simple_dcm
@@ -12,7 +12,7 @@ from .euler_angles import (
     PROPER_EULER, SEQUENCES, TAIT_BRYAN, body_fixed_from_dcm, dcm_from_body_fixed, dcm_from_space_fixed,
     gimbal_lock_margin, space_fixed_from_dcm)
 from .frames import Frames
-from .motion import angular_velocity_matrix, dcm_rate, quaternion_rate
+from .angular_velocity import angular_velocity_matrix, dcm_rate, quaternion_rate
 from .quaternions import (
     dcm_from_quaternion, interpolate_quaternions, multiply_quaternions, quaternion_from_dcm)
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm

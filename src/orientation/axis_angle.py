@@ -1,6 +1,6 @@
 """Axis and angle: Euler's theorem, Rodrigues' formula, and back again from 0 to pi."""
 
-from ._kinds import evaluate
+from ._numbers_and_symbols import evaluate
 from .direction_cosines import DCM_GUARD
 from .quaternions import quaternion_components_from_dcm
 

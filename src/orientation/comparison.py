@@ -10,7 +10,7 @@ import math
 import random
 from typing import NamedTuple
 
-from ._kinds import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, symbol_components
+from ._numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, symbol_components
 from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
 from .quaternions import demand_unit_length, product_components

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ._kinds import NUMBERS, TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
+from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
 
 AXES = ('x', 'y', 'z')
 

@@ -1,6 +1,6 @@
 """Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
 
-from ._kinds import evaluate, is_symbolic, number_array, symbol_components
+from ._numbers_and_symbols import evaluate, is_symbolic, number_array, symbol_components
 from .direction_cosines import AXES, DCM_GUARD
 
 #: Sequences whose first and last axes are the same.

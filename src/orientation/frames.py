@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ._kinds import is_symbolic, number_array, symbol_components
+from ._numbers_and_symbols import is_symbolic, number_array, symbol_components
 from .axis_angle import dcm_from_axis_angle
 from .comparison import same_orientation
 from .direction_cosines import check_dcm, simple_dcm

@@ -1,6 +1,6 @@
 """Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
 
-from ._kinds import NUMBERS, TOLERANCE, evaluate
+from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate
 from .direction_cosines import DCM_GUARD
 
 

@@ -1,6 +1,6 @@
 """Rotation vectors: the exponential and the logarithm of rotations."""
 
-from ._kinds import evaluate
+from ._numbers_and_symbols import evaluate
 from .direction_cosines import DCM_GUARD
 from .quaternions import quaternion_components_from_dcm
 

@@ -5,7 +5,7 @@ components along :math:`N`, so its matrix is :math:`{}^N\mathbf{C}^A`. The trans
 nowhere else.
 """
 
-from ._kinds import evaluate
+from ._numbers_and_symbols import evaluate
 from .direction_cosines import DCM_GUARD
 
 

@@ -1,6 +1,6 @@
 """Figures that move: their scripts on the pages that hold them, and nothing of widgets' own.
 
-A cell that ends in a figure of ``orientation.moving`` puts out a still, with the state of the figure, and
+A cell that ends in a figure of ``orientation_figures.moving`` puts out a still, with the state of the figure, and
 a widget for Jupyter. The page shows the still, and one script for each kind of figure brings it to life.
 """
 
@@ -44,7 +44,7 @@ def add_scripts(app, pagename, templatename, context, doctree):
     kinds = kinds_on(doctree) if doctree is not None else []
     if not kinds:
         return
-    from orientation.moving import bundle
+    from orientation_figures.moving import bundle
 
     texts = {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
     texts |= {f"{kind}.js": bundle.script(kind) for kind in kinds}

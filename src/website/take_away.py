@@ -12,7 +12,7 @@ from pathlib import Path
 import jupytext
 import nbformat
 
-from coursework import release
+from coursework.authoring import release
 
 from .markdown import MarkdownWriter
 from .paths import REPOSITORY, package, pages
@@ -20,7 +20,7 @@ from .paths import REPOSITORY, package, pages
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
 EXERCISES = REPOSITORY / "exercises"
-PACKAGES = ("orientation", "coursework")
+PACKAGES = ("orientation", "orientation_figures", "coursework")
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
 

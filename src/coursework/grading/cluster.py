@@ -13,7 +13,7 @@ import uuid
 from distributed import Client, WorkerPlugin, as_completed, get_worker
 from distributed.scheduler import KilledWorker
 
-from ..plain import NotPlain, read_plain
+from ..checking.plain import NotPlain, read_plain
 
 CONNECT_WITHIN = '30s'
 

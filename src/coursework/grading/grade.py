@@ -17,7 +17,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
 
-from .. import release
+from ..authoring import release
 from . import intake, marking
 from .store import FORMAT, Store, as_text, write
 
@@ -190,7 +190,7 @@ def software():
 
 def _digest_of_sandbox():
     digest = hashlib.sha256()
-    for path in sorted([*Path(__file__).parent.glob('*.py'), Path(__file__).parents[1] / 'plain.py']):
+    for path in sorted([*Path(__file__).parent.glob('*.py'), Path(__file__).parents[1] / 'checking' / 'plain.py']):
         if path.stem in ('isolation', 'notebook', 'plain', 'records', 'sandbox', 'system_calls', 'warm_parent'):
             digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from ..reply import plain_text
+from ..checking.reply import plain_text
 from .store import write
 from .tables import number, readable, table
 

@@ -11,12 +11,12 @@ import json
 from pathlib import Path
 from types import SimpleNamespace
 
-from .. import release
-from ..evaluate import MP
-from ..kinds import Blank, Fault, Undecidable, canonical, read
-from ..plain import NotPlain, read_plain
-from ..questions import compare
-from ..reply import Reply
+from ..authoring import release
+from ..checking.evaluate import MP
+from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
+from ..checking.plain import NotPlain, read_plain
+from ..checking.questions import compare
+from ..checking.reply import Reply
 from .store import write
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
@@ -41,7 +41,7 @@ def questions_of(path):
 
 
 def about(question):
-    """All that marks need of a :class:`coursework.author.Question`, and a version that follows from it."""
+    """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it."""
     found = json.loads(json.dumps({
         'title': question.title, 'variable': question.variable, 'worth': question.worth,
         'credit': question.credit, 'public': question.public,
@@ -78,7 +78,7 @@ def _digest_of_package():
     import sympy
     digest = hashlib.sha256(sympy.__version__.encode())
     for package in (Path(__file__).parents[1], Path(orientation.__file__).parent):
-        for path in sorted(package.glob('*.py')):
+        for path in sorted(package.rglob('*.py')):
             digest.update(path.read_bytes())
     return digest.digest()
 
@@ -127,7 +127,7 @@ def mark(name, question, answer, finished=True):
 
 
 def judge(name, question, answer, finished=True):
-    """Give the :class:`coursework.reply.Reply` to an answer, and its fingerprint if it has one."""
+    """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
     state = answer['outcome']
     if state == 'missing':
         if not finished:

@@ -26,7 +26,7 @@ import threading
 import types
 import warnings
 
-from coursework.plain import NotPlain, to_plain
+from coursework.checking.plain import NotPlain, to_plain
 
 LONGEST_ERROR = 500
 # Magics whose body is the student's code; the others are about the notebook and do nothing here.
@@ -154,7 +154,7 @@ class _Notebook:
         exec(code, self.names)
 
     def check(self, question, answer=None, *rest, **options):
-        """Stands for `coursework.check` here: records the answer and tells nothing."""
+        """Stands for `coursework.checking.check` here: records the answer and tells nothing."""
         self.record(str(question)[:200], answer, "check")
         return Reply()
 

@@ -5,7 +5,7 @@ What does not have exactly the form of a record is counted and dropped. Nothing 
 
 import json
 
-from coursework.plain import NotPlain, read_plain
+from coursework.checking.plain import NotPlain, read_plain
 
 LONGEST_LINE = 4 << 20
 MOST_BYTES = 16 << 20  # of all records of one run

@@ -7,7 +7,7 @@ import json
 from collections import Counter
 from statistics import mean, median
 
-from ..reply import OUTCOMES
+from ..checking.reply import OUTCOMES
 from . import pages
 from .pages import text
 from .store import file_name, write

@@ -15,7 +15,7 @@ import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
-from .. import release
+from ..authoring import release
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
 #: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.

@@ -43,7 +43,7 @@ class OnlyThese(dict):
 
 messages = []
 shell = session.start(lambda text: messages.append(json.loads(text)))
-OnlyThese.allowed = {"sympy", "mpmath", "orientation", "coursework", "IPython", "session", "__main__"}
+OnlyThese.allowed = {"sympy", "mpmath", "orientation", "orientation_figures", "coursework", "IPython", "session", "__main__"}
 shell.missing.reasons = OnlyThese()
 told = []
 for number, code in enumerate(json.load(sys.stdin)):
@@ -173,7 +173,7 @@ def kinds_of_cells():
     notebooks = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
     inputs = fingerprint(
         Path(__file__), PYTHON, *notebooks, REPOSITORY / "constraints.txt",
-        REPOSITORY / "src" / "orientation", REPOSITORY / "src" / "coursework",
+        REPOSITORY / "src" / "orientation", REPOSITORY / "src" / "orientation_figures", REPOSITORY / "src" / "coursework",
     )  # fmt: skip
     kept = RESULTS / f"cells-{inputs}.json"
     if not kept.exists():

@@ -1,0 +1,1 @@
+"""What an author uses: questions from notebooks with solutions, their release and their selftest."""

@@ -1,0 +1,241 @@
+"""The same answer in other forms, to try checks with: what students write is rarely what the author wrote."""
+
+import itertools
+import random
+
+import sympy
+from sympy import I, Rational, cos, exp, pi, sin, sqrt, tan
+from sympy.core.function import AppliedUndef
+
+#: Ways of writing the sine and the cosine, each a function of the argument.
+SINES = {
+    'as a cosine': lambda x: cos(pi / 2 - x, evaluate=False),
+    'half angle': lambda x: 2 * sin(x / 2) * cos(x / 2),
+    'exponentials': lambda x: (exp(I * x) - exp(-I * x)) / (2 * I),
+    'tangent': lambda x: tan(x) * cos(x),
+    'half tangent': lambda x: 2 * tan(x / 2) / (1 + tan(x / 2)**2),
+    'negative argument': lambda x: -sin(-x, evaluate=False),
+}
+COSINES = {
+    'as a sine': lambda x: sin(pi / 2 - x, evaluate=False),
+    'half angle': lambda x: cos(x / 2)**2 - sin(x / 2)**2,
+    'exponentials': lambda x: (exp(I * x) + exp(-I * x)) / 2,
+    'double angle': lambda x: 1 - 2 * sin(x / 2)**2,
+    'half tangent': lambda x: (1 - tan(x / 2)**2) / (1 + tan(x / 2)**2),
+    'negative argument': lambda x: cos(-x, evaluate=False),
+}
+
+
+def _rewrite(expression, sines, cosines):
+    """An expression with each sine and cosine written in another way."""
+    if isinstance(expression, sin):
+        return sines(_rewrite(expression.args[0], sines, cosines))
+    if isinstance(expression, cos):
+        return cosines(_rewrite(expression.args[0], sines, cosines))
+    if not expression.args or isinstance(expression, (AppliedUndef, sympy.Derivative)):
+        return expression
+    return expression.func(*(_rewrite(part, sines, cosines) for part in expression.args))
+
+
+def unknowns(entries):
+    """The symbols and functions of time in some expressions."""
+    found = set()
+    for entry in entries:
+        entry = sympy.sympify(entry)
+        functions = entry.atoms(AppliedUndef)
+        times = {argument for function in functions for argument in function.args}
+        found |= functions | (entry.free_symbols - times)
+    return sorted(found, key=str)
+
+
+def flat(answer):
+    """The entries of a matrix or a nested list, and a function that puts entries back into that shape."""
+    if isinstance(answer, sympy.MatrixBase):
+        return list(answer.flat()), lambda entries: sympy.Matrix(*answer.shape, list(entries))
+    if not isinstance(answer, sympy.Basic) and hasattr(answer, 'tolist'):
+        answer = answer.tolist()
+    if isinstance(answer, (list, tuple)):
+        parts = [flat(part) for part in answer]
+        lengths = [len(entries) for entries, _ in parts]
+
+        def together(entries):
+            entries = iter(list(entries))
+            return [put(list(itertools.islice(entries, length))) for (_, put), length in zip(parts, lengths)]
+
+        return [entry for entries, _ in parts for entry in entries], together
+    return [sympy.sympify(answer)], lambda entries: list(entries)[0]
+
+
+def equivalent_forms(public, answer):
+    """Give the same answer in several forms, as pairs (name of the form, answer)."""
+    kind = public['kind']
+    if kind in ('sequence', 'choice'):
+        return _forms_of_word(kind, answer)
+    if kind == 'truth values':
+        answer = list(answer)
+        return [('list', answer), ('tuple', tuple(answer)), ('SymPy', [sympy.sympify(part) for part in answer]),
+                ('copy', list(answer))]
+    if kind == 'words':
+        return [('list', list(answer)), ('tuple', tuple(answer)), ('capitals', [part.upper() for part in answer]),
+                ('spaces', [f' {part} ' for part in answer])]
+    if kind == 'function':
+        return [('itself', answer), ('wrapped', lambda *arguments: answer(*arguments)),
+                ('as lists', lambda *arguments: _as_lists(answer(*arguments)))]
+    if hasattr(answer, 'to_matrix'):
+        return [('itself', answer)]
+    entries, put = flat(answer)
+    return _forms_of_numbers(public, answer, entries, put) if not unknowns(entries) else _forms_of_symbols(
+        public, answer, entries, put)
+
+
+def _as_lists(result):
+    entries, put = flat(list(result) if getattr(result, 'shape', ())[1:] == (1,) else result)
+    return put(entries)
+
+
+def _forms_of_word(kind, answer):
+    forms = [('itself', answer), ('capitals', answer.upper()), ('spaces around', f'  {answer} ')]
+    if kind == 'sequence':
+        forms += [('dashes', '-'.join(answer)), ('spaces', ' '.join(answer)), ('list', list(answer))]
+    return forms
+
+
+def _forms_of_symbols(public, answer, entries, put):
+    forms = [('itself', answer)]
+
+    def add(name, change):
+        forms.append((name, put([change(sympy.sympify(entry)) for entry in entries])))
+
+    add('expanded', sympy.expand)
+    for name in ('half angle', 'exponentials', 'half tangent', 'negative argument'):
+        add(name, lambda entry, name=name: _rewrite(entry, SINES[name], COSINES[name]))
+    add('one added as squares', lambda entry: entry * sympy.Add(
+        sin(unknowns(entries)[0])**2, cos(unknowns(entries)[0])**2, evaluate=False))
+    plain = [symbol for symbol in unknowns(entries) if isinstance(symbol, sympy.Symbol)]
+    time = sympy.Symbol('t')
+    add('other assumptions', lambda entry: entry.xreplace({symbol: sympy.Symbol(symbol.name, real=True) for symbol in plain}))
+    add('functions of time', lambda entry: entry.xreplace({symbol: sympy.Function(symbol.name)(time) for symbol in plain}))
+    if isinstance(answer, sympy.MatrixBase):
+        forms += [('nested list', answer.tolist() if answer.cols > 1 else list(answer)),
+                  ('immutable', sympy.ImmutableMatrix(answer)),
+                  ('product', sympy.MatMul(sympy.ImmutableMatrix(answer), sympy.Identity(answer.cols)))]
+        if public['kind'] == 'direction cosine matrix':
+            from sympy.physics.mechanics import ReferenceFrame
+            target, source = (ReferenceFrame(name) for name in public['frames'])
+            target.orient_explicit(source, sympy.ImmutableMatrix(answer).T)
+            forms.append(('reference frame', target))
+    if public.get('either sign'):
+        add('other sign', lambda entry: -entry)
+    return forms
+
+
+def _forms_of_numbers(public, answer, entries, put):
+    def each(change):
+        return put([change(sympy.sympify(entry)) for entry in entries])
+
+    forms = [('itself', answer), ('15 digits', each(lambda entry: entry.evalf(15))),
+             ('floats', each(lambda entry: float(entry))), ('20 digits', each(lambda entry: entry.evalf(20))),
+             ('sum of two', each(lambda entry: sympy.Add(entry / 3, 2 * entry / 3, evaluate=False))),
+             ('by a root', each(lambda entry: sympy.Mul(entry / 2, sqrt(2), sqrt(2), evaluate=False)))]
+    digits = _digits(public)
+    if digits is not None:
+        forms.append((f'{digits} decimals', each(lambda entry: round(float(entry), digits))))
+    if isinstance(answer, sympy.MatrixBase):
+        forms += [('nested list', answer.tolist() if answer.cols > 1 else list(answer)),
+                  ('immutable', sympy.ImmutableMatrix(answer))]
+    if public.get('either sign'):
+        forms.append(('other sign', each(lambda entry: -entry)))
+    return forms
+
+
+def _digits(public):
+    """How many decimals are enough for the tolerance of a question."""
+    tolerance = public.get('tolerance')
+    if tolerance is None:
+        return None
+    digits = 0
+    while 0.5 * 10**-digits > tolerance:
+        digits += 1
+    return digits
+
+
+def random_form(public, answer, chance):
+    """Give the same answer in a form made up by chance, as one who simplifies nothing might write it."""
+    kind = public['kind']
+    if kind in ('sequence', 'choice', 'truth values', 'words', 'function'):
+        return chance.choice(equivalent_forms(public, answer))[1]
+    entries, put = flat(answer)
+    free = unknowns(entries)
+    if not free:
+        tolerance = public.get('tolerance')
+        if tolerance is not None and chance.random() < 0.6:
+            result = put([float(entry) + chance.uniform(-0.9, 0.9) * tolerance for entry in entries])
+        else:
+            result = put([_shuffled_number(sympy.sympify(entry), chance) for entry in entries])
+    else:
+        result = put([_shuffled(sympy.sympify(entry), chance, free) for entry in entries])
+        changes = {symbol: chance.choice([symbol, sympy.Symbol(str(symbol), real=True), sympy.Function(str(symbol))(
+            sympy.Symbol('t'))]) for symbol in free if isinstance(symbol, sympy.Symbol)}
+        again, put = flat(result)
+        result = put([sympy.sympify(entry).xreplace(changes) for entry in again])
+    if isinstance(result, sympy.MatrixBase):
+        result = chance.choice([lambda m: m, sympy.ImmutableMatrix, lambda m: m.tolist() if m.cols > 1 else list(m)])(result)
+    return result
+
+
+def _shuffled(expression, chance, free):
+    if isinstance(expression, (sin, cos)) and chance.random() < 0.5:
+        table = SINES if isinstance(expression, sin) else COSINES
+        return table[chance.choice(sorted(table))](expression.args[0])
+    if not expression.args or isinstance(expression, (AppliedUndef, sympy.Derivative)):
+        return expression
+    result = expression.func(*(_shuffled(part, chance, free) for part in expression.args))
+    luck = chance.random()
+    if luck < 0.1:
+        symbol = chance.choice(free)
+        return sympy.Mul(result, sympy.Add(sin(symbol)**2, cos(symbol)**2, evaluate=False), evaluate=False)
+    if luck < 0.2:
+        extra = chance.choice(free) + chance.randint(1, 5)
+        return sympy.Add(result, extra, -extra, evaluate=False)
+    if luck < 0.3:
+        return sympy.expand(result)
+    if luck < 0.35:
+        return sympy.Mul(2, result / 2, evaluate=False)
+    return result
+
+
+def _shuffled_number(number, chance):
+    return chance.choice([
+        lambda: number, lambda: number.evalf(30), lambda: sympy.Add(number, pi, -pi, evaluate=False),
+        lambda: sympy.Mul(number, sqrt(3), 1 / sqrt(3), evaluate=False),
+        lambda: sympy.Mul(number, exp(I * pi / 7), exp(-I * pi / 7), evaluate=False)])()
+
+
+def another_answer(public, answer, chance=None):
+    """An answer of the right form that is neither right nor a mistake of the catalogue."""
+    chance = chance or random.Random(1)
+    kind = public['kind']
+    if kind == 'function':
+        return lambda *arguments: another_answer({**public, 'kind': public['result']}, answer(*arguments), random.Random(1))
+    if kind in ('sequence',):
+        return next(word for word in ('xyx', 'yzy', 'zxy') if word not in (answer, answer[::-1]))
+    if kind == 'choice':
+        return next(option for option in public['options'] if option.lower() != answer.lower())
+    if kind == 'truth values':
+        changed = chance.randrange(len(answer))
+        return [part != (order == changed) for order, part in enumerate(answer)]
+    if kind == 'words':
+        return [another_answer({**public, 'kind': 'choice'}, part) for part in answer]
+    if hasattr(answer, 'to_matrix'):
+        return answer * Rational(17, 13)
+    if kind in ('direction cosine matrix', 'quaternion'):
+        from ..checking.mistakes import product_of
+        turn = product_of([((Rational(2, 3), Rational(-1, 3), Rational(2, 3)), Rational(37, 100))], kind)
+        if kind == 'quaternion':
+            from orientation import multiply_quaternions
+            return multiply_quaternions(sympy.Matrix(list(answer)), turn)
+        if hasattr(answer, 'dcm'):
+            answer = answer.dcm(next(iter(answer._dcm_dict)))
+        return turn * sympy.Matrix(answer.tolist() if hasattr(answer, 'tolist') else answer)
+    entries, put = flat(answer)
+    return put([entry * Rational(17, 13) + Rational(11, 37) for entry in map(sympy.sympify, entries)])

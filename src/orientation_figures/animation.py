@@ -1,0 +1,156 @@
+"""Drawings that move: key frames computed with the module, played by the browser, never unasked."""
+import hashlib
+import json
+from html import escape
+
+import numpy as np
+
+from .drawing import collapsed, pair, path_data
+from .style import STYLE
+
+# Without this script the figure is a still. It shows the controls, and lets the browser's own animation
+# clock (SMIL) be set by the slider or run by the button.
+SCRIPT = '''
+document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure => {
+  const svg = figure.querySelector('svg'), [button, slider] = figure.querySelectorAll('button, input');
+  const said = figure.querySelector('output'), [steps, texts] = JSON.parse(figure.dataset.texts);
+  const frame = %s, last = texts.length - 1;
+  let playing = false;
+  figure.dataset.ready = '';
+  figure.querySelector('div').hidden = false;
+  const show = () => {
+    const [step, more] = texts[slider.value];
+    slider.setAttribute('aria-valuetext', steps[step] + more);
+    if (said.textContent !== steps[step]) said.textContent = steps[step];
+    button.textContent = playing ? 'Pause' : 'Play';
+  };
+  const stop = () => { playing = false; svg.pauseAnimations(); };
+  const tick = () => {
+    if (!playing || !figure.isConnected) return;
+    slider.value = svg.getCurrentTime() / frame;
+    if (svg.getCurrentTime() >= last * frame) stop();
+    show();
+    requestAnimationFrame(tick);
+  };
+  svg.pauseAnimations();
+  svg.querySelectorAll('animate, animateTransform').forEach(part => {
+    part.setAttribute('dur', last * frame + 's');
+    part.setAttribute('fill', 'freeze');
+    part.setAttribute('begin', '0s');
+  });
+  svg.setCurrentTime(slider.value * frame);
+  slider.oninput = () => { stop(); svg.setCurrentTime(slider.value * frame); show(); };
+  button.onclick = () => {
+    if (playing) { stop(); show(); return; }
+    if (slider.value >= last) svg.setCurrentTime(0);
+    playing = true;
+    svg.unpauseAnimations();
+    tick();
+  };
+  show();
+});
+'''
+
+
+def one_after_another(angles, progress):
+    """Return the angles as they are when ``progress`` of the turns are done, each turn after the one before.
+
+    Examples
+    --------
+    >>> from orientation_figures.animation import one_after_another
+    >>> one_after_another((0.5, 0.8, -0.2), 1.5)
+    [0.5, 0.4, 0.0]
+    """
+    return [float(angle) * min(max(progress - turn, 0), 1) + 0.0 for turn, angle in enumerate(angles)]
+
+
+class Animation:
+    """A drawing that moves in steps when the reader asks for it, and is a still until then.
+
+    Parameters
+    ----------
+    draw : callable
+        ``draw(progress)`` returns the ``Drawing`` at that moment; ``progress`` runs from 0 to the
+        number of steps. All drawings must consist of the same marks in the same order.
+    steps : sequence of (str, float or str)
+        What happens in each step: the words shown under the picture, and what a screen reader adds to
+        them, either the angle turned so far (the last value is given, in radians) or more words.
+    still : float, optional
+        The moment shown at first, by default the end. The ``alt`` of its drawing is used.
+    frames : int
+        Key frames in each step.
+    seconds : float
+        How long a step lasts.
+
+    Raises
+    ------
+    ValueError
+        If two moments consist of different marks.
+    """
+
+    def __init__(self, draw, steps, still=None, frames=6, seconds=2.5):
+        self.steps = list(steps)
+        # Each step starts and ends gently, and then rests for one key frame.
+        eased = [(j / frames) ** 2 * (3 - 2 * j / frames) for j in range(1, frames + 1)]
+        self.moments = [0] + [step + part for step in range(len(self.steps)) for part in [*eased, 1]]
+        self.still = len(self.moments) - 1 if still is None else round(still * (frames + 1))
+        self.drawings = [draw(moment) for moment in self.moments]
+        self.seconds = seconds / frames
+        shapes = [[(kind, shape) for kind, shape, _, _ in drawing.marks] for drawing in self.drawings]
+        for moment, shape in zip(self.moments, shapes):
+            if shape != shapes[0]:
+                raise ValueError(f'the drawing at {moment:.2f} does not consist of the same marks as the one at 0; '
+                                 'an arrow may point straight at the reader there: choose another view')
+
+    def texts(self):
+        """Return, for each key frame, the number of its step (from 0) and what a screen reader adds."""
+        texts = []
+        for moment in self.moments:
+            step = max(int(np.ceil(moment)) - 1, 0)
+            more = self.steps[step][1]
+            if not isinstance(more, str):
+                more = f', {np.degrees((moment - step) * more):.0f} degrees'
+            texts.append((step, more))
+        return texts
+
+    def bounds(self):
+        """Return left, top, right and bottom of all moments together, in pixels from the origin."""
+        bounds = np.array([drawing.bounds() for drawing in self.drawings])
+        return np.concatenate([bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)])
+
+    def _repr_html_(self):
+        motions = [_motion(marks) for marks in zip(*(drawing.marks for drawing in self.drawings))]
+        svg = self.drawings[self.still].svg(motions, self.bounds(), decimals=1)
+        words = [f'Step {step} of {len(self.steps)}: {words}' for step, (words, _) in enumerate(self.steps, start=1)]
+        texts = escape(json.dumps([words, self.texts()], separators=(',', ':')), quote=False).replace("'", '&#39;')
+        name = hashlib.sha256(svg.encode()).hexdigest()[:10]
+        return (f'<figure class="orientation-figure" data-moving="{name}" data-texts=\'{texts}\'>'
+                f'<style>{STYLE}</style>{svg}<div hidden><button type="button">Play</button> '
+                f'<input type="range" min="0" max="{len(self.moments) - 1}" value="{self.still}" '
+                'aria-label="Moment of the animation"><output aria-live="polite"></output></div>'
+                f'<script>{SCRIPT % (name, f"{self.seconds:g}")}</script></figure>')
+
+    def __repr__(self):
+        return f'Animation: {self.drawings[self.still].alt}'
+
+
+def _motion(marks):
+    """Return what goes inside the element of a mark, given the mark at every key frame."""
+    if all(collapsed(mark) for mark in marks):
+        return ''
+    shape = marks[0][1]
+    if isinstance(shape, str):
+        return _animate('animate attributeName="d"', [path_data(shape, place, 1) for _, _, place, _ in marks])
+    places, opacities = [pair(place, 1) for _, _, place, _ in marks], [f'{opacity:.2g}' for *_, opacity in marks]
+    return (_animate('animateTransform attributeName="transform" type="translate"', places)
+            + _animate('animate attributeName="opacity"', opacities))
+
+
+def _animate(tag, values):
+    last = len(values) - 1
+    if len(set(values)) == 1:
+        return ''
+    # A value equal to both its neighbours says nothing new.
+    keys = [i for i in range(last + 1) if i in (0, last) or not values[i - 1] == values[i] == values[i + 1]]
+    times = ';'.join(f'{i / last:.4g}'.removeprefix('0') or '0' for i in keys)
+    return f'<{tag} begin="indefinite" keyTimes="{times}" values="{";".join(values[i] for i in keys)}"/>'

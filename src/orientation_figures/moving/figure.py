@@ -1,0 +1,100 @@
+"""What every moving figure is: a widget in Jupyter, a still on paper, and the state that both show."""
+import json
+from difflib import get_close_matches
+from html import escape
+from importlib import import_module
+from importlib.util import find_spec
+
+import anywidget
+import traitlets
+
+from ..style import STYLE
+from . import bundle
+
+
+class MovingFigure(anywidget.AnyWidget):
+    """A figure that the reader moves, in Jupyter and on the pages of the book.
+
+    Its attributes and the figure move together: setting one moves the figure, moving the figure sets it
+    and calls what ``observe`` has registered. In Jupyter a kernel keeps both in step; a page of the book
+    runs the same front end without one, in place of the still.
+
+    A figure has a ``kind``, the name of its modules in ``js`` and in ``stills``, and traits tagged
+    ``state=True``. ``sheet`` gives left, top, right and bottom of what may be drawn, in pixels from the
+    origin: still and figure have the same size. ``room`` is the height of the whole figure
+    in pixels, beside and below its controls, which a page keeps free so that nothing moves.
+    """
+
+    kind = ''
+    sheet = (-180, -160, 180, 160)
+    room = (0, 0)
+
+    _esm = traitlets.Unicode().tag(sync=True)
+    _css = traitlets.Unicode().tag(sync=True)
+
+    @traitlets.default('_esm')
+    def _default_esm(self):
+        return bundle.esm(self.kind)
+
+    @traitlets.default('_css')
+    def _default_css(self):
+        return STYLE + bundle.style()
+
+    def __init__(self, **attributes):
+        unknown = sorted(set(attributes) - set(self.trait_names()))
+        if unknown:  # a widget would take a misspelt name in silence
+            raise TypeError(self._without(unknown[0]))
+        super().__init__(**attributes)
+
+    def __setattr__(self, name, value):
+        # The same once it is made: a misspelt name would become an attribute that nothing shows.
+        if not name.startswith('_') and not hasattr(type(self), name):
+            raise AttributeError(self._without(name))
+        super().__setattr__(name, value)
+
+    def _without(self, name):
+        """Return the message for a name that cannot be set, with the one that was probably meant."""
+        names = sorted(self.trait_names(state=True))
+        near = ''.join(f' (did you mean {close}?)' for close in get_close_matches(name, names, 1))
+        return f'{type(self).__name__} has no {name}{near}; what can be set is {", ".join(names)}'
+
+    def drawing(self):
+        """Return the ``Drawing`` that stands for the figure where it cannot move."""
+        # Imported only now: a still needs NumPy and Matplotlib, the figure itself does not.
+        return import_module(f'.stills.{self.kind}', __package__).drawing(self)
+
+    def state(self):
+        """Return the attributes that the figure shows, by their names."""
+        return {name: getattr(self, name) for name in sorted(self.trait_names(state=True))}
+
+    def still(self):
+        """Return the HTML for pages without a kernel: the still, and the state to start from."""
+        svg = svg_on(self.sheet, self.drawing())
+        state = escape(json.dumps(self.state(), separators=(',', ':')), quote=False).replace("'", '&#39;')
+        return (f'<figure class="orientation-figure moving" data-figure="{self.kind}" '
+                f'style="--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px" data-state=\'{state}\'>'
+                f'<style>{STYLE}</style><div class="still">{svg}</div></figure>')
+
+    def _repr_mimebundle_(self, **kwargs):
+        data, metadata = super()._repr_mimebundle_(**kwargs)
+        return (data | {'text/html': self.still()} if stills_can_be_drawn() else data), metadata
+
+    def __repr__(self):
+        if stills_can_be_drawn():
+            return f'{type(self).__name__}: {self.drawing().alt}'
+        state = ', '.join(f'{name}={value!r}' for name, value in self.state().items())
+        return f'{type(self).__name__}({state})'
+
+
+def stills_can_be_drawn():
+    """Return whether NumPy and Matplotlib are there."""
+    # They are looked for, not imported in vain: where they are missing, as in a browser, a figure is shown by
+    # its front end and needs no still; where they are there, no error of a still must be lost.
+    return all(map(find_spec, ('numpy', 'matplotlib')))
+
+
+def svg_on(sheet, drawing):
+    """Return the SVG element of a drawing, as large as the sheet."""
+    left, top, right, bottom = sheet
+    # The drawing adds a margin of 8 pixels to the bounds it is given.
+    return drawing.svg(bounds=(left + 8, top + 8, right - 8, bottom - 8))

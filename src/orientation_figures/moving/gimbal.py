@@ -1,0 +1,46 @@
+"""A camera gimbal with its three joints, for any of the twelve sequences, gimbal lock included."""
+import math
+
+from orientation._numbers_and_symbols import NUMBERS
+from orientation.euler_angles import dcm_from_body_fixed, lock_margin_formula
+from .figure import MovingFigure
+from .state import Numbers, Sequence
+
+
+class GimbalFigure(MovingFigure):
+    r"""A camera gimbal: handgrip :math:`A`, two rings :math:`B` and :math:`C`, camera :math:`D`.
+
+    Each joint turns what it carries about one axis, in the order of the sequence, so that the angles are
+    body fixed Euler angles. Near gimbal lock the figure says which two sliders turn about one line.
+
+    Attributes
+    ----------
+    angles : tuple of three floats
+        :math:`(\psi, \theta, \varphi)` in radians, each from :math:`-\pi` to :math:`\pi`.
+    sequence : str
+        One of the twelve sequences.
+
+    Examples
+    --------
+    >>> from orientation_figures.moving import GimbalFigure
+    >>> figure = GimbalFigure(angles=(0.1, 0.2, 0.3), sequence='zxy')
+    >>> round(figure.margin, 6), figure.dcm[1, 2].round(6).item()
+    (1.370796, 0.198669)
+    """
+
+    kind = 'gimbal'
+    sheet = (-180, -185, 200, 185)
+    room = (436, 784)
+    angles = Numbers(tuple(map(math.radians, (15, -25, -30))), (3,), math.pi).tag(sync=True, state=True)
+    sequence = Sequence('zxy').tag(sync=True, state=True)
+
+    @property
+    def dcm(self):
+        r""":math:`{}^D\mathbf{C}^A`, shape ``(3, 3)``."""
+        return dcm_from_body_fixed(self.angles, self.sequence)
+
+    @property
+    def margin(self):
+        """How far the gimbal is from lock, in radians."""
+        [margin] = lock_margin_formula(self.sequence)(NUMBERS, *self.angles)
+        return margin

@@ -1,0 +1,693 @@
+// What the moving figures share: a sheet to draw on, in the look of orientation_figures.drawing, and controls that
+// work by pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
+// contract; on a page of the book without a kernel, `start` gives it a model of its own.
+import { AXES, IDENTITY, add, cross, dcmFromAxisAngle, dot, length, multiply, scale, simpleDcm, subtract, times,
+  transpose, unit } from './mathematics.js';
+import { LABELS, OUTLINES } from './glyphs.js';
+
+// ---- elements and words --------------------------------------------------------------------------------
+
+const DRAWN = new Set(['svg', 'g', 'path', 'circle']);
+const WITH_KEYS = new Set(['button', 'input', 'select']);
+// On an element that has the focus, this keeps JupyterLab from taking the keys as its own shortcuts.
+const OWN_KEYS = 'data-lm-suppress-shortcuts';
+
+// An element with attributes (functions are event listeners) and children; $...$ in a text is mathematics.
+export function element(tag, attributes = {}, ...children) {
+  const made = DRAWN.has(tag) ? document.createElementNS('http://www.w3.org/2000/svg', tag) : document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === 'function') made.addEventListener(name, value);
+    else if (value !== undefined && value !== false) made.setAttribute(name, value === true ? '' : value);
+  }
+  if (WITH_KEYS.has(tag)) made.setAttribute(OWN_KEYS, 'true');
+  made.append(...children.flatMap((child) => (typeof child === 'string' ? words(child) : child)));
+  return made;
+}
+
+// Sets an attribute or a text only where it changed: writing costs more than comparing.
+export function put(target, name, value) {
+  if (target.getAttribute(name) !== value) target.setAttribute(name, value);
+}
+
+// The same for the text of an element. Its one text node stays: a new one would be laid out from nothing.
+export function write(target, text) {
+  if (!target.firstChild) target.append(text);
+  else if (target.firstChild.data !== text) target.firstChild.data = text;
+}
+
+export const spoken = (text) => text.replace(/\$([^$]*)\$/g, (_, tex) => tex
+  .replace(/\\(hat|mathbf|cdot|left|right)/g, ' ').replace(/\\varphi/g, 'phi').replace(/[\\{}^_]/g, ' ').trim())
+  .replace(/\s+/g, ' ');
+
+function glyphs(tex) {
+  const label = LABELS[tex];
+  if (!label) throw new Error(`no glyphs for ${tex}: add it to LABELS in orientation/moving/glyphs.py`);
+  return label.glyphs.map(([outline, x, y, size]) => element('path', {
+    d: OUTLINES[outline], transform: `translate(${x} ${y})${size === 1 ? '' : ` scale(${size})`}` }));
+}
+
+// One formula, set in a line of text.
+function formula(tex) {
+  const parts = glyphs(tex), [left, top, right, bottom] = LABELS[tex].ink;
+  return element('svg', { class: 'formula', viewBox: `${left} ${top} ${right - left} ${bottom - top}`, role: 'img',
+    'aria-label': spoken(`$${tex}$`),
+    // Glyphs are placed from the middle of a small letter, 220 units above the line.
+    style: `width:${(right - left) / 1000}em;height:${(bottom - top) / 1000}em;vertical-align:${(220 - bottom) / 1000}em` },
+  ...parts);
+}
+
+export const words = (text) => text.split('$').map((part, k) => (k % 2 ? formula(part) : part)).filter((part) => part !== '');
+
+// The text of an element, with $...$ in it. While only numbers change the formulas stay: setting them anew would be
+// most of the work of a drag.
+const written = new WeakMap();
+export function writeWords(target, text) {
+  const before = written.get(target) ?? [], parts = text.split('$');
+  written.set(target, parts);
+  if (parts.length === before.length && parts.every((part, k) => k % 2 === 0 || part === before[k])) {
+    parts.forEach((part, k) => { if (part !== before[k]) target.childNodes[k].data = part; });
+  } else {
+    target.replaceChildren(...parts.map((part, k) => (k % 2 ? formula(part) : document.createTextNode(part))));
+  }
+}
+
+// Numbers with a real minus and as much room for the sign of a positive one.
+export function fixed(value, digits = 3) {
+  const text = Math.abs(value).toFixed(digits);
+  return (value < 0 && Number(text) !== 0 ? '\u2212' : '\u2007') + text;
+}
+
+export const degrees = (angle) => angle * 180 / Math.PI;
+export const radians = (angle) => angle * Math.PI / 180;
+// '35', '-12.5': degrees for a field, without the noise of the conversion.
+export const plain = (value, digits = 2) => String(Number(value.toFixed(digits)) + 0);
+
+// ---- cameras -------------------------------------------------------------------------------------------
+
+// V_C_N of an upright camera, as orientation_figures.drawing.view_from.
+export function viewFrom(azimuth, elevation) {
+  const [x, y, z] = multiply(simpleDcm('y', -elevation), simpleDcm('z', azimuth));
+  return [y, z, x];
+}
+
+// ---- the sheet -----------------------------------------------------------------------------------------
+
+const TRIANGLE = [[0, 0], [-14, 5.6], [-14, 0], [-14, -5.6]], DIAMOND = [[0, 0], [-8, 5.4], [-16, 0], [-8, -5.4]];
+const BARB = [[0, 0], [-13, 4.6], [-7.5, 0], [-13, -4.6]];
+const HEADS = { A: TRIANGLE, B: TRIANGLE, C: DIAMOND, D: TRIANGLE, E: TRIANGLE };
+const ROUND = 0.5523;
+
+const pair = ([x, y]) => `${Math.round(10 * x) / 10} ${Math.round(10 * y) / 10}`;
+
+function pathData(commands, points) {
+  let data = '', k = 0;
+  for (const letter of commands) {
+    data += letter;
+    for (let left = { M: 1, L: 1, C: 3, Z: 0 }[letter]; left > 0; left -= 1) {
+      data += `${pair(points[k])} `;
+      k += 1;
+    }
+  }
+  return data;
+}
+
+const polygon = (count) => `M${'L'.repeat(count - 1)}Z`;
+
+// A sheet is drawn anew for every picture, by `draw(sheet => ...)`, in the words of orientation_figures.drawing;
+// it keeps its elements and changes only what differs. Marks are sorted by their depth, the component of
+// their middle along v_z, within the `layer` they are drawn in.
+export class Sheet {
+  // bounds: left, top, right, bottom in pixels from the origin; camera: azimuth and elevation in degrees;
+  // changed: called when the reader turns the view; grab(part, at): what to do when the reader takes hold of
+  // a grip; it returns a function of where the pointer is, or nothing to turn the view.
+  constructor({ name, bounds: [left, top, right, bottom], size = 120, camera = [32, 24], changed, grab }) {
+    this.size = size;
+    this.grab = grab;
+    this.home = camera;
+    this.layers = ['marks', 'labels', 'grips'].map((kind) => element('g', { class: kind }));
+    this.pools = [[], new Map(), new Map()];
+    this.svg = element('svg', { viewBox: `${left} ${top} ${right - left} ${bottom - top}`, class: 'sheet',
+      style: `max-width:${right - left}px`, tabindex: '0', [OWN_KEYS]: 'true',
+      role: 'application', 'aria-roledescription': 'drawing',
+      'aria-label': `${name} The arrow keys turn the view, Home turns it back.`,
+      // A finger on a grip must not scroll the page; inside an SVG drawing, touch-action is not heard.
+      touchstart: (event) => { if (event.target.dataset.part) event.preventDefault(); },
+      pointerdown: (event) => this.hold(event), pointermove: (event) => this.move(event),
+      pointerup: (event) => this.release(event), pointercancel: (event) => this.release(event),
+      keydown: (event) => this.press(event), dblclick: () => this.look(...this.home) }, ...this.layers);
+    this.look(...camera);
+    this.changed = changed;
+  }
+
+  look(azimuth, elevation) {
+    this.camera = [azimuth, Math.max(-90, Math.min(90, elevation))];
+    this.view = viewFrom(...this.camera.map(radians));
+    this.changed?.();
+  }
+
+  press(event) {
+    const [azimuth, elevation] = this.camera;
+    const turn = { ArrowLeft: [5, 0], ArrowRight: [-5, 0], ArrowUp: [0, 5], ArrowDown: [0, -5] }[event.key];
+    if (turn) this.look(azimuth + turn[0], elevation + turn[1]);
+    else if (event.key === 'Home') this.look(...this.home);
+    else return;
+    event.preventDefault();
+  }
+
+  // Where the pointer is, in pixels of the sheet.
+  pointer(event) {
+    const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.toSheet);
+    return [place.x, place.y];
+  }
+
+  hold(event) {
+    if (this.held || event.button > 0) return;
+    this.toSheet = this.svg.getScreenCTM().inverse();
+    const at = this.pointer(event), [azimuth, elevation] = this.camera;
+    const turn = (to) => this.look(azimuth - 0.5 * (to[0] - at[0]), elevation + 0.5 * (to[1] - at[1]));
+    this.held = { pointer: event.pointerId, move: this.grab?.(event.target.dataset.part, at) ?? turn };
+    this.svg.setPointerCapture(event.pointerId);
+    put(this.svg, 'data-held', '');
+  }
+
+  move(event) {
+    if (this.held?.pointer === event.pointerId) this.held.move(this.pointer(event));
+  }
+
+  release(event) {
+    if (this.held?.pointer !== event.pointerId) return;
+    this.held = null;
+    this.svg.removeAttribute('data-held');
+  }
+
+  draw(picture) {
+    this.marks = [];
+    this.layer = 0;
+    this.faded = false;
+    this.used = [new Set(), new Set()];
+    picture(this);
+    this.finish();
+  }
+
+  // Every mark keeps its element from one picture to the next, because it is drawn in the same turn; where
+  // the depths have changed places, so do the elements.
+  finish() {
+    const [pool, labels, grips] = this.pools, [layer] = this.layers;
+    this.marks.forEach((mark, k) => {
+      pool[k] ??= element('path');
+      put(pool[k], 'class', mark.kind);
+      put(pool[k], 'd', mark.data);
+      mark.path = pool[k];
+    });
+    pool.slice(this.marks.length).forEach((path) => path.remove());
+    let next = null;
+    for (const { path } of this.marks.sort((a, b) => a.depth - b.depth).reverse()) {
+      if (path.nextSibling !== next || !path.parentNode) layer.insertBefore(path, next);
+      next = path;
+    }
+    for (const [k, known] of [labels, grips].entries()) {
+      for (const [name, made] of known) put(made, 'visibility', this.used[k].has(name) ? 'visible' : 'hidden');
+    }
+  }
+
+  onSheet(point) {
+    return [this.size * dot(this.view[0], point), -this.size * dot(this.view[1], point)];
+  }
+
+  depthOf(points) {
+    return dot(this.view[2], add(...points)) / points.length;
+  }
+
+  // `points` are on the sheet, `depth` along v_z.
+  path(commands, points, kind, depth = 0) {
+    this.marks.push({ kind: kind + (this.faded ? ' faded' : ''), data: pathData(commands, points),
+      depth: 1000 * this.layer + depth });
+  }
+
+  line(points, colour = 'ink', kind = '') {
+    for (const [k, layer] of (kind.startsWith('tube') ? [kind, `${kind} core`] : [kind]).entries()) {
+      this.path(`M${'L'.repeat(points.length - 1)}`, points.map((p) => this.onSheet(p)), `${layer} ${colour}`,
+        this.depthOf(points) + 1e-6 * k);
+    }
+  }
+
+  area(points, colour = 'ink', fill = 16, edge = true) {
+    this.path(polygon(points.length), points.map((p) => this.onSheet(p)), `fill-${fill} ${edge ? '' : 'bare '}${colour}`,
+      this.depthOf(points));
+  }
+
+  ellipse(middle, u, v, kind, depth) {
+    const points = [u];
+    for (const [near, far] of [[u, v], [v, scale(-1, u)], [scale(-1, u), scale(-1, v)], [scale(-1, v), u]]) {
+      points.push(add(near, scale(ROUND, far)), add(far, scale(ROUND, near)), far);
+    }
+    this.path('MCCCCZ', points.map((p) => add(middle, p)), kind, depth);
+  }
+
+  dot(point, colour = 'ink', radius = 4) {
+    this.ellipse(this.onSheet(point), [radius, 0], [0, radius], `head ${colour}`, this.depthOf([point]));
+  }
+
+  ring(point, colour = 'ink', radius = 5) {
+    this.ellipse(this.onSheet(point), [radius, 0], [0, radius], `paper ${colour}`, this.depthOf([point]) + 1e-6);
+  }
+
+  label(point, text, colour = 'ink', shift = [0, 0], size = 20) {
+    this.text(text, add(this.onSheet(point), shift), colour, size);
+  }
+
+  // A label beyond a point as seen from the origin.
+  labelBeyond(point, text, colour = 'ink', pixels = 17) {
+    this.label(point, text, colour, scale(pixels, unit(this.onSheet(point))));
+  }
+
+  text(text, place, colour, size = 20) {
+    const tex = text.replaceAll('$', ''), [, labels] = this.pools;
+    let name = tex;
+    while (this.used[0].has(name)) name += '\'';   // the same text may stand in two places
+    this.used[0].add(name);
+    if (!labels.has(name)) labels.set(name, this.layers[1].appendChild(element('g', {}, ...glyphs(tex))));
+    const made = labels.get(name);
+    put(made, 'class', `text ${colour}${this.faded ? ' faded' : ''}`);
+    put(made, 'transform', `translate(${pair(place)}) scale(${size / 1000})`);
+  }
+
+  // The part of one vector that lies along another: its shadow, the line that drops it, and a right angle.
+  shadow(vector, direction, colour = 'accent') {
+    const along = unit(direction), foot = scale(dot(vector, along), along), down = subtract(foot, vector);
+    this.line([[0, 0, 0], foot], colour, 'shadow');
+    if (length(down) < 0.02) return;
+    this.line([vector, foot], colour, 'guide');
+    if (length(foot) > 0.1) this.rightAngle(scale(-1, foot), scale(-1, down), { origin: foot, size: 0.07 });
+  }
+
+  // A place where the reader can take hold; `part` comes back in grab(part, at).
+  grip(point, part, radius = 18) {
+    const [x, y] = this.onSheet(point), made = this.gripElement(part, 'circle');
+    put(made, 'r', String(radius));
+    put(made, 'cx', x.toFixed(1));
+    put(made, 'cy', y.toFixed(1));
+  }
+
+  // The same along a closed line.
+  gripLine(points, part) {
+    put(this.gripElement(part, 'path'), 'd', pathData(polygon(points.length), points.map((p) => this.onSheet(p))));
+  }
+
+  gripElement(part, tag) {
+    const [, , grips] = this.pools;
+    this.used[1].add(part);
+    if (!grips.has(part)) grips.set(part, this.layers[2].appendChild(element(tag, { class: 'grip', 'data-part': part })));
+    return grips.get(part);
+  }
+
+  arrow(end, { start = [0, 0, 0], colour = 'ink', label = '', shift, kind = '', size: letters = 20 } = {}) {
+    const reach = subtract(end, start), tail = this.onSheet(start), tip = this.onSheet(end), depth = this.depthOf([start, end]);
+    const pixels = length(subtract(tip, tail)), direction = unit(subtract(tip, tail));
+    let outward = scale(17, direction);
+    if (pixels < 0.05 * this.size * length(reach)) {
+      // It points straight at the reader, or straight away.
+      this.ellipse(tip, [9, 0], [0, 9], `paper ${colour}`, depth);
+      if (dot(this.view[2], reach) > 0) this.ellipse(tip, [3, 0], [0, 3], `head ${colour}`, depth + 1e-6);
+      else this.path('MLML', [[-1, -1], [1, 1], [-1, 1], [1, -1]].map((p) => add(tip, scale(6.4, p))), colour, depth + 1e-6);
+      outward = [15, 15];
+    } else {
+      const size = Math.min(1, pixels / 28);
+      this.path('ML', [tail, subtract(tip, scale(10 * size, direction))], `axis ${colour} ${kind}`, depth);
+      this.head(tip, direction, size, colour, depth + 1e-6);
+    }
+    if (label) this.text(label, add(tip, shift ?? outward), colour, letters);
+  }
+
+  head(tip, [right, down], size, colour, depth) {
+    const corners = (HEADS[colour] ?? BARB).map(([x, y]) => (
+      add(tip, scale(size, [x * right - y * down, x * down + y * right]))));
+    this.path('MLLLZ', corners, `head ${colour}`, depth);
+  }
+
+  // The unit vectors of a frame are the rows of its direction cosine matrix.
+  triad(letter, dcm, { origin = [0, 0, 0], reach = 1, labels = true } = {}) {
+    dcm.forEach((row, k) => this.arrow(add(origin, scale(reach, row)), { start: origin, colour: letter,
+      label: labels ? `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$` : '' }));
+  }
+
+  // The arc swept by the direction `start`, turned through `angle` about `axis`.
+  turn(axis, angle, start, { radius = 0.5, label = '', origin = [0, 0, 0], colour = 'ink', shift = [0, 0], kind = '',
+    head = true } = {}) {
+    const arm = scale(radius, unit(start)), normal = unit(axis), pieces = Math.max(4, Math.ceil(Math.abs(angle)));
+    const at = (part) => turned(normal, part * angle, arm);
+    const swept = Math.abs(angle) * radius * this.size, size = head ? Math.min(0.8, swept / 28) : 0;
+    const last = 1 - (swept ? 9 * size / swept : 0), bulge = 4 / 3 * Math.tan(last * angle / pieces / 4);
+    const points = [arm];
+    for (let k = 0; k < pieces; k += 1) {
+      const near = at(last * k / pieces), far = at(last * (k + 1) / pieces);
+      points.push(add(near, scale(bulge, cross(normal, near))), subtract(far, scale(bulge, cross(normal, far))), far);
+    }
+    const place = (p) => this.onSheet(add(origin, p)), depth = this.depthOf([add(origin, at(0.5))]);
+    this.path(`M${'C'.repeat(pieces)}`, points.map(place), `${kind} ${colour}`, depth);
+    if (head && size > 0.05) this.head(place(at(1)), unit(subtract(place(at(1)), place(at(last)))), size, colour, depth + 1e-6);
+    if (label && Math.abs(angle) > 0.08) {
+      const middle = place(at(0.5));
+      this.text(label, add(middle, scale(15, unit(subtract(middle, place([0, 0, 0])))), shift), colour);
+    }
+  }
+
+  // The angle from one direction to another, the short way round.
+  arc(start, end, options) {
+    const axis = cross(start, end);
+    this.turn(axis, Math.atan2(length(axis), dot(start, end)), start, options);
+  }
+
+  rightAngle(first, second, { origin = [0, 0, 0], size = 0.12, colour = 'muted' } = {}) {
+    const [u, v] = [first, second].map((direction) => scale(size, unit(direction)));
+    this.line([u, add(u, v), v].map((p) => add(origin, p)), colour);
+  }
+
+  // A circle about `normal`, or the half of it that is nearer to the reader ('front') or farther ('back').
+  circle(normal, { radius = 1, origin = [0, 0, 0], colour = 'muted', kind = 'guide', half = '' } = {}) {
+    const n = unit(normal);
+    const level = cross(n, this.view[2]);
+    const sizes = n.map(Math.abs), other = IDENTITY[sizes.indexOf(Math.min(...sizes))];
+    const across = unit(length(level) > 1e-6 ? level : cross(n, other));
+    const up = cross(across, n);   // the point of the circle nearest to the reader
+    const [u, v] = [across, dot(up, this.view[2]) < 0 ? scale(-1, up) : up].map((p) => this.onSheet(scale(radius, p)));
+    const middle = this.onSheet(origin);
+    for (const [k, layer] of (kind.startsWith('tube') ? [kind, `${kind} core`] : [kind]).entries()) {
+      const style = `${layer} ${colour}`, depth = this.depthOf([origin]) + 1e-6 * k;
+      if (!half) this.ellipse(middle, u, v, style, depth);
+      else {
+        const way = half === 'front' ? v : scale(-1, v);
+        const points = [u, add(u, scale(ROUND, way)), add(way, scale(ROUND, u)), way, subtract(way, scale(ROUND, u)),
+          subtract(scale(ROUND, way), u), scale(-1, u)];
+        this.path('MCC', points.map((p) => add(middle, p)), style, depth);
+      }
+    }
+  }
+
+  // A box with edges `size` along the rows of `dcm`: the faces that are seen.
+  box(dcm, size, colour, origin = [0, 0, 0]) {
+    const half = dcm.map((row, k) => scale(size[k] / 2, row));
+    [26, 16, 8].forEach((fill, i) => {
+      const [u, v] = [half[(i + 1) % 3], half[(i + 2) % 3]];
+      for (const outward of [half[i], scale(-1, half[i])]) {
+        if (dot(outward, this.view[2]) > 1e-9) {
+          const corners = [add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)];
+          this.area(corners.map((p) => add(origin, outward, p)), colour, fill);
+        }
+      }
+    });
+  }
+
+  cylinder(start, end, radius, colour, fill = 26) {
+    const axis = unit(subtract(end, start)), facing = dot(axis, this.view[2]), pixels = radius * this.size;
+    const ends = [this.onSheet(start), this.onSheet(end)], depth = this.depthOf([start, end]);
+    const way = Math.abs(facing) < 0.9999 ? unit(subtract(ends[1], ends[0])) : [1, 0];
+    const bulge = scale(pixels * Math.abs(facing), way), side = scale(pixels, [-way[1], way[0]]);
+    const body = [[ends[1], bulge, side], [ends[0], scale(-1, bulge), scale(-1, side)]].flatMap(([place, out, across]) => [
+      across, add(across, scale(ROUND, out)), add(scale(ROUND, across), out), out,
+      subtract(out, scale(ROUND, across)), subtract(scale(ROUND, out), across), scale(-1, across)].map((p) => add(place, p)));
+    this.path('MCCLCCZ', body, `fill-${fill} ${colour}`, depth);
+    if (Math.abs(facing) > 1e-3) this.ellipse(ends[facing > 0 ? 1 : 0], bulge, side, `fill-8 ${colour}`, depth + 1e-6);
+  }
+}
+
+// A vector turned with its frame: the rows of A_C_N are N's unit vectors turned, its transpose turns all alike.
+export const turned = (axis, angle, vector) => times(transpose(dcmFromAxisAngle(axis, angle)), vector);
+
+// Follows the pointer with a point that can only move on a circle: returns a function from the place of
+// the pointer to the angle, in whole degrees, that brings the turned `arm` nearest to it.
+export function followTurn(sheet, { axis, arm, angle, at, origin = [0, 0, 0] }) {
+  const shift = subtract(sheet.onSheet(add(origin, turned(axis, angle, arm))), at);
+  const places = Array.from({ length: 360 }, (_, k) => sheet.onSheet(add(origin, turned(axis, radians(k), arm))));
+  const spread = Math.max(...places.map((place) => length(subtract(place, places[0]))));
+  const begin = Math.round(degrees(angle));
+  // A circle too small to follow is turned like a knob.
+  if (spread < 40) return (to) => radians(begin + Math.round(0.7 * (to[0] - at[0])));
+  let now = begin;
+  return (to) => {
+    const wanted = add(to, shift);
+    let best = Infinity, found = now;
+    for (let step = -60; step <= 60; step += 1) {
+      // Where the circle is seen edge-on two angles are equally near; the closer one wins.
+      const far = length(subtract(places[(((now + step) % 360) + 360) % 360], wanted)) + 0.02 * Math.abs(step);
+      if (far < best) [best, found] = [far, now + step];
+    }
+    now = found;
+    return radians(now);
+  };
+}
+
+// Follows the pointer with the tip of a vector that keeps its length: returns a function from the place of
+// the pointer to its direction. Beyond the edge of the sphere the tip goes round to the other side. Close to
+// a unit vector of N it becomes that.
+export function followSphere(sheet, { vector, at }) {
+  const radius = length(vector) * sheet.size, shift = subtract(sheet.onSheet(vector), at);
+  const side = dot(sheet.view[2], vector) < 0 ? -1 : 1, back = transpose(sheet.view);
+  return (to) => {
+    const [x, y] = add(to, shift), out = Math.hypot(x, y) || 1, inside = Math.min(out, Math.max(0, 2 * radius - out));
+    const depth = (out > radius ? -side : side) * Math.sqrt(Math.max(0, radius * radius - inside * inside));
+    const direction = unit(times(back, [x * inside / out, -y * inside / out, depth]));
+    const near = direction.findIndex((entry) => Math.abs(entry) > 0.9985);
+    return near < 0 ? direction : direction.map((entry, k) => (k === near ? Math.sign(entry) : 0));
+  };
+}
+
+// Brings an angle into the range from -pi to pi.
+export const wrapped = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
+
+// ---- controls ------------------------------------------------------------------------------------------
+
+export const button = (text, click, attributes = {}) => element('button', { type: 'button', click, ...attributes }, text);
+
+// A group of controls with a name for those who do not see how they stand together.
+export const group = (name, kind, ...children) => element('div', { role: 'group', 'aria-label': name, class: kind }, ...children);
+
+// A number that can be typed. `show` leaves alone what the reader is typing.
+export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity, change, digits = 3 }) {
+  const field = element('input', { type: 'number', 'aria-label': name, step, inputmode: 'decimal',
+    input() {
+      const value = field.valueAsNumber, valid = value >= min && value <= max;
+      put(field, 'aria-invalid', String(!valid));
+      if (valid) change(value);
+    },
+    blur() {
+      field.value = field.dataset.value;
+      put(field, 'aria-invalid', 'false');
+    } });
+  return { element: field, show(value) {
+    field.dataset.value = plain(value, digits);
+    if (!field.matches(':focus') && field.value !== field.dataset.value) field.value = field.dataset.value;
+  } };
+}
+
+// A slider with its symbol, a field for the same number, and what else the number is. `factor` is what one
+// shown unit is in the units of the model.
+export function slider({ symbol, name, unit: unitName = 'degrees', sign = '°', factor = Math.PI / 180, min = -180, max = 180,
+  step = 1, digits = 2, change, more = (value) => `${fixed(value)} rad` }) {
+  const range = element('input', { type: 'range', min, max, step, 'aria-label': name, input: () => change(factor * range.value) });
+  const field = numberField({ name: `${name} in ${unitName}`, step, min, max, digits, change: (value) => change(factor * value) });
+  const rest = element('span', { class: 'more', 'aria-hidden': 'true' });
+  return {
+    element: element('div', { class: 'slider' }, element('span', { class: 'symbol', 'aria-hidden': 'true' }, symbol), range,
+      element('span', { class: 'field' }, field.element, sign), rest),
+    show(value) {
+      const shown = plain(value / factor, digits);
+      if (range.value !== shown) range.value = shown;
+      put(range, 'aria-valuetext', `${name}, ${shown} ${unitName}`);
+      field.show(value / factor);
+      write(rest, more(value));
+    },
+    mark: (kind) => put(range.parentNode, 'class', `slider ${kind}`),
+  };
+}
+
+// A list to choose from; options are [value, text] or just values.
+export function choice({ name, options, change, hidden = false }) {
+  const list = element('select', { 'aria-label': name, change: () => change(list.value) },
+    ...options.map((option) => element('option', { value: [option].flat()[0] }, [option].flat().at(-1))));
+  return { element: element('label', { class: 'choice' }, element('span', { 'aria-hidden': 'true', hidden }, name), list),
+    show: (value) => { list.value = value; } };
+}
+
+// Rows of cells with what stands before and above them; `kind` 'bracket' sets them as a matrix.
+export function grid({ name, rows, columns, cells, kind = '' }) {
+  const head = (text, side) => element('span', { class: `head-of-${side}`, 'aria-hidden': 'true' }, text);
+  return group(name, `numbers ${kind}`,
+    ...(columns ? [element('div', { class: 'row' }, ...(rows ? [head('', 'row')] : []),
+      ...columns.map((text) => head(text, 'column')))] : []),
+    ...cells.map((row, i) => element('div', { class: 'row' }, ...(rows ? [head(rows[i], 'row')] : []), ...row)));
+}
+
+// Numbers that say what they mean: one stop of the Tab key, arrow keys inside. `names` are the spoken names,
+// row by row; `rows` and `columns` what stands before and above them; `light(row, column)` is called when a
+// number is touched or focused, and `light()` afterwards.
+export function numberTable({ name, names, rows, columns, light, kind = '' }) {
+  const at = (i, j) => {
+    const cell = element('button', { type: 'button', class: 'number', tabindex: i + j ? -1 : 0, 'data-at': `${i},${j}`,
+      pointerenter: (event) => { if (event.pointerType === 'mouse') light(i, j); },
+      pointerleave: (event) => { if (event.pointerType === 'mouse') relight(); },
+      focus() {
+        cells.flat().forEach((other) => { other.tabIndex = other === cell ? 0 : -1; });
+        light(i, j);
+      },
+      blur: () => light(),
+      click: () => cell.focus() });   // not every browser focuses a button that is touched
+    return cell;
+  };
+  const cells = names.map((row, i) => row.map((_, j) => at(i, j)));
+  const relight = () => {
+    const focused = cells.flat().find((cell) => cell.matches(':focus'));
+    light(...(focused ? focused.dataset.at.split(',').map(Number) : []));
+  };
+  const box = grid({ name, rows, columns, cells, kind });
+  box.addEventListener('keydown', (event) => {
+    const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
+    if (event.key === 'Escape') event.target.blur();
+    if (!step) return;
+    const [i, j] = event.target.dataset.at.split(',').map(Number);
+    cells[i + step[0]]?.[j + step[1]]?.focus();
+    event.preventDefault();
+  });
+  return { element: box, show: (values) => values.forEach((row, i) => row.forEach((value, j) => {
+    const cell = cells[i][j];
+    write(cell, value);
+    put(cell, 'aria-label', `${names[i][j]}: ${value}`);
+  })) };
+}
+
+// Text under the figure. It changes at once for the eye, and is read aloud when it has rested.
+export function liveText() {
+  const seen = element('p', { class: 'words', 'aria-hidden': 'true' }), heard = element('p', { class: 'unseen', role: 'status' });
+  let now = null, wait = 0;
+  return { element: element('div', {}, seen, heard), say(text) {
+    if (text === now) return;
+    now = text;
+    writeWords(seen, text);
+    clearTimeout(wait);
+    wait = setTimeout(() => { heard.textContent = spoken(text); }, 600);
+  } };
+}
+
+export const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+// Calls `draw` once before the next picture, however often it is asked.
+export function onceAFrame(draw) {
+  let asked = 0;
+  return () => { asked ||= requestAnimationFrame(() => { asked = 0; draw(); }); };
+}
+
+// A button and a slider for something that runs from 0 to `seconds`. It starts only when asked; where the
+// reader wants less motion it goes on in steps of half a second.
+export function player({ name, seconds, step = 0.05, show }) {
+  let now = 0, before = null, frame = 0;
+  const time = slider({ symbol: '$t$', name, unit: 'seconds', sign: 's', factor: 1, min: 0, max: seconds, step, more: () => '',
+    change: (value) => { pause(); set(value); } });
+  const press = button('Play', () => (frame ? pause() : play()));
+  // Where the state says that it stands.
+  function at(value) {
+    now = value;
+    time.show(value);
+  }
+  function set(value) {
+    at(value);
+    show(value);
+  }
+  function pause() {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    write(press, 'Play');
+  }
+  function tick(moment) {
+    // The time of a picture may lie before the click that asked for it: only pictures are compared.
+    before ??= moment;
+    const passed = Math.min((moment - before) / 1000, 1);
+    if (!press.isConnected) { pause(); return; }
+    if (!calm() || passed >= 0.5) {
+      before = moment;
+      set(Math.min(now + passed, seconds));
+    }
+    if (now >= seconds) pause(); else frame = requestAnimationFrame(tick);
+  }
+  function play() {
+    if (now >= seconds) set(0);
+    before = null;
+    write(press, 'Pause');
+    frame = requestAnimationFrame(tick);
+  }
+  return { element: group(name, 'player', press, time.element), at, set, pause };
+}
+
+// Moves through a number from 0 to 1 in `seconds`, or jumps to the end for readers who want less motion.
+export function glide(show, seconds = 0.7) {
+  let frame = 0, begin;
+  const tick = (moment) => {
+    begin ??= moment;
+    const part = Math.min((moment - begin) / 1000 / seconds, 1);
+    show(part * part * (3 - 2 * part));
+    if (part < 1) frame = requestAnimationFrame(tick);
+  };
+  if (calm()) show(1); else frame = requestAnimationFrame(tick);
+  return () => cancelAnimationFrame(frame);
+}
+
+// The unit vectors of a frame, as labels.
+export const hats = (letter) => AXES.map((axis) => `$\\hat{${letter}}_${axis}$`);
+
+// A result with its title.
+export const readout = (title, ...parts) => element('div', { class: 'readout' }, element('div', { class: 'title' },
+  ...title.map((part) => (typeof part === 'string' ? element('span', {}, part) : part))), ...parts);
+
+// The drawing with the words under it; on a narrow screen it stays in view while the controls scroll.
+export const stage = (sheet, text) => element('div', { class: 'stage' }, sheet.svg, text.element);
+
+// ---- beginning and end ---------------------------------------------------------------------------------
+
+// The element that a figure fills: on a page of the book the one beside the still, else a new figure.
+export function open(el, ...children) {
+  const live = element('div', { class: 'live' }, ...children);
+  if (!el.closest('.moving')) el.append(element('div', { class: 'orientation-figure moving' }, live));
+  else el.append(live);
+  return live;
+}
+
+// Reads the state when it changes, whoever changed it; returns what anywidget calls when a figure closes.
+export function follow(model, names, changed) {
+  const events = names.map((name) => `change:${name}`);
+  events.forEach((event) => model.on(event, changed));
+  return () => events.forEach((event) => model.off(event, changed));
+}
+
+export function change(model, values) {
+  for (const [name, value] of Object.entries(values)) model.set(name, value);
+  model.save_changes();
+}
+
+// The part of anywidget's model that figures use, for pages without a kernel.
+class PageModel extends EventTarget {
+  constructor(state) {
+    super();
+    this.state = state;
+    this.heard = new Map();
+  }
+
+  get(name) { return this.state[name]; }
+
+  set(name, value) {
+    if (JSON.stringify(this.state[name]) === JSON.stringify(value)) return;
+    this.state[name] = value;
+    for (const listener of this.heard.get(`change:${name}`) ?? []) listener();
+  }
+
+  on(event, listener) { this.heard.set(event, [...this.heard.get(event) ?? [], listener]); }
+
+  off(event, listener) { this.heard.set(event, (this.heard.get(event) ?? []).filter((other) => other !== listener)); }
+
+  save_changes() {}
+}
+
+export function start(name, render) {
+  for (const figure of document.querySelectorAll(`.moving[data-figure="${name}"]:not([data-ready])`)) {
+    render({ model: new PageModel(JSON.parse(figure.dataset.state)), el: figure });
+    figure.dataset.ready = '';
+  }
+}

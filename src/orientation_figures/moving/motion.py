@@ -1,0 +1,134 @@
+"""A racket that tumbles, its orientation integrated as a matrix, as a quaternion and as Euler angles."""
+import traitlets
+
+from .figure import MovingFigure, svg_on
+from .state import Numbers
+
+#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's a_x
+#: runs along its handle and a_z out of its face; the book's a_x runs along its long edges.
+MOMENTS = {'racket': (1.2, 16.0, 17.0), 'book': (6.9, 13.3, 19.7)}
+DESCRIPTIONS = {'matrix': 'direction cosine matrix', 'quaternion': 'quaternion', 'angles': 'Euler angles'}
+SECONDS = 20.0
+PLOT = (-180, 0, 180, 356)   # left, top, right and bottom
+
+
+class Between(Numbers):
+    """One number from ``least`` to ``most``."""
+
+    def __init__(self, default, least, most, unit):
+        super().__init__(default)
+        self.least, self.most, self.unit = least, most, unit
+
+    def validate(self, obj, value):
+        number = super().validate(obj, value)
+        if not self.least <= number <= self.most:
+            raise traitlets.TraitError(f'{self.name} is {value!r}; from {self.least:g} to {self.most:g} '
+                                       f'{self.unit} can be had')
+        return number
+
+
+class Moments(Numbers):
+    """Three principal moments of inertia that a body can have, in g m^2."""
+
+    def validate(self, obj, value):
+        moments = super().validate(obj, value)
+        if not all(0.1 <= moment <= 20 for moment in moments):
+            raise traitlets.TraitError(f'{self.name} is {value!r}; from 0.1 to 20 g m^2 can be had')
+        largest = max(moments)
+        others = sum(moments) - largest
+        if largest > others + 1e-9:
+            raise traitlets.TraitError(f'{self.name} is {value!r}: no body has such moments of inertia, because the '
+                                       f'largest, {largest:g}, is more than the sum of the others, {others:g}')
+        return moments
+
+
+class MotionFigure(MovingFigure):
+    r"""A body that tumbles freely, integrated in three descriptions with or without the restoring step.
+
+    The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation is
+    carried along as a direction cosine matrix, as a quaternion and as Euler angles in the sequence
+    :math:`z`-:math:`x`-:math:`y`; one of them is drawn, and dashed the reference, a quaternion
+    integrated with steps ten times finer. Plots show how the drift grows.
+
+    Attributes
+    ----------
+    moments : tuple of three floats
+        The principal moments of inertia about :math:`\hat{a}_x`, :math:`\hat{a}_y` and :math:`\hat{a}_z`, from
+        0.1 to 20 g m\ :sup:`2`, none larger than the sum of the others. A racket is drawn for its own,
+        otherwise the uniform block that has them.
+    axis : str
+        The principal axis that it spins about, 'x', 'y' or 'z'.
+    disturbance : float
+        Angular velocity about the two other axes at the start, 0 to 0.5 rad/s.
+    method : str
+        'Euler' or 'Runge-Kutta' (of fourth order).
+    step : float
+        From 0.005 to 0.1 seconds.
+    restored : bool
+        Whether after every step the matrix is replaced by the nearest orthogonal one, and the quaternion
+        divided by its length.
+    description : str
+        Which one is drawn: 'matrix', 'quaternion' or 'angles'.
+    time : float
+        From 0 to 20 seconds. The figure computes up to here, and further as the reader plays it.
+
+    Examples
+    --------
+    >>> from orientation_figures.moving import MotionFigure
+    >>> figure = MotionFigure(method='Runge-Kutta', step=0.02, time=3)
+    >>> figure.flips
+    0
+    >>> figure.time = 4
+    >>> figure.flips
+    1
+    """
+
+    kind = 'motion'
+    sheet = (-180, -150, 180, 150)
+    room = (684, 1255)
+    moments = Moments(MOMENTS['racket'], (3,)).tag(sync=True, state=True)
+    axis = traitlets.Enum(tuple('xyz'), 'y').tag(sync=True, state=True)
+    disturbance = Between(0.01, 0, 0.5, 'rad/s').tag(sync=True, state=True)
+    method = traitlets.Enum(('Euler', 'Runge-Kutta'), 'Euler').tag(sync=True, state=True)
+    step = Between(0.01, 0.005, 0.1, 'seconds').tag(sync=True, state=True)
+    restored = traitlets.Bool(False).tag(sync=True, state=True)
+    description = traitlets.Enum(tuple(DESCRIPTIONS), 'matrix').tag(sync=True, state=True)
+    time = Between(6.0, 0, SECONDS, 'seconds').tag(sync=True, state=True)
+
+    def run(self):
+        """Return what has been computed from 0 to ``time``, as a dict of arrays with one row for each step.
+
+        ``'time'``; ``'angular_velocity'`` along A; ``'matrix'``, ``'quaternion'``, ``'angles'`` as
+        integrated; and ``'reference'``, the unit quaternion of the fine integration. A run ends early where
+        its numbers have grown beyond a million.
+        """
+        from . import tumbling   # only now: it needs NumPy
+        count = int(self.time / self.step + 1e-9)
+        return tumbling.run(self.moments, self.axis, self.disturbance, self.method, self.step, self.restored, count)
+
+    @property
+    def dcm(self):
+        """The matrix of the drawn description at ``time``, orthogonal or not, shape ``(3, 3)``."""
+        from . import tumbling
+        return tumbling.matrices(self.run(), self.description, slice(-1, None))[0]
+
+    @property
+    def body(self):
+        """What is drawn: 'racket', 'book' or, for other moments of inertia, 'block'."""
+        return next((name for name, moments in MOMENTS.items() if moments == self.moments), 'block')
+
+    @property
+    def flips(self):
+        """How often the body has turned its spin axis over against the angular momentum."""
+        from . import tumbling
+        return tumbling.flips(self.run(), self.moments, self.axis)
+
+    def still(self):
+        plot = svg_on(PLOT, self.plot())
+        end = '</div></figure>'
+        return super().still().removesuffix(end) + plot + end
+
+    def plot(self):
+        """Return the ``Drawing`` of how the drift has grown up to ``time``."""
+        from .stills import motion
+        return motion.plot(self)

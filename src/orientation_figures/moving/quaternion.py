@@ -1,0 +1,125 @@
+"""The quaternion and its double, and three ways from one orientation to another."""
+import math
+
+import traitlets
+
+from orientation.axis_angle import axis_angle_from_dcm, quaternion_from_axis_angle
+from orientation.direction_cosines import nearest_dcm
+from orientation.euler_angles import dcm_from_body_fixed
+from orientation.quaternions import dcm_from_quaternion, interpolate_quaternions, quaternion_from_dcm
+from .figure import MovingFigure
+from .state import Direction, Numbers
+
+SECONDS = 4   # as in js/quaternion.js
+FULL = 4 * math.pi
+STEP = 1e-4
+
+
+class QuaternionFigure(MovingFigure):
+    r"""Half angles, and what they are good for, in two views.
+
+    In the view 'double' a frame :math:`A` turns in :math:`N` about an axis, and beside it
+    :math:`q = \cos\frac{\theta}{2} + \sin\frac{\theta}{2}\,\hat{e}` goes round a circle at half the speed.
+    After one full turn it has come to :math:`-q`, after two it is back.
+
+    In the view 'way' three frames go from the orientation of :math:`A` to that of :math:`B` in four
+    seconds: :math:`C` by interpolating quaternions (slerp), :math:`D` by interpolating Euler angles z-x-y,
+    :math:`E` by the direction cosine matrix nearest to the interpolated matrix entries.
+
+    Attributes
+    ----------
+    view : {'double', 'way'}
+    axis : tuple of three floats
+        Direction of :math:`\hat{e}`, kept at unit length.
+    angle : float
+        :math:`\theta` in radians, from 0 to :math:`4\pi`.
+    first, second : tuples of three floats
+        Body fixed angles ``(psi, theta, phi)`` of :math:`A` and :math:`B` in :math:`N` for the sequence
+        'zxy', in radians, each from :math:`-\pi` to :math:`\pi`.
+    unit_vector : {'x', 'y', 'z'}
+        The unit vector whose tip is followed.
+    share : float
+        How much of the way has been gone, from 0 to 1.
+
+    Examples
+    --------
+    >>> from orientation_figures.moving import QuaternionFigure
+    >>> figure = QuaternionFigure(axis=(0, 0, 1), angle=6.283185307179586)
+    >>> figure.quaternion.round(6).tolist()
+    [-1.0, 0.0, 0.0, 0.0]
+    """
+
+    kind = 'quaternion'
+    view = traitlets.Enum(('double', 'way'), 'double').tag(sync=True, state=True)
+    axis = Direction((-1, 2, 4)).tag(sync=True, state=True)
+    angle = Numbers(math.radians(60), largest=FULL).tag(sync=True, state=True)
+    first = Numbers(tuple(map(math.radians, (-70, -30, 70))), (3,), largest=math.pi).tag(sync=True, state=True)
+    second = Numbers(tuple(map(math.radians, (90, 80, -120))), (3,), largest=math.pi).tag(sync=True, state=True)
+    unit_vector = traitlets.Enum(('x', 'y', 'z'), 'y').tag(sync=True, state=True)
+    share = Numbers(0.3, largest=1.0).tag(sync=True, state=True)
+
+    @traitlets.validate('angle', 'share')
+    def _not_negative(self, proposal):
+        name, value = proposal['trait'].name, proposal['value']
+        if value < 0:
+            raise traitlets.TraitError(f'{name} is {value:.6g}: it must be from 0 to {"1" if name == "share" else "4 pi"}')
+        return value
+
+    @property
+    def sheet(self):
+        """Left, top, right and bottom of the drawing, in pixels from its origin."""
+        return (-118, -142, 242, 222) if self.view == 'double' else (-180, -142, 180, 222)
+
+    @property
+    def room(self):
+        """Height of the figure in pixels with its controls beside and below it."""
+        return (614, 842) if self.view == 'double' else (691, 888)
+
+    @property
+    def quaternion(self):
+        """The unit quaternion of half the angle, scalar first, shape ``(4,)``."""
+        return quaternion_from_axis_angle(self.axis, self.angle)
+
+    @property
+    def dcm(self):
+        r""":math:`{}^A\mathbf{C}^N` of the view 'double', shape ``(3, 3)``."""
+        return dcm_from_quaternion(self.quaternion)
+
+    def ways(self, share):
+        r"""Return :math:`{}^C\mathbf{C}^N`, :math:`{}^D\mathbf{C}^N` and :math:`{}^E\mathbf{C}^N` part of the way.
+
+        None stands for a way that does not exist: slerp between orientations half a turn apart, or blended
+        entries to which several matrices are equally near.
+        """
+        first, second = self._ends()
+        angles = [(1 - share) * start + share * end for start, end in zip(self.first, self.second)]
+        return (_or_none(lambda: dcm_from_quaternion(interpolate_quaternions(
+                    quaternion_from_dcm(first), quaternion_from_dcm(second), share))),
+                dcm_from_body_fixed(angles, 'zxy'),
+                _or_none(lambda: nearest_dcm(self.blend(share)).dcm))
+
+    def blend(self, share):
+        """Return the matrix whose entries lie part of the way between those of the ends; its rows are too short."""
+        first, second = self._ends()
+        return (1 - share) * first + share * second
+
+    def speeds(self, share):
+        """Return the three angular speeds part of the way, radians per second for a way of four seconds."""
+        early, late = max(0, share - STEP), min(1, share + STEP)
+        return tuple(angle_between(before, after) / (SECONDS * (late - early))
+                     for before, after in zip(self.ways(early), self.ways(late)))
+
+    def _ends(self):
+        return dcm_from_body_fixed((self.first, self.second), 'zxy')
+
+
+def angle_between(before, after):
+    """Return the angle of the turn between two orientations, NaN where one of them is missing."""
+    return math.nan if before is None or after is None else float(axis_angle_from_dcm(after @ before.T)[1])
+
+
+def _or_none(compute):
+    try:
+        return compute()
+    except ValueError:
+        return None

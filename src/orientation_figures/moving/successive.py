@@ -1,0 +1,137 @@
+"""A chain of simple turns, frame by frame, with the product of their matrices."""
+import math
+
+import traitlets
+
+from orientation._numbers_and_symbols import number_tuples
+from orientation.axis_angle import axis_angle_from_dcm
+from orientation.direction_cosines import simple_dcm
+from .figure import MovingFigure
+from .state import Numbers
+
+COMPARISONS = ('nothing', '1 and 2 exchanged', '2 and 3 exchanged', '3 and 4 exchanged', 'body and space fixed')
+
+
+class Turns(traitlets.TraitType):
+    """One to four turns, each an axis and an angle in radians."""
+
+    def validate(self, obj, value):
+        turns = tuple(tuple(turn) for turn in value) if isinstance(value, (list, tuple)) and all(
+            isinstance(turn, (list, tuple)) and len(turn) == 2 for turn in value) else ()
+        if not 1 <= len(turns) <= 4:
+            raise traitlets.TraitError(f'turns is {value!r}: one to four pairs were expected, each an axis and an '
+                                       "angle in radians, as (('z', 0.7), ('x', 0.5))")
+        return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
+
+    def _axis(self, axis):
+        if axis not in ('x', 'y', 'z'):
+            raise traitlets.TraitError(f"turns holds the axis {axis!r}: 'x', 'y' or 'z' was expected")
+        return axis
+
+    def _angle(self, angle):
+        try:
+            number = number_tuples(angle, (), 'angle')
+        except (TypeError, ValueError) as error:
+            raise traitlets.TraitError(f'turns: {error}') from None
+        if abs(number) > math.pi + 1e-12:
+            raise traitlets.TraitError(f'turns holds the angle {number:.6g}: it must be from -pi to pi. Angles are in '
+                                       'radians, not degrees')
+        return number
+
+
+class SuccessiveFigure(MovingFigure):
+    r"""A chain of up to four simple turns from :math:`N` to :math:`A`, :math:`B`, :math:`C` and :math:`D`.
+
+    Beside the frames stand the matrices of the turns and their product. With body fixed turns the newest
+    stands on the left,
+
+    .. math::
+
+       {}^D\mathbf{C}^N = {}^D\mathbf{C}^C\,{}^C\mathbf{C}^B\,{}^B\mathbf{C}^A\,{}^A\mathbf{C}^N ,
+
+    with turns about the axes of :math:`N` on the right. A second chain can be drawn beside the first, with
+    two neighbouring turns exchanged or of the other kind; its end is the frame :math:`E`.
+
+    Attributes
+    ----------
+    turns : tuple of pairs
+        One to four turns, each an axis 'x', 'y' or 'z' and an angle in radians, from :math:`-\pi` to
+        :math:`\pi`.
+    fixed : {'body', 'space'}
+        Whether each turn is about a unit vector of the frame before it, or about one of :math:`N`.
+    compare : str
+        What the second chain is: one of :data:`COMPARISONS`.
+    share : float
+        How much of the chain has been gone through, from 0 to 1.
+
+    Examples
+    --------
+    >>> from orientation_figures.moving import SuccessiveFigure
+    >>> figure = SuccessiveFigure(turns=[('z', 1.2), ('x', 0.4)], compare='1 and 2 exchanged')
+    >>> figure.dcm.shape, round(figure.angle_between, 6)
+    ((3, 3), 0.449655)
+    """
+
+    kind = 'successive'
+    sheet = (-180, -142, 180, 222)
+    room = (685, 1001)
+    turns = Turns((('z', math.radians(30)), ('x', math.radians(50)), ('y', math.radians(40)))).tag(sync=True, state=True)
+    fixed = traitlets.Enum(('body', 'space'), 'body').tag(sync=True, state=True)
+    compare = traitlets.Enum(COMPARISONS, 'nothing').tag(sync=True, state=True)
+    share = Numbers(1.0, largest=1.0).tag(sync=True, state=True)
+
+    @traitlets.validate('share')
+    def _not_negative(self, proposal):
+        if proposal['value'] < 0:
+            raise traitlets.TraitError(f'share is {proposal["value"]!r}: a number from 0 to 1 was expected')
+        return proposal['value']
+
+    @traitlets.validate('turns', 'compare')
+    def _has_both_turns(self, proposal):
+        turns, compare = (proposal['value'] if proposal['trait'].name == name else getattr(self, name)
+                          for name in ('turns', 'compare'))
+        if 1 <= COMPARISONS.index(compare) <= 3 and len(turns) <= COMPARISONS.index(compare):
+            raise traitlets.TraitError(f'compare is {compare!r}, but the chain has only {len(turns)} '
+                                       f'turn{"s" * (len(turns) > 1)}')
+        return proposal['value']
+
+    @property
+    def dcms(self):
+        """Direction cosine matrices of N and of every further frame with respect to N, shape ``(n + 1, 3, 3)``."""
+        return chain(self.turns, self.fixed)
+
+    @property
+    def dcm(self):
+        """Direction cosine matrix of the end of the chain with respect to N, shape ``(3, 3)``."""
+        return self.dcms[-1]
+
+    @property
+    def other(self):
+        """Direction cosine matrix of E with respect to N, or None where nothing is compared."""
+        return None if self.compare == 'nothing' else chain(*second_chain(self.turns, self.fixed, self.compare))[-1]
+
+    @property
+    def angle_between(self):
+        """Angle of the turn from the end of the chain to E, radians, or None where nothing is compared."""
+        return None if self.other is None else float(axis_angle_from_dcm(self.other @ self.dcm.T)[1])
+
+
+def second_chain(turns, kind, compare):
+    """Return the turns of the chain that is compared, and their kind."""
+    turns, k = list(turns), COMPARISONS.index(compare)
+    if k < 4:
+        turns[k - 1], turns[k] = turns[k], turns[k - 1]
+    else:
+        kind = 'space' if kind == 'body' else 'body'
+    return turns, kind
+
+
+def chain(turns, kind):
+    """Return the direction cosine matrices of N and of every further frame with respect to N."""
+    import numpy as np   # only now: the figure itself does without
+    frames = [np.eye(3)]
+    for axis, angle in turns:
+        turn = simple_dcm(axis, angle)
+        # A turn about the frame's own unit vector multiplies from the left, one about N's from the right.
+        frames.append(turn @ frames[-1] if kind == 'body' else frames[-1] @ turn)
+    return np.array(frames)

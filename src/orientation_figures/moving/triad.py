@@ -1,0 +1,55 @@
+"""A triad turned in a frame about an axis, with every description of its orientation beside it."""
+import math
+
+from orientation.axis_angle import dcm_from_axis_angle, quaternion_from_axis_angle
+from orientation.euler_angles import body_fixed_from_dcm
+from .figure import MovingFigure
+from .state import Direction, Numbers, Sequence
+
+
+class TriadFigure(MovingFigure):
+    r"""A triad :math:`A`, turned in :math:`N` through an angle about an axis.
+
+    Beside the drawing stand :math:`{}^A\mathbf{C}^N`, Euler angles, axis and angle, and the quaternion of
+    the same orientation. A number that is touched lights up what it means.
+
+    Attributes
+    ----------
+    axis : tuple of three floats
+        Direction of the axis, the same along :math:`N` and :math:`A`. Any vector but zero may be given; it
+        is kept at unit length.
+    angle : float
+        Radians, from :math:`-\pi` to :math:`\pi`.
+    sequence : str
+        Which of the twelve sequences the Euler angles belong to.
+
+    Examples
+    --------
+    >>> from orientation_figures.moving import TriadFigure
+    >>> figure = TriadFigure(axis=(0, 0, 2), angle=0.3, sequence='zxy')
+    >>> figure.angle = 0.5
+    >>> figure.axis, figure.dcm[0, 1].round(6).item()
+    ((0.0, 0.0, 1.0), 0.479426)
+    """
+
+    kind = 'triad'
+    sheet = (-180, -172, 180, 172)
+    room = (512, 884)
+    axis = Direction((1, 2, 2)).tag(sync=True, state=True)
+    angle = Numbers(math.radians(50), largest=math.pi).tag(sync=True, state=True)
+    sequence = Sequence('zxy').tag(sync=True, state=True)
+
+    @property
+    def dcm(self):
+        r""":math:`{}^A\mathbf{C}^N`, shape ``(3, 3)``."""
+        return dcm_from_axis_angle(self.axis, self.angle)
+
+    @property
+    def quaternion(self):
+        """Unit quaternion of half the angle, scalar first, shape ``(4,)``."""
+        return quaternion_from_axis_angle(self.axis, self.angle)
+
+    @property
+    def angles(self):
+        """Body fixed angles ``(psi, theta, phi)`` for ``sequence``, in radians."""
+        return body_fixed_from_dcm(self.dcm, self.sequence)
