@@ -10,33 +10,35 @@ from importlib.metadata import version
 
 from . import conversions, imports, symbols
 
-PEERS = ('SciPy', 'pytransform3d', 'SymPy')
+PEERS = ("SciPy", "pytransform3d", "SymPy")
 
 
 def main():
-    packages = ', '.join(f'{name} {version(name)}' for name in ('numpy', 'scipy', 'pytransform3d', 'sympy'))
-    print(f'Python {platform.python_version()}, {packages}, {platform.machine()}.')
-    print('The time of orientation, and how many times as long the others take (medians of processor time; below')
-    print('1 they are faster). What exactly is compared is said in benchmarks/conversions.py, symbols.py and imports.py.\n')
-    print(f'| what | N | orientation | {" | ".join(f"{peer} takes" for peer in PEERS)} |')
-    print(f'|---|---|---|{"---|" * len(PEERS)}')
+    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "pytransform3d", "sympy"))
+    print(f"Python {platform.python_version()}, {packages}, {platform.machine()}.")
+    print("The time of orientation, and how many times as long the others take (medians of processor time; below")
+    print(
+        "1 they are faster). What exactly is compared is said in benchmarks/conversions.py, symbols.py and imports.py.\n"
+    )
+    print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in PEERS)} |")
+    print(f"|---|---|---|{'---|' * len(PEERS)}")
     for what, size, seconds in itertools.chain(conversions.rows(), symbols.rows(), imports.rows()):
-        print(_line(what, f'{size:,}', _in_words(seconds['orientation'] / size), seconds), flush=True)
+        print(_line(what, f"{size:,}", _in_words(seconds["orientation"] / size), seconds), flush=True)
     for what, operations in symbols.sizes():
-        print(_line(what, '1', f'{operations["orientation"]:,}', operations))
+        print(_line(what, "1", f"{operations['orientation']:,}", operations))
 
 
 def _line(what, size, ours, measured):
-    ratios = (f'{measured[peer] / measured["orientation"]:.3g} x' if measured.get(peer) else '' for peer in PEERS)
-    return f'| {what} | {size} | {ours} | {" | ".join(ratios)} |'
+    ratios = (f"{measured[peer] / measured['orientation']:.3g} x" if measured.get(peer) else "" for peer in PEERS)
+    return f"| {what} | {size} | {ours} | {' | '.join(ratios)} |"
 
 
 def _in_words(seconds):
-    for unit, size in (('s', 1), ('ms', 1e-3), ('µs', 1e-6)):
+    for unit, size in (("s", 1), ("ms", 1e-3), ("µs", 1e-6)):
         if seconds >= size:
-            return f'{seconds / size:.3g} {unit}'
-    return f'{seconds / 1e-9:.3g} ns'
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     main()

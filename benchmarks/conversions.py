@@ -35,8 +35,8 @@ def _demand_same_results(what, contestants):
         if pair:
             function, dcm_of = pair
             results[name] = dcm_of(function())
-            if abs(results[name] - results['orientation']).max() > 1e-6:
-                raise AssertionError(f'{what}: {name} does not return what orientation returns')
+            if abs(results[name] - results["orientation"]).max() > 1e-6:
+                raise AssertionError(f"{what}: {name} does not return what orientation returns")
 
 
 def _conversions(size):
@@ -62,7 +62,7 @@ def _conversions(size):
         return result.swapaxes(-1, -2)
 
     def from_angles(result):
-        return orientation.dcm_from_body_fixed(result, 'zxy')
+        return orientation.dcm_from_body_fixed(result, "zxy")
 
     def from_pair(result):
         return orientation.dcm_from_axis_angle(*result)
@@ -75,63 +75,104 @@ def _conversions(size):
         return rotation_vector / np.expand_dims(length, -1), length
 
     return {
-        'Euler angles zxy to matrix': {
-            'orientation': (lambda: orientation.dcm_from_body_fixed(angles, 'zxy'), itself),
-            'SciPy': (lambda: Rotation.from_euler('ZXY', angles).as_matrix(), transposed),
-            'pytransform3d': ((lambda: single.active_matrix_from_intrinsic_euler_zxy(angles), transposed) if one else
-                              (lambda: batch.active_matrices_from_intrinsic_euler_angles(2, 0, 1, angles),
-                               transposed))},
-        'matrix to Euler angles zxy': {
-            'orientation': (lambda: orientation.body_fixed_from_dcm(dcm, 'zxy'), from_angles),
-            'SciPy': (lambda: Rotation.from_matrix(matrix).as_euler('ZXY'), from_angles),
-            'pytransform3d': ((lambda: single.intrinsic_euler_zxy_from_active_matrix(matrix), from_angles)
-                              if one else None)},
-        'axis and angle to matrix': {
-            'orientation': (lambda: orientation.dcm_from_axis_angle(axis, angle), itself),
-            'SciPy': (lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_matrix(), transposed),
-            'pytransform3d': ((lambda: single.matrix_from_axis_angle(both), transposed) if one else
-                              (lambda: batch.matrices_from_compact_axis_angles(axes=axis, angles=angle), transposed))},
-        'matrix to axis and angle': {
-            'orientation': (lambda: orientation.axis_angle_from_dcm(dcm), from_pair),
-            'SciPy': (lambda: split(Rotation.from_matrix(matrix).as_rotvec()), from_pair),
-            'pytransform3d': ((lambda: single.axis_angle_from_matrix(matrix), from_both) if one else
-                              (lambda: batch.axis_angles_from_matrices(matrix), from_both))},
-        'rotation vector to matrix': {
-            'orientation': (lambda: orientation.dcm_from_rotation_vector(vector), itself),
-            'SciPy': (lambda: Rotation.from_rotvec(vector).as_matrix(), transposed),
-            'pytransform3d': ((lambda: single.matrix_from_compact_axis_angle(vector), transposed) if one else
-                              (lambda: batch.matrices_from_compact_axis_angles(vector), transposed))},
-        'matrix to rotation vector': {
-            'orientation': (lambda: orientation.rotation_vector_from_dcm(dcm), orientation.dcm_from_rotation_vector),
-            'SciPy': (lambda: Rotation.from_matrix(matrix).as_rotvec(), orientation.dcm_from_rotation_vector),
-            'pytransform3d': ((lambda: single.compact_axis_angle_from_matrix(matrix),
-                               orientation.dcm_from_rotation_vector) if one else None)},
-        'quaternion to matrix': {
-            'orientation': (lambda: orientation.dcm_from_quaternion(quaternion), itself),
-            'SciPy': (lambda: Rotation.from_quat(quaternion, scalar_first=True).as_matrix(), transposed),
-            'pytransform3d': ((lambda: single.matrix_from_quaternion(quaternion), transposed) if one else
-                              (lambda: batch.matrices_from_quaternions(quaternion), transposed))},
-        'matrix to quaternion': {
-            'orientation': (lambda: orientation.quaternion_from_dcm(dcm), orientation.dcm_from_quaternion),
-            'SciPy': (lambda: Rotation.from_matrix(matrix).as_quat(scalar_first=True),
-                      orientation.dcm_from_quaternion),
-            'pytransform3d': ((lambda: single.quaternion_from_matrix(matrix), orientation.dcm_from_quaternion) if one
-                              else (lambda: batch.quaternions_from_matrices(matrix), orientation.dcm_from_quaternion))},
-        'axis and angle to quaternion': {
-            'orientation': (lambda: orientation.quaternion_from_axis_angle(axis, angle),
-                            orientation.dcm_from_quaternion),
-            'SciPy': (lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_quat(scalar_first=True),
-                      orientation.dcm_from_quaternion),
-            'pytransform3d': ((lambda: single.quaternion_from_axis_angle(both), orientation.dcm_from_quaternion)
-                              if one else None)},
-        'product of quaternions': {
-            'orientation': (lambda: orientation.multiply_quaternions(quaternion, other),
-                            orientation.dcm_from_quaternion),
-            'SciPy': (lambda: (Rotation.from_quat(quaternion, scalar_first=True)
-                               * Rotation.from_quat(other, scalar_first=True)).as_quat(scalar_first=True),
-                      orientation.dcm_from_quaternion),
-            'pytransform3d': ((lambda: single.concatenate_quaternions(quaternion, other),
-                               orientation.dcm_from_quaternion) if one else
-                              (lambda: batch.batch_concatenate_quaternions(quaternion, other),
-                               orientation.dcm_from_quaternion))},
+        "Euler angles zxy to matrix": {
+            "orientation": (lambda: orientation.dcm_from_body_fixed(angles, "zxy"), itself),
+            "SciPy": (lambda: Rotation.from_euler("ZXY", angles).as_matrix(), transposed),
+            "pytransform3d": (
+                (lambda: single.active_matrix_from_intrinsic_euler_zxy(angles), transposed)
+                if one
+                else (lambda: batch.active_matrices_from_intrinsic_euler_angles(2, 0, 1, angles), transposed)
+            ),
+        },
+        "matrix to Euler angles zxy": {
+            "orientation": (lambda: orientation.body_fixed_from_dcm(dcm, "zxy"), from_angles),
+            "SciPy": (lambda: Rotation.from_matrix(matrix).as_euler("ZXY"), from_angles),
+            "pytransform3d": (
+                (lambda: single.intrinsic_euler_zxy_from_active_matrix(matrix), from_angles) if one else None
+            ),
+        },
+        "axis and angle to matrix": {
+            "orientation": (lambda: orientation.dcm_from_axis_angle(axis, angle), itself),
+            "SciPy": (lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_matrix(), transposed),
+            "pytransform3d": (
+                (lambda: single.matrix_from_axis_angle(both), transposed)
+                if one
+                else (lambda: batch.matrices_from_compact_axis_angles(axes=axis, angles=angle), transposed)
+            ),
+        },
+        "matrix to axis and angle": {
+            "orientation": (lambda: orientation.axis_angle_from_dcm(dcm), from_pair),
+            "SciPy": (lambda: split(Rotation.from_matrix(matrix).as_rotvec()), from_pair),
+            "pytransform3d": (
+                (lambda: single.axis_angle_from_matrix(matrix), from_both)
+                if one
+                else (lambda: batch.axis_angles_from_matrices(matrix), from_both)
+            ),
+        },
+        "rotation vector to matrix": {
+            "orientation": (lambda: orientation.dcm_from_rotation_vector(vector), itself),
+            "SciPy": (lambda: Rotation.from_rotvec(vector).as_matrix(), transposed),
+            "pytransform3d": (
+                (lambda: single.matrix_from_compact_axis_angle(vector), transposed)
+                if one
+                else (lambda: batch.matrices_from_compact_axis_angles(vector), transposed)
+            ),
+        },
+        "matrix to rotation vector": {
+            "orientation": (lambda: orientation.rotation_vector_from_dcm(dcm), orientation.dcm_from_rotation_vector),
+            "SciPy": (lambda: Rotation.from_matrix(matrix).as_rotvec(), orientation.dcm_from_rotation_vector),
+            "pytransform3d": (
+                (lambda: single.compact_axis_angle_from_matrix(matrix), orientation.dcm_from_rotation_vector)
+                if one
+                else None
+            ),
+        },
+        "quaternion to matrix": {
+            "orientation": (lambda: orientation.dcm_from_quaternion(quaternion), itself),
+            "SciPy": (lambda: Rotation.from_quat(quaternion, scalar_first=True).as_matrix(), transposed),
+            "pytransform3d": (
+                (lambda: single.matrix_from_quaternion(quaternion), transposed)
+                if one
+                else (lambda: batch.matrices_from_quaternions(quaternion), transposed)
+            ),
+        },
+        "matrix to quaternion": {
+            "orientation": (lambda: orientation.quaternion_from_dcm(dcm), orientation.dcm_from_quaternion),
+            "SciPy": (lambda: Rotation.from_matrix(matrix).as_quat(scalar_first=True), orientation.dcm_from_quaternion),
+            "pytransform3d": (
+                (lambda: single.quaternion_from_matrix(matrix), orientation.dcm_from_quaternion)
+                if one
+                else (lambda: batch.quaternions_from_matrices(matrix), orientation.dcm_from_quaternion)
+            ),
+        },
+        "axis and angle to quaternion": {
+            "orientation": (
+                lambda: orientation.quaternion_from_axis_angle(axis, angle),
+                orientation.dcm_from_quaternion,
+            ),
+            "SciPy": (
+                lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_quat(scalar_first=True),
+                orientation.dcm_from_quaternion,
+            ),
+            "pytransform3d": (
+                (lambda: single.quaternion_from_axis_angle(both), orientation.dcm_from_quaternion) if one else None
+            ),
+        },
+        "product of quaternions": {
+            "orientation": (
+                lambda: orientation.multiply_quaternions(quaternion, other),
+                orientation.dcm_from_quaternion,
+            ),
+            "SciPy": (
+                lambda: (
+                    Rotation.from_quat(quaternion, scalar_first=True) * Rotation.from_quat(other, scalar_first=True)
+                ).as_quat(scalar_first=True),
+                orientation.dcm_from_quaternion,
+            ),
+            "pytransform3d": (
+                (lambda: single.concatenate_quaternions(quaternion, other), orientation.dcm_from_quaternion)
+                if one
+                else (lambda: batch.batch_concatenate_quaternions(quaternion, other), orientation.dcm_from_quaternion)
+            ),
+        },
     }

@@ -22,8 +22,8 @@ from pathlib import Path
 from coursework.grading.grade import grade
 from coursework.grading.sample_class import make_class
 
-NOTEBOOKS = ('reference-frames', 'unit-quaternions')
-ASSIGNMENT = 'homework'
+NOTEBOOKS = ("reference-frames", "unit-quaternions")
+ASSIGNMENT = "homework"
 CONFIGURATION = """c = get_config()
 c.CourseDirectory.root = {root!r}
 c.ExecutePreprocessor.kernel_name = 'python3'
@@ -33,39 +33,51 @@ c.Exchange.enabled = False
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--students', type=int, default=200)
-    parser.add_argument('--sample', type=int, default=8, help='how many notebooks the others are given')
-    parser.add_argument('--workers', type=int, default=2)
+    parser.add_argument("--students", type=int, default=200)
+    parser.add_argument("--sample", type=int, default=8, help="how many notebooks the others are given")
+    parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         place = Path(place)
         submissions = make_class(place, options.students, 1, NOTEBOOKS)
-        about = json.loads((place / 'expected.json').read_text())
-        questions = len(next(iter(about.values()))['questions'])
-        good = [student for student in about if not any(did.startswith(('hostile', 'refused')) for did in about[student]['did'])]
-        honest = _only(good, submissions, place / 'honest')
-        start = of_grading(_only(good[:options.workers], submissions, place / 'few'), place, options.workers)
+        about = json.loads((place / "expected.json").read_text())
+        questions = len(next(iter(about.values()))["questions"])
+        good = [
+            student
+            for student in about
+            if not any(did.startswith(("hostile", "refused")) for did in about[student]["did"])
+        ]
+        honest = _only(good, submissions, place / "honest")
+        start = of_grading(_only(good[: options.workers], submissions, place / "few"), place, options.workers)
         ours = of_grading(honest, place, options.workers)
-        paths = [next((honest / student).glob('*.ipynb')) for student in good]
+        paths = [next((honest / student).glob("*.ipynb")) for student in good]
         alone = of_cells(paths)
-        sample = [next((honest / student).glob('*.ipynb')) for student in good if not about[student]['did']][:options.sample]
+        sample = [next((honest / student).glob("*.ipynb")) for student in good if not about[student]["did"]][
+            : options.sample
+        ]
         rows = (
-            ('coursework grade: all, with the attacks', *of_grading(submissions, place, options.workers)),
-            ('coursework grade: the honest ones', *ours),
-            ('their cells alone, each in a copy of one warm process', *alone),
-            ('nbclient, which grades nothing', *of_nbclient(sample)),
-            ('nbgrader autograde', *of_nbgrader(sample, place)),
+            ("coursework grade: all, with the attacks", *of_grading(submissions, place, options.workers)),
+            ("coursework grade: the honest ones", *ours),
+            ("their cells alone, each in a copy of one warm process", *alone),
+            ("nbclient, which grades nothing", *of_nbclient(sample)),
+            ("nbgrader autograde", *of_nbgrader(sample, place)),
         )
-        print(f'{options.students} notebooks of {questions} questions, {options.workers} workers.\n')
-        print('| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times ours, processor |')
-        print('|---|---|---|---|---|---|---|')
+        print(f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n")
+        print(
+            "| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times ours, processor |"
+        )
+        print("|---|---|---|---|---|---|---|")
         own = ours[1] / ours[0], ours[2] / ours[0]
         for what, count, clock, processor in rows:
-            print(f'| {what} | {count} | {clock:.1f} s | {1000 * clock / count:.0f} ms | {1000 * processor / count:.0f} ms '
-                  f'| {clock / count / own[0]:.2g} | {processor / count / own[1]:.2g} |')
+            print(
+                f"| {what} | {count} | {clock:.1f} s | {1000 * clock / count:.0f} ms | {1000 * processor / count:.0f} ms "
+                f"| {clock / count / own[0]:.2g} | {processor / count / own[1]:.2g} |"
+            )
         each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
-        print(f'\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor time. Beyond it and beyond the cells '
-              f'a notebook costs {1000 * each:.0f} ms of processor time.')
+        print(
+            f"\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor time. Beyond it and beyond the cells "
+            f"a notebook costs {1000 * each:.0f} ms of processor time."
+        )
 
 
 def _only(students, submissions, place):
@@ -78,8 +90,12 @@ def _only(students, submissions, place):
 @contextlib.contextmanager
 def measured():
     """The seconds by the clock and of processor time, of this process and all that it waited for."""
+
     def used():
-        return sum(usage.ru_utime + usage.ru_stime for usage in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+        return sum(
+            usage.ru_utime + usage.ru_stime
+            for usage in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+        )
 
     seconds, clock, processor = [], time.perf_counter(), used()
     yield seconds
@@ -90,7 +106,7 @@ def of_grading(submissions, place, workers):
     out = Path(tempfile.mkdtemp(dir=place))
     with measured() as seconds:
         done = grade(submissions, out, assignments={ASSIGNMENT: list(NOTEBOOKS)}, workers=workers, show=io.StringIO())
-    return done['graded'], *seconds
+    return done["graded"], *seconds
 
 
 def of_cells(paths):
@@ -99,65 +115,76 @@ def of_cells(paths):
     Each copy is new, as caches that are warm from a neighbour's notebook would make the cells look cheaper than they
     are. What is counted is the time between the first cell and the last; making the copies is not.
     """
-    code = ('import contextlib, io, json, os, sys, time, types, warnings\n'
-            'import numpy, orientation, sympy, sympy.physics.mechanics\n'
-            'warnings.simplefilter("ignore")\n'
-            'sys.modules["coursework"] = types.SimpleNamespace(check=lambda *answers: None)\n'
-            'def run(cells):\n'
-            '    names = {"__name__": "__main__"}\n'
-            '    for cell in cells:\n'
-            '        if cell["cell_type"] == "code":\n'
-            '            with contextlib.suppress(Exception), contextlib.redirect_stdout(io.StringIO()):\n'
-            '                exec(compile("".join(cell["source"]), "cell", "exec"), names)\n'
-            'total = [0, 0]\n'
-            'for path in sys.argv[1:]:\n'
-            '    cells = json.load(open(path))["cells"]\n'
-            '    reading, writing = os.pipe()\n'
-            '    if os.fork() == 0:\n'
-            '        start = time.perf_counter(), time.process_time()\n'
-            '        run(cells)\n'
-            '        os.write(writing, f"{time.perf_counter() - start[0]} {time.process_time() - start[1]}".encode())\n'
-            '        os._exit(0)\n'
-            '    total = [a + float(b) for a, b in zip(total, os.read(reading, 100).split())]\n'
-            '    os.close(reading), os.close(writing), os.wait()\n'
-            'print(*total)\n')
-    said = subprocess.run([sys.executable, '-W', 'ignore', '-c', code, *map(str, paths)], check=True, capture_output=True, text=True)
+    code = (
+        "import contextlib, io, json, os, sys, time, types, warnings\n"
+        "import numpy, orientation, sympy, sympy.physics.mechanics\n"
+        'warnings.simplefilter("ignore")\n'
+        'sys.modules["coursework"] = types.SimpleNamespace(check=lambda *answers: None)\n'
+        "def run(cells):\n"
+        '    names = {"__name__": "__main__"}\n'
+        "    for cell in cells:\n"
+        '        if cell["cell_type"] == "code":\n'
+        "            with contextlib.suppress(Exception), contextlib.redirect_stdout(io.StringIO()):\n"
+        '                exec(compile("".join(cell["source"]), "cell", "exec"), names)\n'
+        "total = [0, 0]\n"
+        "for path in sys.argv[1:]:\n"
+        '    cells = json.load(open(path))["cells"]\n'
+        "    reading, writing = os.pipe()\n"
+        "    if os.fork() == 0:\n"
+        "        start = time.perf_counter(), time.process_time()\n"
+        "        run(cells)\n"
+        '        os.write(writing, f"{time.perf_counter() - start[0]} {time.process_time() - start[1]}".encode())\n'
+        "        os._exit(0)\n"
+        "    total = [a + float(b) for a, b in zip(total, os.read(reading, 100).split())]\n"
+        "    os.close(reading), os.close(writing), os.wait()\n"
+        "print(*total)\n"
+    )
+    said = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code, *map(str, paths)], check=True, capture_output=True, text=True
+    )
     return len(paths), *map(float, said.stdout.split())
 
 
 def of_nbclient(paths):
     import nbformat
     from nbclient import NotebookClient
+
     with measured() as seconds:
         for path in paths:
-            NotebookClient(nbformat.read(path, as_version=4), kernel_name='python3', allow_errors=True).execute()
+            NotebookClient(nbformat.read(path, as_version=4), kernel_name="python3", allow_errors=True).execute()
     return len(paths), *seconds
 
 
 def of_nbgrader(paths, place):
     """nbgrader's own commands; what its gradebook needs to know of the assignment is made before, and not timed."""
-    course = place / 'course'
+    course = place / "course"
     name = paths[0].name
     for path in paths:
-        folder = course / 'submitted' / path.parent.name / ASSIGNMENT
+        folder = course / "submitted" / path.parent.name / ASSIGNMENT
         folder.mkdir(parents=True)
         shutil.copy(path, folder / name)
-    (course / 'source' / ASSIGNMENT).mkdir(parents=True)
-    shutil.copy(paths[0], course / 'source' / ASSIGNMENT / name)
-    (course / 'nbgrader_config.py').write_text(CONFIGURATION.format(root=str(course)))
-    environment = {**os.environ, 'PATH': f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}',
-                   'JUPYTER_CONFIG_DIR': str(course), 'PYTHONWARNINGS': 'ignore'}
+    (course / "source" / ASSIGNMENT).mkdir(parents=True)
+    shutil.copy(paths[0], course / "source" / ASSIGNMENT / name)
+    (course / "nbgrader_config.py").write_text(CONFIGURATION.format(root=str(course)))
+    environment = {
+        **os.environ,
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "JUPYTER_CONFIG_DIR": str(course),
+        "PYTHONWARNINGS": "ignore",
+    }
 
     def run(*command):
-        done = subprocess.run([sys.executable, '-m', 'nbgrader', *command], cwd=course, env=environment, capture_output=True, text=True)
+        done = subprocess.run(
+            [sys.executable, "-m", "nbgrader", *command], cwd=course, env=environment, capture_output=True, text=True
+        )
         if done.returncode:
             sys.exit(done.stderr[-3000:])
 
-    run('generate_assignment', ASSIGNMENT, '--force')
+    run("generate_assignment", ASSIGNMENT, "--force")
     with measured() as seconds:
-        run('autograde', ASSIGNMENT)
+        run("autograde", ASSIGNMENT)
     return len(paths), *seconds
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     main()

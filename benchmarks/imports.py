@@ -4,8 +4,12 @@ import statistics
 import subprocess
 import sys
 
-PACKAGES = {'orientation': 'orientation', 'SciPy': 'scipy.spatial.transform',
-            'pytransform3d': 'pytransform3d.rotations', 'SymPy': 'sympy.physics.mechanics'}
+PACKAGES = {
+    "orientation": "orientation",
+    "SciPy": "scipy.spatial.transform",
+    "pytransform3d": "pytransform3d.rotations",
+    "SymPy": "sympy.physics.mechanics",
+}
 ROUNDS = 9
 
 
@@ -14,8 +18,9 @@ def rows():
     samples = {name: [] for name in PACKAGES}
     for _ in range(ROUNDS):
         for name, package in PACKAGES.items():
-            code = ('import time, numpy\nstart = time.process_time()\n'
-                    f'import {package}\nprint(time.process_time() - start)')
-            done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
+            code = (
+                f"import time, numpy\nstart = time.process_time()\nimport {package}\nprint(time.process_time() - start)"
+            )
+            done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
             samples[name].append(float(done.stdout))
-    yield 'import, beyond NumPy', 1, {name: statistics.median(times) for name, times in samples.items()}
+    yield "import, beyond NumPy", 1, {name: statistics.median(times) for name, times in samples.items()}

@@ -22,14 +22,20 @@ from playwright.sync_api import sync_playwright
 
 from website.serve import server
 
-PAGE = 'chapters/direction-cosine-matrices'
-NOTEBOOK = 'lite/notebooks/index.html?path=exercises/direction-cosine-matrices.ipynb'
-SITE = Path('_build/html')
+PAGE = "chapters/direction-cosine-matrices"
+NOTEBOOK = "lite/notebooks/index.html?path=exercises/direction-cosine-matrices.ipynb"
+SITE = Path("_build/html")
 ROUNDS = 5
 CELLS = 30
-BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable')
-FLAGS = ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync',
-         '--no-first-run', '--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1']
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+FLAGS = [
+    "--no-sandbox",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+]
 
 # Milliseconds from the press on a cell's Run until the cell has run and the page is painted.
 PRESS = """
@@ -79,9 +85,9 @@ def visit(context, address):
     """Press Run on the first SymPy cell; return the page, the cell's number, the seconds and what was asked for."""
     page = context.new_page()
     asked = []
-    page.on('requestfinished', lambda request: asked.append(request.url))
+    page.on("requestfinished", lambda request: asked.append(request.url))
     page.goto(address)
-    page.wait_for_load_state('networkidle')
+    page.wait_for_load_state("networkidle")
     before = len(asked)
     number = page.evaluate(FIRST_SYMPY)
     seconds = page.evaluate(PRESS, number) / 1000
@@ -92,12 +98,17 @@ def open_notebook(context, site):
     """Open a notebook in JupyterLite and run its first cell; return the seconds and what was asked for."""
     page = context.new_page()
     asked = []
-    context.on('response', lambda response: response.status == 200 and not response.from_service_worker and asked.append(response.url))
+    context.on(
+        "response",
+        lambda response: response.status == 200 and not response.from_service_worker and asked.append(response.url),
+    )
     start = time.monotonic()
-    page.goto(f'{site}{NOTEBOOK}')
-    page.locator('.jp-CodeCell').first.click()
-    page.keyboard.press('Shift+Enter')
-    page.wait_for_function(r"document.querySelector('.jp-CodeCell .jp-InputPrompt')?.innerText.match(/\d/)", timeout=120_000)
+    page.goto(f"{site}{NOTEBOOK}")
+    page.locator(".jp-CodeCell").first.click()
+    page.keyboard.press("Shift+Enter")
+    page.wait_for_function(
+        r"document.querySelector('.jp-CodeCell .jp-InputPrompt')?.innerText.match(/\d/)", timeout=120_000
+    )
     seconds = time.monotonic() - start
     page.close()
     return seconds, asked
@@ -106,35 +117,35 @@ def open_notebook(context, site):
 def bare(context, site):
     """Seconds until SymPy is imported without the book around it."""
     page = context.new_page()
-    page.goto(f'{site}search.html')
-    seconds = page.evaluate(BARE, f'{site}runtime/') / 1000
+    page.goto(f"{site}search.html")
+    seconds = page.evaluate(BARE, f"{site}runtime/") / 1000
     page.close()
     return seconds
 
 
 def cell_overhead(page, number):
     """Median milliseconds of a cell that does nothing but give a name a value."""
-    page.evaluate(WRITE, [number, 'a = 1'])
+    page.evaluate(WRITE, [number, "a = 1"])
     page.evaluate(PRESS, number)
     return statistics.median(page.evaluate(PRESS, number) for _ in range(CELLS))
 
 
 def weight(urls):
     """Megabytes after gzip of what was asked for."""
-    bodies = [urllib.request.urlopen(url).read() for url in dict.fromkeys(urls) if url.startswith('http')]
+    bodies = [urllib.request.urlopen(url).read() for url in dict.fromkeys(urls) if url.startswith("http")]
     return sum(len(gzip.compress(body, 6)) for body in bodies) / 1e6
 
 
 def main():
     executable = next(filter(None, map(shutil.which, BROWSERS)), None)
     if executable is None:
-        sys.exit('There is no Chromium on this machine to open the pages with.')
-    if not (SITE / f'{PAGE}.html').is_file():
-        sys.exit('The book is not built: run `make book` first.')
+        sys.exit("There is no Chromium on this machine to open the pages with.")
+    if not (SITE / f"{PAGE}.html").is_file():
+        sys.exit("The book is not built: run `make book` first.")
     book = server(folder=SITE)
     threading.Thread(target=book.serve_forever, daemon=True).start()
-    site = f'http://127.0.0.1:{book.server_port}/'
-    address = f'{site}{PAGE}.html'
+    site = f"http://127.0.0.1:{book.server_port}/"
+    address = f"{site}{PAGE}.html"
     cold, warm, overheads, bare_cold, bare_warm, lite_cold, lite_warm = ([] for _ in range(7))
     with sync_playwright() as playwright:
         for _ in range(ROUNDS):
@@ -148,7 +159,7 @@ def main():
                 page, number, seconds, asked = visit(context, address)
                 cold.append(seconds)
                 overheads.append(cell_overhead(page, number))
-                page.evaluate('localStorage.clear()')
+                page.evaluate("localStorage.clear()")
                 page.close()
                 page, _, seconds, _ = visit(context, address)
                 warm.append(seconds)
@@ -159,18 +170,22 @@ def main():
                 lite_cold.append(seconds)
                 lite_warm.append(open_notebook(context, site)[0])
                 context.close()
-    print('| what | median | of', ROUNDS, '|')
-    print('|---|---|---|')
-    for what, values, unit in (('first SymPy result, cold', cold, 's'), ('bare runtime and SymPy, cold', bare_cold, 's'),
-                               ('first SymPy result, warm', warm, 's'), ('bare runtime and SymPy, warm', bare_warm, 's'),
-                               ('each later cell, beyond its own work', overheads, 'ms'),
-                               ('JupyterLite until a cell has run, cold', lite_cold, 's'),
-                               ('JupyterLite until a cell has run, warm', lite_warm, 's')):
-        every = ', '.join(f'{value:.2f}' for value in sorted(values))
-        print(f'| {what} | {statistics.median(values):.2f} {unit} | {every} |')
-    for what, urls in (('download', asked), ("JupyterLite's download", lite_asked)):
-        print(f'| {what}, MB after gzip | {weight(urls):.1f} | {len(set(urls))} files |')
+    print("| what | median | of", ROUNDS, "|")
+    print("|---|---|---|")
+    for what, values, unit in (
+        ("first SymPy result, cold", cold, "s"),
+        ("bare runtime and SymPy, cold", bare_cold, "s"),
+        ("first SymPy result, warm", warm, "s"),
+        ("bare runtime and SymPy, warm", bare_warm, "s"),
+        ("each later cell, beyond its own work", overheads, "ms"),
+        ("JupyterLite until a cell has run, cold", lite_cold, "s"),
+        ("JupyterLite until a cell has run, warm", lite_warm, "s"),
+    ):
+        every = ", ".join(f"{value:.2f}" for value in sorted(values))
+        print(f"| {what} | {statistics.median(values):.2f} {unit} | {every} |")
+    for what, urls in (("download", asked), ("JupyterLite's download", lite_asked)):
+        print(f"| {what}, MB after gzip | {weight(urls):.1f} | {len(set(urls))} files |")
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     main()

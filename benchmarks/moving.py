@@ -23,8 +23,8 @@ from orientation_figures.moving import bundle
 
 from .pages import BROWSERS
 
-FIGURES = [figure for figure in (getattr(moving, name) for name in moving.__all__) if getattr(figure, 'kind', '')]
-SLOWED, FRAME, HEAVIEST = 4, 16, 60_000   # times, milliseconds, bytes
+FIGURES = [figure for figure in (getattr(moving, name) for name in moving.__all__) if getattr(figure, "kind", "")]
+SLOWED, FRAME, HEAVIEST = 4, 16, 60_000  # times, milliseconds, bytes
 PICTURES, ROUNDS = 120, 5
 PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{kind}</title>
 <style>body {{ width: 714px; margin: auto; font: 16px/1.6 sans-serif; }} figure {{ margin: 0; }} {style}</style></head>
@@ -43,21 +43,29 @@ DRAG = """async (pictures) => {
 
 def busy(session):
     """Milliseconds of processor time that the main thread has used so far."""
-    metrics = session.send('Performance.getMetrics')['metrics']
-    return 1000 * next(metric['value'] for metric in metrics if metric['name'] == 'TaskDuration')
+    metrics = session.send("Performance.getMetrics")["metrics"]
+    return 1000 * next(metric["value"] for metric in metrics if metric["name"] == "TaskDuration")
 
 
 def milliseconds(browser, figure, folder):
     """Milliseconds that the main thread needs for one picture: the median of some drags."""
-    page_file = Path(folder) / f'{figure.kind}.html'
-    page_file.write_text(PAGE.format(kind=figure.kind, style=bundle.style(), still=figure().still(),
-                                     shared=bundle.shared_script(), script=bundle.script(figure.kind)), 'utf8')
-    page = browser.new_context(viewport={'width': 1000, 'height': 900}).new_page()
+    page_file = Path(folder) / f"{figure.kind}.html"
+    page_file.write_text(
+        PAGE.format(
+            kind=figure.kind,
+            style=bundle.style(),
+            still=figure().still(),
+            shared=bundle.shared_script(),
+            script=bundle.script(figure.kind),
+        ),
+        "utf8",
+    )
+    page = browser.new_context(viewport={"width": 1000, "height": 900}).new_page()
     session = page.context.new_cdp_session(page)
-    session.send('Performance.enable', {'timeDomain': 'threadTicks'})
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
     page.goto(page_file.as_uri())
-    page.wait_for_selector('.moving[data-ready]')
-    page.evaluate(DRAG, PICTURES)   # the first pictures also compile the scripts
+    page.wait_for_selector(".moving[data-ready]")
+    page.evaluate(DRAG, PICTURES)  # the first pictures also compile the scripts
     spent = []
     for _ in range(ROUNDS):
         begin = busy(session)
@@ -70,23 +78,32 @@ def milliseconds(browser, figure, folder):
 def main():
     executable = next(filter(None, map(shutil.which, BROWSERS)), None)
     if executable is None:
-        sys.exit('There is no Chromium on this machine to open the figures with.')
+        sys.exit("There is no Chromium on this machine to open the figures with.")
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
-        browser = playwright.chromium.launch(executable_path=executable, args=[
-            '--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync',
-            '--no-first-run'])
-        print(f'Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as slow; a picture has {FRAME} ms.\n')
-        print('| figure | main thread, ms for each picture of a drag | kB after gzip |')
-        print('|---|---|---|')
+        browser = playwright.chromium.launch(
+            executable_path=executable,
+            args=[
+                "--no-sandbox",
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--disable-sync",
+                "--no-first-run",
+            ],
+        )
+        print(
+            f"Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as slow; a picture has {FRAME} ms.\n"
+        )
+        print("| figure | main thread, ms for each picture of a drag | kB after gzip |")
+        print("|---|---|---|")
         weights = [len(gzip.compress(bundle.shared_script().encode(), 6))]
         for figure in FIGURES:
             weights.append(len(gzip.compress(bundle.script(figure.kind).encode(), 6)))
             spent = SLOWED * milliseconds(browser, figure, folder)
-            print(f'| {figure.kind} | {spent:.1f} | {weights[-1] / 1000:.1f} |', flush=True)
+            print(f"| {figure.kind} | {spent:.1f} | {weights[-1] / 1000:.1f} |", flush=True)
         browser.close()
-    print(f'| what they share | | {weights[0] / 1000:.1f} |')
-    print(f'| all of our own JavaScript | | {sum(weights) / 1000:.1f}, of {HEAVIEST // 1000} at most |')
+    print(f"| what they share | | {weights[0] / 1000:.1f} |")
+    print(f"| all of our own JavaScript | | {sum(weights) / 1000:.1f}, of {HEAVIEST // 1000} at most |")
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     main()

@@ -52,16 +52,19 @@ def lock_angles(sequence):
 
 def composed(angles, sequence):
     """Body fixed direction cosine matrix as a product of matrices written out by hand."""
-    if any(hasattr(angle, 'free_symbols') for angle in angles):
+    if any(hasattr(angle, "free_symbols") for angle in angles):
         import sympy as library
+
         matrix = library.Matrix
     else:
         library, matrix = np, np.array
     result = matrix(np.eye(3, dtype=int).tolist())
     for axis, angle in zip(sequence, angles):
         c, s = library.cos(angle), library.sin(angle)
-        simple = {'x': [[1, 0, 0], [0, c, s], [0, -s, c]],
-                  'y': [[c, 0, -s], [0, 1, 0], [s, 0, c]],
-                  'z': [[c, s, 0], [-s, c, 0], [0, 0, 1]]}[axis]
+        simple = {
+            "x": [[1, 0, 0], [0, c, s], [0, -s, c]],
+            "y": [[c, 0, -s], [0, 1, 0], [s, 0, c]],
+            "z": [[c, s, 0], [-s, c, 0], [0, 0, 1]],
+        }[axis]
         result = matrix(simple) @ result
     return result

@@ -25,9 +25,17 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="st
 # What ends by processor time gets all the time it wants by the clock, so that a busy machine changes
 # nothing; what only the clock ends is run on its own.
 LIMITS = Limits(
-    cell_seconds=1, cell_wall_seconds=60, answer_seconds=0.5, answer_wall_seconds=60, grace_seconds=0.5,
-    notebook_seconds=20, notebook_wall_seconds=300, memory_bytes=256 << 20, scratch_bytes=32 << 20,
-    file_bytes=16 << 20, runs=4,
+    cell_seconds=1,
+    cell_wall_seconds=60,
+    answer_seconds=0.5,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+    notebook_seconds=20,
+    notebook_wall_seconds=300,
+    memory_bytes=256 << 20,
+    scratch_bytes=32 << 20,
+    file_bytes=16 << 20,
+    runs=4,
 )
 SHORT = dataclasses.replace(LIMITS, cell_wall_seconds=3)
 HALVES = ("HEIRLOOM", "SPANNER")
@@ -84,15 +92,23 @@ class Surroundings:
         )
 
     def job(self, attack):
-        cells = ["import sympy\nfrom coursework import check\n" + self.names() + "check('before', 1)",
-                 attack.code, "check('after', 2)"]
-        return {"id": attack.name, "cells": [{"source": source} for source in cells],
-                "questions": {name: {"variable": None} for name in ("before", "loot", "after")}}
+        cells = [
+            "import sympy\nfrom coursework import check\n" + self.names() + "check('before', 1)",
+            attack.code,
+            "check('after', 2)",
+        ]
+        return {
+            "id": attack.name,
+            "cells": [{"source": source} for source in cells],
+            "questions": {name: {"variable": None} for name in ("before", "loot", "after")},
+        }
 
 
 def neighbour(number):
-    source = (f"from coursework import check\nimport os\n# {''.join(HALVES)}\nmarker = '{''.join(HALVES)}'\n"
-              f"assert os.listdir() == []\nopen('mine', 'w').write(marker)\ncheck('question', {number})")
+    source = (
+        f"from coursework import check\nimport os\n# {''.join(HALVES)}\nmarker = '{''.join(HALVES)}'\n"
+        f"assert os.listdir() == []\nopen('mine', 'w').write(marker)\ncheck('question', {number})"
+    )
     return {"id": f"neighbour {number}", "cells": [{"source": source}], "questions": HONEST}
 
 
@@ -132,12 +148,23 @@ def suffer(answer):
         temporary.mkdir(mode=0o755)
         tempfile.tempdir = str(temporary)
         for limits, waits in ((LIMITS, False), (SHORT, True)):
-            jobs = [job for number, attack in enumerate(ATTACKS) if attack.waits == waits
-                    for job in (surroundings.job(attack), neighbour(number))]
+            jobs = [
+                job
+                for number, attack in enumerate(ATTACKS)
+                if attack.waits == waits
+                for job in (surroundings.job(attack), neighbour(number))
+            ]
             results |= {result["id"]: result for result in run_notebooks(jobs, workers=2, limits=limits)}
         left = [str(child) for child in psutil.Process().children(recursive=True)]
-        answer.send({"results": results, "left": left, "state": surroundings.state(),
-                     "heard": surroundings.heard(), "temporary": os.listdir(temporary)})
+        answer.send(
+            {
+                "results": results,
+                "left": left,
+                "state": surroundings.state(),
+                "heard": surroundings.heard(),
+                "temporary": os.listdir(temporary),
+            }
+        )
 
 
 @pytest.fixture(scope="module")

@@ -5,15 +5,26 @@ import pytest
 import sympy as sm
 import sympy.physics.mechanics as me
 from orientations import (
-    COORDINATE_AXES, cross_product_matrix, random_dcms, random_unit_vectors, rotation_error,
-    unit_vectors_after_turn)
+    COORDINATE_AXES,
+    cross_product_matrix,
+    random_dcms,
+    random_unit_vectors,
+    rotation_error,
+    unit_vectors_after_turn,
+)
 from scipy.spatial.transform import Rotation
 
 from orientation import (
-    SymbolsNotPossible, axis_angle_from_dcm, check_dcm, dcm_from_axis_angle, dcm_from_quaternion,
-    quaternion_from_axis_angle, simple_dcm)
+    SymbolsNotPossible,
+    axis_angle_from_dcm,
+    check_dcm,
+    dcm_from_axis_angle,
+    dcm_from_quaternion,
+    quaternion_from_axis_angle,
+    simple_dcm,
+)
 
-theta = sm.Symbol('theta')
+theta = sm.Symbol("theta")
 SMALL = [0, 1e-300, 1e-16, 1e-12, 1e-8, 1e-7, 1e-4, 1e-2, 0.1]
 ANGLES = SMALL + [1.0, np.pi / 2, 2.0] + [np.pi - small for small in reversed(SMALL)]
 AXES = np.array([*COORDINATE_AXES, *random_unit_vectors(50, 1), *(random_unit_vectors(10, 2) * [1, 1, 1e-9])])
@@ -26,22 +37,22 @@ def test_rows_are_the_turned_unit_vectors():
             assert rotation_error(dcm_from_axis_angle(axis, angle), unit_vectors_after_turn(axis, angle)) < 1e-12
 
 
-@pytest.mark.parametrize('axis', 'xyz')
+@pytest.mark.parametrize("axis", "xyz")
 def test_coordinate_axes_give_simple_orientations(axis):
-    unit = sm.eye(3)[:, 'xyz'.index(axis)]
+    unit = sm.eye(3)[:, "xyz".index(axis)]
     assert (dcm_from_axis_angle(unit, theta) - simple_dcm(axis, theta)).expand() == sm.zeros(3)
     assert (dcm_from_axis_angle(-unit, theta) - simple_dcm(axis, -theta)).expand() == sm.zeros(3)
 
 
 def test_symbols_agree_with_reference_frames():
-    N, A = me.ReferenceFrame('N'), me.ReferenceFrame('A')
+    N, A = me.ReferenceFrame("N"), me.ReferenceFrame("A")
     A.orient_axis(N, N.x + 2 * N.y - 2 * N.z, theta)
     ours = dcm_from_axis_angle((1, 2, -2), theta)
     assert sm.simplify(ours - A.dcm(N)) == sm.zeros(3)
 
 
 def test_rodrigues_formula_with_symbols():
-    x, y, z = axis = sm.symbols('e_x, e_y, e_z', real=True)
+    x, y, z = axis = sm.symbols("e_x, e_y, e_z", real=True)
     e = sm.Matrix(axis) / sm.sqrt(x**2 + y**2 + z**2)
     cross = sm.Matrix([[0, -e[2], e[1]], [e[2], 0, -e[0]], [-e[1], e[0], 0]])
     rodrigues = sm.cos(theta) * sm.eye(3) + (1 - sm.cos(theta)) * e * e.T - sm.sin(theta) * cross
@@ -59,19 +70,20 @@ def test_numbers_agree_with_scipy():
 
 def test_the_axis_is_left_alone():
     dcms = dcm_from_axis_angle(AXES, np.linspace(0, 6, len(AXES)))
-    np.testing.assert_allclose(np.einsum('nij,nj->ni', dcms, UNIT_AXES), UNIT_AXES, atol=1e-15)
+    np.testing.assert_allclose(np.einsum("nij,nj->ni", dcms, UNIT_AXES), UNIT_AXES, atol=1e-15)
 
 
-@pytest.mark.parametrize('scale', [1e-149, 1e-100, 1e-9, 3.7, 1e9, 1e100, 1e149])
+@pytest.mark.parametrize("scale", [1e-149, 1e-100, 1e-9, 3.7, 1e9, 1e100, 1e149])
 def test_length_of_the_axis_does_not_matter(scale):
     for axis in AXES[:10]:
         assert rotation_error(dcm_from_axis_angle(scale * axis, 1.1), dcm_from_axis_angle(axis, 1.1)) < 1e-15
-        np.testing.assert_allclose(quaternion_from_axis_angle(scale * axis, 1.1),
-                                   quaternion_from_axis_angle(axis, 1.1), atol=1e-15)
+        np.testing.assert_allclose(
+            quaternion_from_axis_angle(scale * axis, 1.1), quaternion_from_axis_angle(axis, 1.1), atol=1e-15
+        )
     assert rotation_error(dcm_from_axis_angle(scale * AXES, 1.1), dcm_from_axis_angle(AXES, 1.1)) < 1e-15
 
 
-@pytest.mark.parametrize('angle', ANGLES)
+@pytest.mark.parametrize("angle", ANGLES)
 def test_there_and_back_from_0_to_pi(angle):
     dcms = dcm_from_axis_angle(AXES, angle)
     check_dcm(dcms)
@@ -80,8 +92,10 @@ def test_there_and_back_from_0_to_pi(angle):
     assert abs(angles - angle).max() < 1e-14
     np.testing.assert_allclose(np.linalg.norm(axes, axis=1), 1, atol=5e-16)
     # How far the axis may be off depends on how much it matters.
-    same = np.minimum(np.linalg.norm(axes - UNIT_AXES, axis=1), np.linalg.norm(axes + UNIT_AXES, axis=1)
-                      if angle > np.pi - 1e-15 else np.inf)
+    same = np.minimum(
+        np.linalg.norm(axes - UNIT_AXES, axis=1),
+        np.linalg.norm(axes + UNIT_AXES, axis=1) if angle > np.pi - 1e-15 else np.inf,
+    )
     assert (same * np.sin(angle / 2)).max() < 1e-14
     for dcm, axis in zip(dcms[:8], UNIT_AXES):
         single_axis, single_angle = axis_angle_from_dcm(dcm)
@@ -109,17 +123,20 @@ def test_exact_half_turns_and_rest():
 def test_half_angle():
     assert quaternion_from_axis_angle((0, 0, 2), theta) == sm.Matrix([sm.cos(theta / 2), 0, 0, sm.sin(theta / 2)])
     angles = np.random.default_rng(6).uniform(-10, 10, len(AXES))
-    assert rotation_error(dcm_from_quaternion(quaternion_from_axis_angle(AXES, angles)),
-                          dcm_from_axis_angle(AXES, angles)) < 1e-14
+    assert (
+        rotation_error(dcm_from_quaternion(quaternion_from_axis_angle(AXES, angles)), dcm_from_axis_angle(AXES, angles))
+        < 1e-14
+    )
 
 
 def test_matrix_is_the_exponential_of_the_cross_product():
     # The sign in the exponent is what tells components from vectors.
     from scipy.linalg import expm
+
     for axis in UNIT_AXES[:20]:
         assert rotation_error(dcm_from_axis_angle(axis, 0.8), expm(-0.8 * cross_product_matrix(axis))) < 1e-14
 
 
 def test_symbols_cannot_be_taken_back():
-    with pytest.raises(SymbolsNotPossible, match='dcm holds cos'):
-        axis_angle_from_dcm(simple_dcm('z', theta))
+    with pytest.raises(SymbolsNotPossible, match="dcm holds cos"):
+        axis_angle_from_dcm(simple_dcm("z", theta))

@@ -7,11 +7,19 @@ from orientations import random_dcms, random_unit_vectors, rotation_error
 from scipy.spatial.transform import Rotation
 
 from orientation import (
-    SEQUENCES, SymbolsNotPossible, dcm_from_axis_angle, dcm_from_body_fixed, dcm_from_quaternion,
-    dcm_from_scipy_rotation, dcm_from_space_fixed, scipy_rotation_from_dcm, simple_dcm)
+    SEQUENCES,
+    SymbolsNotPossible,
+    dcm_from_axis_angle,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    dcm_from_scipy_rotation,
+    dcm_from_space_fixed,
+    scipy_rotation_from_dcm,
+    simple_dcm,
+)
 
 
-@pytest.mark.parametrize('sequence', SEQUENCES)
+@pytest.mark.parametrize("sequence", SEQUENCES)
 def test_euler_angles_keep_their_meaning_across_the_border(sequence):
     angles = np.random.default_rng(1).uniform(-3, 3, (200, 3))
     body, space = Rotation.from_euler(sequence.upper(), angles), Rotation.from_euler(sequence, angles)
@@ -23,14 +31,21 @@ def test_euler_angles_keep_their_meaning_across_the_border(sequence):
 
 def test_axis_and_angle_and_quaternions_keep_their_meaning_across_the_border():
     axes, quaternions = random_unit_vectors(100, 2), random_unit_vectors(100, 3, size=4)
-    assert rotation_error(dcm_from_scipy_rotation(Rotation.from_rotvec(0.7 * axes)),
-                          dcm_from_axis_angle(axes, 0.7)) < 1e-14
-    assert rotation_error(dcm_from_scipy_rotation(Rotation.from_quat(quaternions, scalar_first=True)),
-                          dcm_from_quaternion(quaternions)) < 1e-14
+    assert (
+        rotation_error(dcm_from_scipy_rotation(Rotation.from_rotvec(0.7 * axes)), dcm_from_axis_angle(axes, 0.7))
+        < 1e-14
+    )
+    assert (
+        rotation_error(
+            dcm_from_scipy_rotation(Rotation.from_quat(quaternions, scalar_first=True)),
+            dcm_from_quaternion(quaternions),
+        )
+        < 1e-14
+    )
 
 
 def test_rotation_turns_components_along_a_into_components_along_n():
-    A_C_N = simple_dcm('z', 0.3)
+    A_C_N = simple_dcm("z", 0.3)
     v_A = np.array((1.0, 2.0, 3.0))
     v_N = scipy_rotation_from_dcm(A_C_N).apply(v_A)
     np.testing.assert_allclose(A_C_N @ v_N, v_A, atol=1e-15)
@@ -38,7 +53,7 @@ def test_rotation_turns_components_along_a_into_components_along_n():
     np.testing.assert_allclose(scipy_rotation_from_dcm(A_C_N).apply((1, 0, 0)), A_C_N[0], atol=1e-15)
 
 
-@pytest.mark.parametrize('shape', [(), (1,), (7,), (0,), (2, 3), (2, 1, 3)])
+@pytest.mark.parametrize("shape", [(), (1,), (7,), (0,), (2, 3), (2, 1, 3)])
 def test_there_and_back(shape):
     count = int(np.prod(shape, dtype=int))
     dcms = random_dcms(max(count, 1), 4)[:count].reshape(*shape, 3, 3)
@@ -51,14 +66,14 @@ def test_there_and_back(shape):
 
 
 def test_what_does_not_cross():
-    with pytest.raises(SymbolsNotPossible, match='dcm holds cos'):
-        scipy_rotation_from_dcm(simple_dcm('z', sm.Symbol('theta')))
-    with pytest.raises(ValueError, match='left-handed'):
+    with pytest.raises(SymbolsNotPossible, match="dcm holds cos"):
+        scipy_rotation_from_dcm(simple_dcm("z", sm.Symbol("theta")))
+    with pytest.raises(ValueError, match="left-handed"):
         scipy_rotation_from_dcm(-np.eye(3))
-    for wrong in (np.eye(3), 'zxy', None):
-        with pytest.raises(TypeError, match='rotation must be a SciPy Rotation, not'):
+    for wrong in (np.eye(3), "zxy", None):
+        with pytest.raises(TypeError, match="rotation must be a SciPy Rotation, not"):
             dcm_from_scipy_rotation(wrong)
 
 
 def test_exact_numbers_cross():
-    np.testing.assert_allclose(scipy_rotation_from_dcm(simple_dcm('z', sm.pi / 6)).as_rotvec(), (0, 0, np.pi / 6))
+    np.testing.assert_allclose(scipy_rotation_from_dcm(simple_dcm("z", sm.pi / 6)).as_rotvec(), (0, 0, np.pi / 6))

@@ -11,50 +11,65 @@ import sympy as sm
 from sympy.physics.mechanics import ReferenceFrame
 
 import coursework
-from coursework.checking import questions, sealing
 from coursework.authoring.author import AuthorError, question
 from coursework.authoring.forms import equivalent_forms, random_form
+from coursework.checking import questions, sealing
 from coursework.checking.kinds import Fault, Undecidable, fault, read
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.questions import NoSuchQuestion
 from orientation import (
-    SEQUENCES, body_fixed_from_dcm, dcm_from_body_fixed, dcm_from_quaternion, dcm_from_space_fixed,
-    multiply_quaternions, quaternion_from_axis_angle, simple_dcm)
+    SEQUENCES,
+    body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    dcm_from_space_fixed,
+    multiply_quaternions,
+    quaternion_from_axis_angle,
+    simple_dcm,
+)
 
 # The package gives the function of this name; the module is looked up.
-check_module = sys.modules['coursework.checking.check']
-theta, alpha, phi = sm.symbols('theta alpha varphi')
-GIMBAL = dcm_from_body_fixed((theta, alpha, phi), 'zxy')
-TWO = simple_dcm('x', alpha) * simple_dcm('z', theta)
-TURNS = [('z', theta), ('x', alpha), ('y', phi)]
+check_module = sys.modules["coursework.checking.check"]
+theta, alpha, phi = sm.symbols("theta alpha varphi")
+GIMBAL = dcm_from_body_fixed((theta, alpha, phi), "zxy")
+TWO = simple_dcm("x", alpha) * simple_dcm("z", theta)
+TURNS = [("z", theta), ("x", alpha), ("y", phi)]
 
 
-def make(name='trial/gimbal', kind='direction cosine matrix', answer=GIMBAL, **about):
-    if name == 'trial/gimbal' and kind == 'direction cosine matrix':
-        about = {'frames': ('D', 'A'), 'symbols': 'theta alpha varphi', 'turns': TURNS, **about}
+def make(name="trial/gimbal", kind="direction cosine matrix", answer=GIMBAL, **about):
+    if name == "trial/gimbal" and kind == "direction cosine matrix":
+        about = {"frames": ("D", "A"), "symbols": "theta alpha varphi", "turns": TURNS, **about}
     return question(name, kind, answer, **about)
 
 
 KINDS = {
-    'symbols in a matrix': make(),
-    'numbers in a matrix': make('trial/n', answer=dcm_from_body_fixed((sm.pi / 3, sm.pi / 5, -sm.pi / 7), 'zxy'),
-                                frames=('D', 'A')),
-    'a quaternion': make('trial/q', 'quaternion', quaternion_from_axis_angle((1, 0, 0), theta), symbols='theta',
-                         turns=[('x', theta)]),
-    'numbers in a quaternion': make('trial/qn', 'quaternion', sm.Matrix([sm.sqrt(2) / 2, 0, -sm.sqrt(2) / 2, 0])),
-    'a vector': make('trial/v', 'vector', TWO * sm.Matrix([1, 2, 0]), symbols='theta alpha',
-                     turned=(TWO, [1, 2, 0])),
-    'another matrix': make('trial/m', 'matrix', TWO.diff(theta)[:2, :], symbols='theta alpha', shape=(2, 3)),
-    'an expression': make('trial/e', 'expression', sm.acos(sm.sin(theta) * sm.cos(alpha)), symbols='theta alpha'),
-    'a number': make('trial/en', 'expression', sm.pi / 7, quantity='angle'),
-    'Euler angles': make('trial/a', 'Euler angles', [0.3, 0.5, -0.7], sequence='zxz'),
-    'axis and angle': make('trial/aa', 'axis and angle',
-                           [[sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)], sm.pi / 4]),
-    'a sequence': make('trial/s', 'sequence', 'zxy'),
-    'truth values': make('trial/t', 'truth values', [True, False, True, True, False, False, True, False], length=8),
-    'words': make('trial/w', 'words', ['first', 'last', 'first'], options=['first', 'last'], length=3),
-    'a function': make('trial/f', 'function', dcm_from_quaternion, calls=[[[0.6, 0, 0, 0.8]], [[0.5, 0.5, 0.5, 0.5]]],
-                       result='direction cosine matrix', frames=('A', 'N')),
+    "symbols in a matrix": make(),
+    "numbers in a matrix": make(
+        "trial/n", answer=dcm_from_body_fixed((sm.pi / 3, sm.pi / 5, -sm.pi / 7), "zxy"), frames=("D", "A")
+    ),
+    "a quaternion": make(
+        "trial/q", "quaternion", quaternion_from_axis_angle((1, 0, 0), theta), symbols="theta", turns=[("x", theta)]
+    ),
+    "numbers in a quaternion": make("trial/qn", "quaternion", sm.Matrix([sm.sqrt(2) / 2, 0, -sm.sqrt(2) / 2, 0])),
+    "a vector": make("trial/v", "vector", TWO * sm.Matrix([1, 2, 0]), symbols="theta alpha", turned=(TWO, [1, 2, 0])),
+    "another matrix": make("trial/m", "matrix", TWO.diff(theta)[:2, :], symbols="theta alpha", shape=(2, 3)),
+    "an expression": make("trial/e", "expression", sm.acos(sm.sin(theta) * sm.cos(alpha)), symbols="theta alpha"),
+    "a number": make("trial/en", "expression", sm.pi / 7, quantity="angle"),
+    "Euler angles": make("trial/a", "Euler angles", [0.3, 0.5, -0.7], sequence="zxz"),
+    "axis and angle": make(
+        "trial/aa", "axis and angle", [[sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)], sm.pi / 4]
+    ),
+    "a sequence": make("trial/s", "sequence", "zxy"),
+    "truth values": make("trial/t", "truth values", [True, False, True, True, False, False, True, False], length=8),
+    "words": make("trial/w", "words", ["first", "last", "first"], options=["first", "last"], length=3),
+    "a function": make(
+        "trial/f",
+        "function",
+        dcm_from_quaternion,
+        calls=[[[0.6, 0, 0, 0.8]], [[0.5, 0.5, 0.5, 0.5]]],
+        result="direction cosine matrix",
+        frames=("A", "N"),
+    ),
 }
 
 
@@ -73,7 +88,7 @@ def student(tmp_path, monkeypatch):
                 raise NoSuchQuestion(name)
             return sealed[name]
 
-        monkeypatch.setattr(check_module, 'find_question', find)
+        monkeypatch.setattr(check_module, "find_question", find)
         return check_module.check
 
     return prepare
@@ -81,142 +96,164 @@ def student(tmp_path, monkeypatch):
 
 # --- any right form passes ----------------------------------------------------------------------
 
-@pytest.mark.parametrize('one', KINDS.values(), ids=KINDS)
+
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_a_thousand_forms_of_the_right_answer_pass(one):
     right, chance = one.fingerprint_of(one.plain), random.Random(one.name)
-    number = 1000 if one.public['kind'] not in ('sequence', 'truth values', 'words', 'function') else 20
+    number = 1000 if one.public["kind"] not in ("sequence", "truth values", "words", "function") else 20
     for _ in range(number):
         form = random_form(one.public, one.answer, chance)
         assert one.fingerprint_of(one.to_plain(form)) == right, form
 
 
-@pytest.mark.parametrize('one', KINDS.values(), ids=KINDS)
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_named_forms_pass(one):
     right = one.fingerprint_of(one.plain)
     for form, answer in equivalent_forms(one.public, one.answer):
         assert one.fingerprint_of(one.to_plain(answer)) == right, form
 
 
-@pytest.mark.parametrize('sequence', SEQUENCES)
+@pytest.mark.parametrize("sequence", SEQUENCES)
 def test_euler_angles_pass_if_their_orientation_is_right(sequence):
-    one = make('trial/a', 'Euler angles', [0.4, 0.9, -1.1], sequence=sequence)
+    one = make("trial/a", "Euler angles", [0.4, 0.9, -1.1], sequence=sequence)
     right = one.fingerprint_of(one.plain)
     psi, middle, last = 0.4, 0.9, -1.1
     proper = sequence[0] == sequence[2]
     twin = [psi - sm.pi, -middle if proper else sm.pi - middle, last + sm.pi]
-    for answer in (twin, [psi + 2 * sm.pi, middle, last], body_fixed_from_dcm(dcm_from_body_fixed((psi, middle, last), sequence), sequence)):
+    for answer in (
+        twin,
+        [psi + 2 * sm.pi, middle, last],
+        body_fixed_from_dcm(dcm_from_body_fixed((psi, middle, last), sequence), sequence),
+    ):
         assert one.fingerprint_of(one.to_plain(answer)) == right
 
 
 # --- each mistake has its message, and no answer a wrong one -------------------------------------
 
+
 def reply_to(one, answer):
     try:
         return questions.judge(one.name, one.sealed(), one.to_plain(answer))[0]
     except NotPlain as refused:
-        return questions.Reply(one.name, 'invalid', 'unreadable', [str(refused)])
+        return questions.Reply(one.name, "invalid", "unreadable", [str(refused)])
 
 
-@pytest.mark.parametrize(('answer', 'note', 'words'), [
-    (GIMBAL.T, 'transposed', 'A_C_D, the transpose of D_C_A'),
-    (dcm_from_space_fixed((theta, alpha, phi), 'zxy'), 'other order', 'space fixed'),
-    (simple_dcm('z', theta) * simple_dcm('x', alpha) * simple_dcm('y', phi), 'other order', 'right'),
-    (GIMBAL.subs(alpha, -alpha), 'sign of one turn', 'second turn has the wrong sign'),
-    (dcm_from_body_fixed((phi, alpha, theta), 'zxy'), 'angles interchanged', 'first turn and of the third'),
-    (dcm_from_body_fixed((theta, alpha, phi), 'zxz'), 'another sequence', 'zxz'),
-    (dcm_from_body_fixed((theta, alpha, phi), 'xyz'), 'another sequence', 'xyz'),
-    (simple_dcm('y', phi) * simple_dcm('z', theta), 'turn missing', 'second turn is missing'),
-    (GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}), 'sign of every turn', 'wrong sign'),
-    (2 * GIMBAL, 'not orthogonal', 'row should be a unit vector and has length 2.0'),
-    (GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)), 'not orthogonal', 'row'),
-    (sm.diag(1, -1, 1) * GIMBAL, 'left-handed', 'determinant is −1'),
-    (GIMBAL.subs(theta, sm.Symbol('w')), 'stray symbol', 'holds w; this question has the symbols theta, alpha, varphi'),
-    (GIMBAL[:2, :], 'shape', 'a matrix of 2 × 3'),
-    ([list(GIMBAL)], 'shape', 'rows'),
-    (theta, 'shape', 'a single expression'),
-    ('zxy', 'shape', 'a text'),
-    (GIMBAL * sm.I, 'not real', 'imaginary'),
-    (GIMBAL / sm.Add(theta, -theta, evaluate=False), 'undefined', 'no finite value'),
-    (object(), 'unreadable', 'cannot be read'),
-    (ReferenceFrame('E').x + ReferenceFrame('F').y, 'unreadable', 'not connected'),
-    (ReferenceFrame('E'), 'frame', 'This is the frame E'),
-    (ReferenceFrame('E').x, 'shape', 'a vector'),
-    (simple_dcm('x', sm.Rational(1, 3)), '', 'a direction cosine matrix, but not the one'),
-    (..., '', 'in place of'),
-    (None, '', 'in place of'),
-])
+@pytest.mark.parametrize(
+    ("answer", "note", "words"),
+    [
+        (GIMBAL.T, "transposed", "A_C_D, the transpose of D_C_A"),
+        (dcm_from_space_fixed((theta, alpha, phi), "zxy"), "other order", "space fixed"),
+        (simple_dcm("z", theta) * simple_dcm("x", alpha) * simple_dcm("y", phi), "other order", "right"),
+        (GIMBAL.subs(alpha, -alpha), "sign of one turn", "second turn has the wrong sign"),
+        (dcm_from_body_fixed((phi, alpha, theta), "zxy"), "angles interchanged", "first turn and of the third"),
+        (dcm_from_body_fixed((theta, alpha, phi), "zxz"), "another sequence", "zxz"),
+        (dcm_from_body_fixed((theta, alpha, phi), "xyz"), "another sequence", "xyz"),
+        (simple_dcm("y", phi) * simple_dcm("z", theta), "turn missing", "second turn is missing"),
+        (GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}), "sign of every turn", "wrong sign"),
+        (2 * GIMBAL, "not orthogonal", "row should be a unit vector and has length 2.0"),
+        (GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)), "not orthogonal", "row"),
+        (sm.diag(1, -1, 1) * GIMBAL, "left-handed", "determinant is −1"),
+        (
+            GIMBAL.subs(theta, sm.Symbol("w")),
+            "stray symbol",
+            "holds w; this question has the symbols theta, alpha, varphi",
+        ),
+        (GIMBAL[:2, :], "shape", "a matrix of 2 × 3"),
+        ([list(GIMBAL)], "shape", "rows"),
+        (theta, "shape", "a single expression"),
+        ("zxy", "shape", "a text"),
+        (GIMBAL * sm.I, "not real", "imaginary"),
+        (GIMBAL / sm.Add(theta, -theta, evaluate=False), "undefined", "no finite value"),
+        (object(), "unreadable", "cannot be read"),
+        (ReferenceFrame("E").x + ReferenceFrame("F").y, "unreadable", "not connected"),
+        (ReferenceFrame("E"), "frame", "This is the frame E"),
+        (ReferenceFrame("E").x, "shape", "a vector"),
+        (simple_dcm("x", sm.Rational(1, 3)), "", "a direction cosine matrix, but not the one"),
+        (..., "", "in place of"),
+        (None, "", "in place of"),
+    ],
+)
 def test_the_reply_names_what_is_wrong(answer, note, words):
-    reply = reply_to(KINDS['symbols in a matrix'], answer)
+    reply = reply_to(KINDS["symbols in a matrix"], answer)
     assert reply.note == note
     assert words in repr(reply)
-    assert reply.outcome != 'correct'
+    assert reply.outcome != "correct"
 
 
-@pytest.mark.parametrize(('kind', 'answer', 'note'), [
-    ('a quaternion', [sm.cos(theta / 2), -sm.sin(theta / 2), 0, 0], 'conjugate'),
-    ('a quaternion', [sm.sin(theta / 2), 0, 0, sm.cos(theta / 2)], 'scalar last'),
-    ('a quaternion', [sm.cos(theta), sm.sin(theta), 0, 0], 'whole angle'),
-    ('a quaternion', [sm.sin(theta / 2), sm.cos(theta / 2), 0, 0], 'cosine for sine'),
-    ('a quaternion', [1, theta, 0, 0], 'not unit length'),
-    ('a vector', TWO.T * sm.Matrix([1, 2, 0]), 'turned the wrong way'),
-    ('a vector', [1, 2, 0], 'not turned'),
-    ('Euler angles', [-0.3, 0.5, -0.7], 'sign of one angle'),
-    ('Euler angles', [17.18873, 28.64789, -40.10705], 'in degrees'),
-    ('Euler angles', [20.0, 30.0, 40.0], 'degrees'),
-    ('a number', 25.7142857, 'in degrees'),
-    ('a number', -sm.pi / 7, 'opposite'),
-    ('a sequence', 'yxz', 'sequence reversed'),
-    ('a sequence', 'zzx', 'impossible sequence'),
-    ('a sequence', 'abc', 'shape'),
-    ('axis and angle', ([2, 1, -2], sm.pi / 4), 'not unit length'),
-    ('axis and angle', ([sm.Rational(-2, 3), sm.Rational(-1, 3), sm.Rational(-2, 3)], sm.pi / 4), 'axis reversed'),
-    ('a function', lambda q: dcm_from_quaternion(q).T, 'transposed'),
-    ('a function', lambda q: 1 / 0, 'raised an error'),
-    ('a function', dcm_from_quaternion([1, 0, 0, 0]), 'unreadable'),
-    ('truth values', [True] * 7, 'shape'),
-    ('words', ['first', 'last', 'middle'], 'shape'),
-])
+@pytest.mark.parametrize(
+    ("kind", "answer", "note"),
+    [
+        ("a quaternion", [sm.cos(theta / 2), -sm.sin(theta / 2), 0, 0], "conjugate"),
+        ("a quaternion", [sm.sin(theta / 2), 0, 0, sm.cos(theta / 2)], "scalar last"),
+        ("a quaternion", [sm.cos(theta), sm.sin(theta), 0, 0], "whole angle"),
+        ("a quaternion", [sm.sin(theta / 2), sm.cos(theta / 2), 0, 0], "cosine for sine"),
+        ("a quaternion", [1, theta, 0, 0], "not unit length"),
+        ("a vector", TWO.T * sm.Matrix([1, 2, 0]), "turned the wrong way"),
+        ("a vector", [1, 2, 0], "not turned"),
+        ("Euler angles", [-0.3, 0.5, -0.7], "sign of one angle"),
+        ("Euler angles", [17.18873, 28.64789, -40.10705], "in degrees"),
+        ("Euler angles", [20.0, 30.0, 40.0], "degrees"),
+        ("a number", 25.7142857, "in degrees"),
+        ("a number", -sm.pi / 7, "opposite"),
+        ("a sequence", "yxz", "sequence reversed"),
+        ("a sequence", "zzx", "impossible sequence"),
+        ("a sequence", "abc", "shape"),
+        ("axis and angle", ([2, 1, -2], sm.pi / 4), "not unit length"),
+        ("axis and angle", ([sm.Rational(-2, 3), sm.Rational(-1, 3), sm.Rational(-2, 3)], sm.pi / 4), "axis reversed"),
+        ("a function", lambda q: dcm_from_quaternion(q).T, "transposed"),
+        ("a function", lambda q: 1 / 0, "raised an error"),
+        ("a function", dcm_from_quaternion([1, 0, 0, 0]), "unreadable"),
+        ("truth values", [True] * 7, "shape"),
+        ("words", ["first", "last", "middle"], "shape"),
+    ],
+)
 def test_other_kinds_name_what_is_wrong(kind, answer, note):
     reply = reply_to(KINDS[kind], answer)
     assert reply.note == note, reply
-    assert reply.messages and reply.outcome in ('wrong', 'invalid')
+    assert reply.messages and reply.outcome in ("wrong", "invalid")
 
 
-@pytest.mark.parametrize('sequence', SEQUENCES)
+@pytest.mark.parametrize("sequence", SEQUENCES)
 def test_every_mistake_of_the_catalogue_is_named_in_all_twelve_sequences(sequence):
-    one = make('trial/g', answer=dcm_from_body_fixed((theta, alpha, phi), sequence), frames=('D', 'A'),
-               symbols='theta alpha varphi', turns=[*zip(sequence, (theta, alpha, phi))])
+    one = make(
+        "trial/g",
+        answer=dcm_from_body_fixed((theta, alpha, phi), sequence),
+        frames=("D", "A"),
+        symbols="theta alpha varphi",
+        turns=[*zip(sequence, (theta, alpha, phi))],
+    )
     for mistake in one.mistakes:
         text = one.fingerprint_of(one.to_plain(mistake.answer))
         entry = one.entries[text]
-        assert entry.outcome == 'correct' or [mistake.note, mistake.details] in entry.notes
+        assert entry.outcome == "correct" or [mistake.note, mistake.details] in entry.notes
 
 
 def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
-    one, chance = KINDS['symbols in a matrix'], random.Random(4)
+    one, chance = KINDS["symbols in a matrix"], random.Random(4)
     for _ in range(300):
-        axes = ''.join(chance.choice('xyz') for _ in range(3))
+        axes = "".join(chance.choice("xyz") for _ in range(3))
         angles = [chance.choice([-1, 1]) * chance.choice([theta, alpha, phi, theta / 2, alpha + phi]) for _ in range(3)]
         answer = sm.eye(3)
         for axis, angle in zip(axes, angles):
             answer = simple_dcm(axis, angle) * answer
         entry = one.entries.get(one.fingerprint_of(one.to_plain(answer)))
-        if entry and entry.outcome == 'mistake':
+        if entry and entry.outcome == "mistake":
             said = [mistake for mistake in one.mistakes if [mistake.note, mistake.details] in entry.notes]
-            assert said and all((mistake.answer - answer).subs({theta: 0.3, alpha: 1.1, phi: -0.7}).norm() < 1e-12
-                                for mistake in said)
+            assert said and all(
+                (mistake.answer - answer).subs({theta: 0.3, alpha: 1.1, phi: -0.7}).norm() < 1e-12 for mistake in said
+            )
 
 
 def test_what_cannot_be_decided_is_said_to_be_undecided():
-    reply = reply_to(KINDS['an expression'], sm.gamma(theta) * alpha)
-    assert reply.outcome == 'undecided'
+    reply = reply_to(KINDS["an expression"], sm.gamma(theta) * alpha)
+    assert reply.outcome == "undecided"
     with pytest.raises(Undecidable):
-        read(KINDS['an expression'].public, to_plain(sm.gamma(theta)))
+        read(KINDS["an expression"].public, to_plain(sm.gamma(theta)))
 
 
 def test_an_answer_within_the_tolerance_passes_and_one_beyond_three_tolerances_does_not():
-    one = KINDS['a number']
-    tolerance, right = one.public['tolerance'], one.fingerprint_of(one.plain)
+    one = KINDS["a number"]
+    tolerance, right = one.public["tolerance"], one.fingerprint_of(one.plain)
     exact = float(sm.pi / 7)
     for share in (-1, -0.5, 0.5, 1):
         assert one.fingerprint_of(one.to_plain(exact + share * tolerance)) == right
@@ -225,160 +262,171 @@ def test_an_answer_within_the_tolerance_passes_and_one_beyond_three_tolerances_d
 
 
 def test_the_other_sign_of_a_quaternion_passes_unless_it_is_asked_for():
-    free = KINDS['numbers in a quaternion']
+    free = KINDS["numbers in a quaternion"]
     assert free.fingerprint_of(free.to_plain(-free.answer)) == free.fingerprint_of(free.plain)
-    signed = make('trial/qs', 'quaternion', free.answer, either_sign=False)
+    signed = make("trial/qs", "quaternion", free.answer, either_sign=False)
     assert signed.fingerprint_of(signed.to_plain(-free.answer)) != signed.fingerprint_of(signed.plain)
 
 
 # --- the check itself ---------------------------------------------------------------------------
 
+
 def test_a_check_replies_and_shows_the_solution_only_to_the_right_answer(student):
-    check = student(make(solution='Take $x$ **first**.'))
-    right = check('trial/gimbal', GIMBAL)
-    assert right.outcome == 'correct'
+    check = student(make(solution="Take $x$ **first**."))
+    right = check("trial/gimbal", GIMBAL)
+    assert right.outcome == "correct"
     page = right._repr_html_()
-    assert '$x$' in page and '<strong>first</strong>' in page
-    wrong = check('trial/gimbal', GIMBAL.T)
-    assert wrong.outcome == 'wrong' and 'first' not in wrong.solution
+    assert "$x$" in page and "<strong>first</strong>" in page
+    wrong = check("trial/gimbal", GIMBAL.T)
+    assert wrong.outcome == "wrong" and "first" not in wrong.solution
     assert 'role="status"' in wrong._repr_html_()
 
 
 def test_what_a_student_wrote_is_shown_and_not_obeyed(student):
     check = student(make())
-    evil = sm.Symbol('<script>alert(1)</script>$`*')
-    page = check('trial/gimbal', GIMBAL * evil)._repr_html_()
-    assert '<script' not in page
+    evil = sm.Symbol("<script>alert(1)</script>$`*")
+    page = check("trial/gimbal", GIMBAL * evil)._repr_html_()
+    assert "<script" not in page
 
 
 def test_a_mistake_made_again_earns_one_more_hint_each_time(student):
-    check = student(make(hints={'transposed': ['Look at the rows.', 'Whose unit vectors are they?']}))
-    said = [len(check('trial/gimbal', GIMBAL.T).messages) for _ in range(4)]
+    check = student(make(hints={"transposed": ["Look at the rows.", "Whose unit vectors are they?"]}))
+    said = [len(check("trial/gimbal", GIMBAL.T).messages) for _ in range(4)]
     assert said == [1, 2, 3, 3]
-    assert 'Whose' in repr(check_module.hint('trial/gimbal'))
+    assert "Whose" in repr(check_module.hint("trial/gimbal"))
 
 
 def test_another_mistake_starts_its_hints_anew(student):
-    check = student(make(hints={'transposed': ['Look at the rows.']}))
-    check('trial/gimbal', GIMBAL.T)
-    check('trial/gimbal', GIMBAL.subs(theta, -theta))
-    assert len(check('trial/gimbal', GIMBAL.T).messages) == 1
+    check = student(make(hints={"transposed": ["Look at the rows."]}))
+    check("trial/gimbal", GIMBAL.T)
+    check("trial/gimbal", GIMBAL.subs(theta, -theta))
+    assert len(check("trial/gimbal", GIMBAL.T).messages) == 1
 
 
 def test_a_right_answer_opens_the_hints_of_a_later_question(student):
-    check = student(make(after={'trial/s': ['Read it from the factors.']}), KINDS['a sequence'])
-    assert 'no hint yet' in repr(check_module.hint('trial/s'))
-    check('trial/gimbal', GIMBAL)
-    assert 'Read it' in repr(check_module.hint('trial/s'))
+    check = student(make(after={"trial/s": ["Read it from the factors."]}), KINDS["a sequence"])
+    assert "no hint yet" in repr(check_module.hint("trial/s"))
+    check("trial/gimbal", GIMBAL)
+    assert "Read it" in repr(check_module.hint("trial/s"))
 
 
 def test_progress_is_kept_beside_the_notebook_and_right_stays_right(student, tmp_path):
-    check = student(make(), KINDS['a sequence'])
-    check('trial/s', 'xyx')
-    check('trial/gimbal', GIMBAL)
-    check('trial/gimbal', GIMBAL.T)
-    assert [path.name for path in tmp_path.rglob('*.json')] == ['progress.json']
+    check = student(make(), KINDS["a sequence"])
+    check("trial/s", "xyx")
+    check("trial/gimbal", GIMBAL)
+    check("trial/gimbal", GIMBAL.T)
+    assert [path.name for path in tmp_path.rglob("*.json")] == ["progress.json"]
     said = repr(check_module.progress())
-    assert '1 of the 2' in said and 'trial/s' in said and 'Still open: trial/s' in said
+    assert "1 of the 2" in said and "trial/s" in said and "Still open: trial/s" in said
 
 
 def test_a_folder_that_cannot_be_written_costs_no_check(student, tmp_path):
     check = student(make())
-    (tmp_path / '.coursework').write_text('a file where the folder should be')
-    assert check('trial/gimbal', GIMBAL).outcome == 'correct'
+    (tmp_path / ".coursework").write_text("a file where the folder should be")
+    assert check("trial/gimbal", GIMBAL).outcome == "correct"
 
 
 def test_a_damaged_record_costs_no_check(student, tmp_path):
     check = student(make())
-    (tmp_path / '.coursework').mkdir()
-    for damaged in ('{', '[]', '{"trial/gimbal": 3}', '\xff'):
-        (tmp_path / '.coursework' / 'progress.json').write_text(damaged, 'latin1')
-        assert check('trial/gimbal', GIMBAL).outcome == 'correct'
+    (tmp_path / ".coursework").mkdir()
+    for damaged in ("{", "[]", '{"trial/gimbal": 3}', "\xff"):
+        (tmp_path / ".coursework" / "progress.json").write_text(damaged, "latin1")
+        assert check("trial/gimbal", GIMBAL).outcome == "correct"
 
 
 def test_where_nbgrader_runs_the_notebook_a_wrong_answer_is_an_error(student, monkeypatch):
     check = student(make())
-    monkeypatch.setenv('NBGRADER_EXECUTION', 'autograde')
-    assert check('trial/gimbal', GIMBAL).outcome == 'correct'
+    monkeypatch.setenv("NBGRADER_EXECUTION", "autograde")
+    assert check("trial/gimbal", GIMBAL).outcome == "correct"
     for answer in (GIMBAL.T, ..., theta):
         with pytest.raises(AssertionError):
-            check('trial/gimbal', answer)
+            check("trial/gimbal", answer)
 
 
 def test_a_misspelt_name_is_answered_with_the_nearest():
-    with pytest.raises(NoSuchQuestion, match='no question'):
-        coursework.check('nothing/like-this', 1)
-    for name in ('', '/', '../../etc/passwd', 'a' * 5000, '\0'):
+    with pytest.raises(NoSuchQuestion, match="no question"):
+        coursework.check("nothing/like-this", 1)
+    for name in ("", "/", "../../etc/passwd", "a" * 5000, "\0"):
         with pytest.raises(NoSuchQuestion):
             coursework.check(name, 1)
 
 
 # --- the locks ----------------------------------------------------------------------------------
 
+
 def test_the_slow_hash_is_the_standard_one_without_openssl_too():
-    for password, salt, rounds in ((b'', b'', 1), (b'p' * 70, b's', 5), (b'password', b'salt', 1000)):
-        expected = hashlib.pbkdf2_hmac('sha256', password, salt, rounds)
+    for password, salt, rounds in ((b"", b"", 1), (b"p" * 70, b"s", 5), (b"password", b"salt", 1000)):
+        expected = hashlib.pbkdf2_hmac("sha256", password, salt, rounds)
         assert sealing.portable_pbkdf2(password, salt, rounds) == sealing.pbkdf2(password, salt, rounds) == expected
 
 
 def test_a_lock_opens_with_its_key_only_and_notices_a_change():
-    key, other = sealing.slow_key('00', '1'), sealing.slow_key('00', '2')
-    sealed = sealing.seal({'a': 'ü'}, key)
-    assert sealing.unseal(sealed, key) == {'a': 'ü'}
+    key, other = sealing.slow_key("00", "1"), sealing.slow_key("00", "2")
+    sealed = sealing.seal({"a": "ü"}, key)
+    assert sealing.unseal(sealed, key) == {"a": "ü"}
     data = bytearray(base64.b64decode(sealed))
     data[3] ^= 1
-    for wrong in ((sealed, other, 'reply'), (sealed, key, 'solution'), (base64.b64encode(data), key, 'reply')):
+    for wrong in ((sealed, other, "reply"), (sealed, key, "solution"), (base64.b64encode(data), key, "reply")):
         with pytest.raises(ValueError):
             sealing.unseal(*wrong)
 
 
-@pytest.mark.parametrize('one', KINDS.values(), ids=KINDS)
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
     sealed = one.sealed()
-    assert len({len(locker) for locker in sealed['lockers'].values()}) == 1
-    assert list(sealed['lockers']) == sorted(sealed['lockers'])
+    assert len({len(locker) for locker in sealed["lockers"].values()}) == 1
+    assert list(sealed["lockers"]) == sorted(sealed["lockers"])
     assert one.sealed() == sealed
-    opened = [name for name in sealed['lockers'] if name == sealing.locker(
-        sealing.slow_key(one.public['salt'], one.fingerprint_of(one.plain)))]
+    opened = [
+        name
+        for name in sealed["lockers"]
+        if name == sealing.locker(sealing.slow_key(one.public["salt"], one.fingerprint_of(one.plain)))
+    ]
     assert len(opened) == 1
 
 
 def test_the_order_in_which_symbols_are_listed_does_not_matter():
     sealed = make().sealed()
     for order in (sorted, lambda names: sorted(names, reverse=True)):
-        again = {**sealed, 'symbols': {name: sealed['symbols'][name] for name in order(sealed['symbols'])}}
-        assert questions.judge('trial/gimbal', again, to_plain(GIMBAL))[0].outcome == 'correct'
+        again = {**sealed, "symbols": {name: sealed["symbols"][name] for name in order(sealed["symbols"])}}
+        assert questions.judge("trial/gimbal", again, to_plain(GIMBAL))[0].outcome == "correct"
 
 
 def test_the_values_of_an_answer_do_not_stand_in_what_is_sealed():
-    text = json.dumps(KINDS['numbers in a matrix'].sealed())
-    for entry in KINDS['numbers in a matrix'].answer:
-        assert str(entry) not in text and f'{float(entry):.4f}' not in text
+    text = json.dumps(KINDS["numbers in a matrix"].sealed())
+    for entry in KINDS["numbers in a matrix"].answer:
+        assert str(entry) not in text and f"{float(entry):.4f}" not in text
 
 
 # --- what an author may get wrong ---------------------------------------------------------------
 
-@pytest.mark.parametrize(('about', 'words'), [
-    ({'kind': 'riddle'}, 'none of'),
-    ({'frames': None}, "needs 'frames'"),
-    ({'symbols': 'theta'}, 'cannot be read'),
-    ({'turns': TURNS[::-1]}, 'turns do not give the right answer'),
-    ({'answer': ...}, 'cannot be read'),
-])
+
+@pytest.mark.parametrize(
+    ("about", "words"),
+    [
+        ({"kind": "riddle"}, "none of"),
+        ({"frames": None}, "needs 'frames'"),
+        ({"symbols": "theta"}, "cannot be read"),
+        ({"turns": TURNS[::-1]}, "turns do not give the right answer"),
+        ({"answer": ...}, "cannot be read"),
+    ],
+)
 def test_a_question_that_is_not_well_posed_is_refused(about, words):
     with pytest.raises(AuthorError, match=words):
-        make(**{'kind': 'direction cosine matrix', **about})
+        make(**{"kind": "direction cosine matrix", **about})
 
 
 def test_a_form_fault_is_found_only_where_there_is_one():
     for one in KINDS.values():
         assert fault(one.public, read(one.public, one.plain)) is None
     with pytest.raises(Fault):
-        read(KINDS['symbols in a matrix'].public, to_plain([1, 2]))
+        read(KINDS["symbols in a matrix"].public, to_plain([1, 2]))
 
 
 def test_products_of_quaternions_in_the_other_order_are_named():
-    turns = [('x', theta), ('y', alpha)]
-    first, second = (quaternion_from_axis_angle(axis, angle) for axis, angle in (((1, 0, 0), theta), ((0, 1, 0), alpha)))
-    one = make('trial/qq', 'quaternion', multiply_quaternions(first, second), symbols='theta alpha', turns=turns)
-    assert reply_to(one, multiply_quaternions(second, first)).note == 'other order'
+    turns = [("x", theta), ("y", alpha)]
+    first, second = (
+        quaternion_from_axis_angle(axis, angle) for axis, angle in (((1, 0, 0), theta), ((0, 1, 0), alpha))
+    )
+    one = make("trial/qq", "quaternion", multiply_quaternions(first, second), symbols="theta alpha", turns=turns)
+    assert reply_to(one, multiply_quaternions(second, first)).note == "other order"

@@ -11,21 +11,30 @@ import sympy.physics.mechanics as me
 from orientations import composed, random_dcms, random_unit_vectors
 
 from orientation import (
-    SEQUENCES, dcm_from_axis_angle, dcm_from_quaternion, diagnose, multiply_quaternions,
-    quaternion_from_axis_angle, same_orientation, simple_dcm)
+    SEQUENCES,
+    dcm_from_axis_angle,
+    dcm_from_quaternion,
+    diagnose,
+    multiply_quaternions,
+    quaternion_from_axis_angle,
+    same_orientation,
+    simple_dcm,
+)
 
-psi, theta, phi = SYMBOLS = sm.symbols('psi, theta, varphi')
-NAMES = ('psi', 'theta', 'varphi')
+psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
+NAMES = ("psi", "theta", "varphi")
 NUMBERS = (0.4, -0.7, 1.1)
-all_sequences = pytest.mark.parametrize('sequence', SEQUENCES)
+all_sequences = pytest.mark.parametrize("sequence", SEQUENCES)
 
 
 # --- the same orientation -----------------------------------------------------------------------------
 
+
 def half_angle_form(angle):
     t = sm.tan(angle / 2)
-    return sm.Matrix([[(1 - t**2) / (1 + t**2), 2 * t / (1 + t**2), 0],
-                      [-2 * t / (1 + t**2), (1 - t**2) / (1 + t**2), 0], [0, 0, 1]])
+    return sm.Matrix(
+        [[(1 - t**2) / (1 + t**2), 2 * t / (1 + t**2), 0], [-2 * t / (1 + t**2), (1 - t**2) / (1 + t**2), 0], [0, 0, 1]]
+    )
 
 
 def exponential_form(angle):
@@ -39,32 +48,37 @@ def sum_form(matrix):
 
 
 EQUAL = [
-    (half_angle_form(theta), simple_dcm('z', theta)),
-    (exponential_form(theta), simple_dcm('z', theta)),
+    (half_angle_form(theta), simple_dcm("z", theta)),
+    (exponential_form(theta), simple_dcm("z", theta)),
     (exponential_form(theta), half_angle_form(theta)),
-    (simple_dcm('z', psi) * simple_dcm('z', theta) * simple_dcm('z', phi), simple_dcm('z', psi + theta + phi)),
-    (composed(SYMBOLS, 'zxy'), composed(SYMBOLS, 'zxy').expand()),
-    (sum_form(composed(SYMBOLS, 'zxy')), composed(SYMBOLS, 'zxy')),
-    (composed(SYMBOLS, 'zxy').inv(), composed(SYMBOLS, 'zxy').T),
-    (dcm_from_quaternion(multiply_quaternions(quaternion_from_axis_angle((0, 0, 1), psi),
-                                              quaternion_from_axis_angle((1, 0, 0), theta))),
-     composed((psi, theta), 'zx')),
+    (simple_dcm("z", psi) * simple_dcm("z", theta) * simple_dcm("z", phi), simple_dcm("z", psi + theta + phi)),
+    (composed(SYMBOLS, "zxy"), composed(SYMBOLS, "zxy").expand()),
+    (sum_form(composed(SYMBOLS, "zxy")), composed(SYMBOLS, "zxy")),
+    (composed(SYMBOLS, "zxy").inv(), composed(SYMBOLS, "zxy").T),
+    (
+        dcm_from_quaternion(
+            multiply_quaternions(
+                quaternion_from_axis_angle((0, 0, 1), psi), quaternion_from_axis_angle((1, 0, 0), theta)
+            )
+        ),
+        composed((psi, theta), "zx"),
+    ),
     (dcm_from_axis_angle((1, 1, 1), 2 * sm.pi / 3), sm.Matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])),
-    (simple_dcm('z', sm.acos(sm.Rational(3, 5))), np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]])),
+    (simple_dcm("z", sm.acos(sm.Rational(3, 5))), np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]])),
     (quaternion_from_axis_angle((1, 2, 2), theta), -quaternion_from_axis_angle((2, 4, 4), theta)),
     (quaternion_from_axis_angle((1, 2, 2), theta), quaternion_from_axis_angle((1, 2, 2), theta + 2 * sm.pi)),
 ]
 
 
-@pytest.mark.parametrize('pair', EQUAL, ids=range(len(EQUAL)))
+@pytest.mark.parametrize("pair", EQUAL, ids=range(len(EQUAL)))
 def test_equal_in_other_forms_quickly_and_without_simplifying(pair, monkeypatch):
     def refuse(*_, **__):
-        raise AssertionError('an algebraic simplification was asked for')
+        raise AssertionError("an algebraic simplification was asked for")
 
-    for name in ('simplify', 'trigsimp', 'fu', 'nsimplify', 'factor', 'expand'):
+    for name in ("simplify", "trigsimp", "fu", "nsimplify", "factor", "expand"):
         monkeypatch.setattr(sm, name, refuse)
-    monkeypatch.setattr(sm.Basic, 'simplify', refuse)
-    monkeypatch.setattr(sm.Matrix, 'simplify', refuse)
+    monkeypatch.setattr(sm.Basic, "simplify", refuse)
+    monkeypatch.setattr(sm.Matrix, "simplify", refuse)
     seconds = []
     for _ in range(3):
         start = time.perf_counter()
@@ -75,55 +89,57 @@ def test_equal_in_other_forms_quickly_and_without_simplifying(pair, monkeypatch)
 
 
 DIFFERENT = [
-    (simple_dcm('z', theta), simple_dcm('z', -theta)),
-    (simple_dcm('z', theta), simple_dcm('y', theta)),
+    (simple_dcm("z", theta), simple_dcm("z", -theta)),
+    (simple_dcm("z", theta), simple_dcm("y", theta)),
     # Right for some angles and not for others:
-    (simple_dcm('z', theta).subs(sm.cos(theta), sm.sqrt(1 - sm.sin(theta)**2)), simple_dcm('z', theta)),
-    (simple_dcm('z', theta).subs(sm.sin(theta), sm.sqrt(1 - sm.cos(theta)**2)), simple_dcm('z', theta)),
-    (simple_dcm('z', sm.Abs(theta)), simple_dcm('z', theta)),
-    (simple_dcm('z', sm.asin(sm.sin(theta))), simple_dcm('z', theta)),
-    (simple_dcm('z', sm.acos(sm.cos(theta))), simple_dcm('z', theta)),
-    (sm.Matrix([sm.sqrt((1 + sm.cos(theta)) / 2), sm.sin(theta / 2), 0, 0]),
-     quaternion_from_axis_angle((1, 0, 0), theta)),
-    (composed(SYMBOLS, 'zxy'), composed((psi, theta, sm.Symbol('phi')), 'zxy')),
-    (simple_dcm('x', 0.1), simple_dcm('x', 0.1 + 1e-8)),
+    (simple_dcm("z", theta).subs(sm.cos(theta), sm.sqrt(1 - sm.sin(theta) ** 2)), simple_dcm("z", theta)),
+    (simple_dcm("z", theta).subs(sm.sin(theta), sm.sqrt(1 - sm.cos(theta) ** 2)), simple_dcm("z", theta)),
+    (simple_dcm("z", sm.Abs(theta)), simple_dcm("z", theta)),
+    (simple_dcm("z", sm.asin(sm.sin(theta))), simple_dcm("z", theta)),
+    (simple_dcm("z", sm.acos(sm.cos(theta))), simple_dcm("z", theta)),
+    (
+        sm.Matrix([sm.sqrt((1 + sm.cos(theta)) / 2), sm.sin(theta / 2), 0, 0]),
+        quaternion_from_axis_angle((1, 0, 0), theta),
+    ),
+    (composed(SYMBOLS, "zxy"), composed((psi, theta, sm.Symbol("phi")), "zxy")),
+    (simple_dcm("x", 0.1), simple_dcm("x", 0.1 + 1e-8)),
     (quaternion_from_axis_angle((1, 2, 2), theta), quaternion_from_axis_angle((1, 2, 2), -theta)),
 ]
 
 
-@pytest.mark.parametrize('pair', DIFFERENT, ids=range(len(DIFFERENT)))
+@pytest.mark.parametrize("pair", DIFFERENT, ids=range(len(DIFFERENT)))
 def test_different(pair):
     assert same_orientation(*pair) is False
     assert same_orientation(*reversed(pair)) is False
 
 
-@pytest.mark.parametrize('count', range(1, 13))
+@pytest.mark.parametrize("count", range(1, 13))
 def test_each_of_many_symbols_is_tried_with_both_signs(count):
-    symbols = sm.symbols(f'a:{count}')
+    symbols = sm.symbols(f"a:{count}")
     for symbol in symbols:
         rest = sum(symbols) - symbol
-        assert not same_orientation(simple_dcm('x', sm.Abs(symbol) + rest), simple_dcm('x', symbol + rest))
+        assert not same_orientation(simple_dcm("x", sm.Abs(symbol) + rest), simple_dcm("x", symbol + rest))
 
 
 def test_symbols_are_compared_by_name():
-    in_time, positive = me.dynamicsymbols('theta'), sm.Symbol('theta', positive=True)
-    for other in (in_time, positive, sm.Function('theta')(sm.Symbol('t'))):
-        assert same_orientation(simple_dcm('z', theta), simple_dcm('z', other))
-    assert not same_orientation(simple_dcm('z', theta), simple_dcm('z', sm.Symbol('Theta')))
+    in_time, positive = me.dynamicsymbols("theta"), sm.Symbol("theta", positive=True)
+    for other in (in_time, positive, sm.Function("theta")(sm.Symbol("t"))):
+        assert same_orientation(simple_dcm("z", theta), simple_dcm("z", other))
+    assert not same_orientation(simple_dcm("z", theta), simple_dcm("z", sm.Symbol("Theta")))
 
 
 def test_time_inside_and_outside_a_function():
-    turning, omega, t = me.dynamicsymbols('theta'), sm.Symbol('Omega'), me.dynamicsymbols._t
-    assert same_orientation(simple_dcm('z', turning + omega * t), simple_dcm('z', turning) * simple_dcm('z', omega * t))
-    assert not same_orientation(simple_dcm('z', turning + omega * t), simple_dcm('z', turning + omega))
+    turning, omega, t = me.dynamicsymbols("theta"), sm.Symbol("Omega"), me.dynamicsymbols._t
+    assert same_orientation(simple_dcm("z", turning + omega * t), simple_dcm("z", turning) * simple_dcm("z", omega * t))
+    assert not same_orientation(simple_dcm("z", turning + omega * t), simple_dcm("z", turning + omega))
 
 
 def test_every_way_to_hold_a_matrix():
-    matrix = composed(SYMBOLS, 'zxy')
+    matrix = composed(SYMBOLS, "zxy")
     for form in (matrix.as_immutable(), matrix.tolist(), tuple(map(tuple, matrix.tolist())), np.array(matrix)):
         assert same_orientation(form, matrix) and same_orientation(matrix, form)
         assert diagnose(form, matrix).same
-    numbers = composed(NUMBERS, 'zxy')
+    numbers = composed(NUMBERS, "zxy")
     assert same_orientation(numbers.tolist(), sm.Matrix(numbers))
 
 
@@ -137,19 +153,19 @@ def test_batches():
     assert same_orientation(np.zeros((0, 3, 3)), np.zeros((0, 3, 3)))
     quaternions = random_unit_vectors(5, 2, size=4)
     assert same_orientation(quaternions, quaternions * [[1], [-1], [1], [-1], [-1]])
-    with pytest.raises(ValueError, match=r'batches of shapes \(2, 3\) and \(5,\) cannot be compared'):
+    with pytest.raises(ValueError, match=r"batches of shapes \(2, 3\) and \(5,\) cannot be compared"):
         same_orientation(dcms, random_dcms(5, 3))
 
 
 def test_tolerance():
-    assert same_orientation(simple_dcm('x', 0.1), simple_dcm('x', 0.1 + 5e-10))
-    assert not same_orientation(simple_dcm('x', 0.1), simple_dcm('x', 0.1 + 5e-10), tolerance=1e-10)
-    assert same_orientation(simple_dcm('x', theta), simple_dcm('x', theta + 0.01), tolerance=0.011)
+    assert same_orientation(simple_dcm("x", 0.1), simple_dcm("x", 0.1 + 5e-10))
+    assert not same_orientation(simple_dcm("x", 0.1), simple_dcm("x", 0.1 + 5e-10), tolerance=1e-10)
+    assert same_orientation(simple_dcm("x", theta), simple_dcm("x", theta + 0.01), tolerance=0.011)
 
 
 def test_no_random_state_of_the_reader_is_touched():
     before = random.getstate(), str(np.random.get_state())
-    same_orientation(simple_dcm('x', theta), simple_dcm('x', psi))
+    same_orientation(simple_dcm("x", theta), simple_dcm("x", psi))
     assert before == (random.getstate(), str(np.random.get_state()))
 
 
@@ -164,48 +180,54 @@ def scaled(angles, factors):
 
 def rebuilt(cause, angles, sequence):
     """What an answer must be if the cause that was named is true. Knows every sentence there is."""
+
     def place(word):
-        return NAMES.index(word) if word in NAMES else ('first', 'second', 'third').index(word)
+        return NAMES.index(word) if word in NAMES else ("first", "second", "third").index(word)
 
     def factors(words, factor):
-        chosen = range(3) if words == 'the angles' else [place(word) for word in words.split(', ')]
+        chosen = range(3) if words == "the angles" else [place(word) for word in words.split(", ")]
         return [factor if k in chosen else 1 for k in range(3)]
 
-    if cause.startswith('it is the transpose'):
+    if cause.startswith("it is the transpose"):
         return composed(angles, sequence).T
-    if cause.startswith('the matrices are multiplied in the other order'):
+    if cause.startswith("the matrices are multiplied in the other order"):
         return composed(angles[::-1], sequence[::-1])
-    if cause == 'the angles are in reverse order':
+    if cause == "the angles are in reverse order":
         return composed(angles[::-1], sequence)
-    if found := re.fullmatch(r'it is the sequence (...), not (...)', cause):
+    if found := re.fullmatch(r"it is the sequence (...), not (...)", cause):
         assert found[2] == sequence
         return composed(angles, found[1])
-    if found := re.fullmatch(r'(?:the angle of the )?(\w+)(?: turn)? has the wrong sign', cause):
-        return composed(scaled(angles, factors(found[1], -1) if found[1] in NAMES else
-                               [-1 if k == place(found[1]) else 1 for k in range(3)]), sequence)
-    if found := re.fullmatch(r'(\w+) and (\w+) have changed places', cause):
+    if found := re.fullmatch(r"(?:the angle of the )?(\w+)(?: turn)? has the wrong sign", cause):
+        return composed(
+            scaled(
+                angles,
+                factors(found[1], -1) if found[1] in NAMES else [-1 if k == place(found[1]) else 1 for k in range(3)],
+            ),
+            sequence,
+        )
+    if found := re.fullmatch(r"(\w+) and (\w+) have changed places", cause):
         order = [0, 1, 2]
         a, b = place(found[1]), place(found[2])
         order[a], order[b] = b, a
         return composed(tuple(angles[k] for k in order), sequence)
-    if found := re.fullmatch(r'(.+) (?:was|were) given in degrees where radians are expected', cause):
+    if found := re.fullmatch(r"(.+) (?:was|were) given in degrees where radians are expected", cause):
         return composed(scaled(angles, factors(found[1], DEGREES)), sequence)
-    if found := re.fullmatch(r'(.+) (?:was|were) turned from degrees to radians once too often', cause):
+    if found := re.fullmatch(r"(.+) (?:was|were) turned from degrees to radians once too often", cause):
         return composed(scaled(angles, factors(found[1], TOO_OFTEN)), sequence)
-    raise AssertionError(f'nobody knows what this means: {cause}')
+    raise AssertionError(f"nobody knows what this means: {cause}")
 
 
 SENTENCES = {
-    'transpose': 'it is the transpose, the orientation the other way round',
-    'order': 'the matrices are multiplied in the other order, which is space fixed',
-    'reverse': 'the angles are in reverse order',
-    **{f'sign of {name}': f'{name} has the wrong sign' for name in NAMES},
-    'psi for theta': 'psi and theta have changed places',
-    'theta for varphi': 'theta and varphi have changed places',
-    'degrees': 'psi, theta, varphi were given in degrees where radians are expected',
-    'degrees of theta': 'theta was given in degrees where radians are expected',
-    'too often': 'psi, theta, varphi were turned from degrees to radians once too often',
-    'too often varphi': 'varphi was turned from degrees to radians once too often',
+    "transpose": "it is the transpose, the orientation the other way round",
+    "order": "the matrices are multiplied in the other order, which is space fixed",
+    "reverse": "the angles are in reverse order",
+    **{f"sign of {name}": f"{name} has the wrong sign" for name in NAMES},
+    "psi for theta": "psi and theta have changed places",
+    "theta for varphi": "theta and varphi have changed places",
+    "degrees": "psi, theta, varphi were given in degrees where radians are expected",
+    "degrees of theta": "theta was given in degrees where radians are expected",
+    "too often": "psi, theta, varphi were turned from degrees to radians once too often",
+    "too often varphi": "varphi was turned from degrees to radians once too often",
 }
 
 
@@ -219,15 +241,15 @@ def demand_truth(diagnosis, answer, angles, sequence):
     assert len(set(diagnosis.causes)) == len(diagnosis.causes)
     for cause in diagnosis.causes:
         np.testing.assert_allclose(rebuilt(cause, angles, sequence), answer, atol=1e-8, err_msg=cause)
-    same = 'mathematically the same' in str(diagnosis)
+    same = "mathematically the same" in str(diagnosis)
     assert same == (len(diagnosis.causes) > 1)
     assert all(cause in str(diagnosis) for cause in diagnosis.causes)
 
 
 @all_sequences
-@pytest.mark.parametrize('mixup', SENTENCES)
+@pytest.mark.parametrize("mixup", SENTENCES)
 def test_symbolic_mixups_are_named(sequence, mixup):
-    if sequence not in ('zxy', 'yxy') and mixup in ('psi for theta', 'degrees of theta', 'too often', 'sign of psi'):
+    if sequence not in ("zxy", "yxy") and mixup in ("psi for theta", "degrees of theta", "too often", "sign of psi"):
         return  # these do not depend on the axes
     sentence = SENTENCES[mixup]
     answer = rebuilt(sentence, SYMBOLS, sequence)
@@ -240,20 +262,22 @@ def test_symbolic_mixups_are_named(sequence, mixup):
 def test_symbolic_wrong_sequence_is_named(sequence):
     others = [other for other in SEQUENCES if other != sequence]
     expected = composed(SYMBOLS, sequence)
-    for other in others if sequence in ('zxy', 'zxz') else others[::4]:
+    for other in others if sequence in ("zxy", "zxz") else others[::4]:
         diagnosis = diagnose(composed(SYMBOLS, other), expected)
-        assert f'it is the sequence {other}, not {sequence}' in diagnosis.causes
+        assert f"it is the sequence {other}, not {sequence}" in diagnosis.causes
         demand_truth(diagnosis, composed(NUMBERS, other), NUMBERS, sequence)
 
 
 @all_sequences
 def test_numerical_mixups_are_named(sequence):
     expected = composed(NUMBERS, sequence)
-    sentences = [SENTENCES[key] for key in ('transpose', 'order', 'reverse')]
-    sentences += [f'the angle of the {which} turn has the wrong sign' for which in ('first', 'second', 'third')]
-    sentences += [f'it is the sequence {other}, not {sequence}' for other in SEQUENCES if other != sequence]
-    sentences += ['the angles were given in degrees where radians are expected',
-                  'the angles were turned from degrees to radians once too often']
+    sentences = [SENTENCES[key] for key in ("transpose", "order", "reverse")]
+    sentences += [f"the angle of the {which} turn has the wrong sign" for which in ("first", "second", "third")]
+    sentences += [f"it is the sequence {other}, not {sequence}" for other in SEQUENCES if other != sequence]
+    sentences += [
+        "the angles were given in degrees where radians are expected",
+        "the angles were turned from degrees to radians once too often",
+    ]
     for sentence in sentences:
         answer = rebuilt(sentence, NUMBERS, sequence)
         for angles in (NUMBERS, list(NUMBERS), np.array(NUMBERS), sm.Matrix(NUMBERS)):
@@ -261,7 +285,7 @@ def test_numerical_mixups_are_named(sequence):
             assert sentence in diagnosis.causes
             demand_truth(diagnosis, answer, NUMBERS, sequence)
     assert diagnose(expected, expected, NUMBERS, sequence).same
-    assert diagnose(expected.T, expected).causes == (SENTENCES['transpose'],)
+    assert diagnose(expected.T, expected).causes == (SENTENCES["transpose"],)
 
 
 @all_sequences
@@ -269,12 +293,16 @@ def test_nothing_is_named_for_other_answers(sequence):
     numbers, symbols = composed(NUMBERS, sequence), composed(SYMBOLS, sequence)
     for answer in random_dcms(20, 4):
         assert diagnose(answer, numbers, NUMBERS, sequence) == (False, ())
-    for answer in (random_dcms(1, 5)[0], composed((psi, 2 * theta, phi), sequence),
-                   composed((psi + 0.1, theta, phi), sequence), composed(sm.symbols('a, b, c'), sequence),
-                   composed((theta, phi, psi), sequence[::-1]).T):
+    for answer in (
+        random_dcms(1, 5)[0],
+        composed((psi, 2 * theta, phi), sequence),
+        composed((psi + 0.1, theta, phi), sequence),
+        composed(sm.symbols("a, b, c"), sequence),
+        composed((theta, phi, psi), sequence[::-1]).T,
+    ):
         diagnosis = diagnose(answer, symbols)
         assert diagnosis == (False, ())
-        assert str(diagnosis) == 'Not the same orientation, and none of the usual mix-ups.'
+        assert str(diagnosis) == "Not the same orientation, and none of the usual mix-ups."
 
 
 @all_sequences
@@ -282,7 +310,7 @@ def test_two_mixups_at_once_are_not_taken_for_one(sequence):
     expected = composed(NUMBERS, sequence)
     first, second, third = NUMBERS
     for angles in ((-first, -second, third), (first, -third, second), (-third, second, first)):
-        for other in (sequence, sequence[::-1], 'xyz'):
+        for other in (sequence, sequence[::-1], "xyz"):
             for answer in (composed(angles, other), composed(angles, other).T):
                 diagnosis = diagnose(answer, expected, NUMBERS, sequence)
                 if not diagnosis.same:
@@ -290,89 +318,101 @@ def test_two_mixups_at_once_are_not_taken_for_one(sequence):
 
 
 def test_mixups_that_are_mathematically_the_same_are_all_named():
-    diagnosis = diagnose(simple_dcm('z', theta).T, simple_dcm('z', theta))
-    assert diagnosis.causes == (SENTENCES['transpose'], 'theta has the wrong sign')
-    assert 'mathematically the same here' in str(diagnosis)
-    diagnosis = diagnose(composed((phi, theta, psi), 'zxz'), composed(SYMBOLS, 'zxz'))
+    diagnosis = diagnose(simple_dcm("z", theta).T, simple_dcm("z", theta))
+    assert diagnosis.causes == (SENTENCES["transpose"], "theta has the wrong sign")
+    assert "mathematically the same here" in str(diagnosis)
+    diagnosis = diagnose(composed((phi, theta, psi), "zxz"), composed(SYMBOLS, "zxz"))
     assert diagnosis.causes == (
-        'psi and varphi have changed places', SENTENCES['order'], 'the angles are in reverse order')
+        "psi and varphi have changed places",
+        SENTENCES["order"],
+        "the angles are in reverse order",
+    )
 
 
 def test_chain_of_two_turns():
-    expected = simple_dcm('x', psi) * simple_dcm('z', theta)
-    assert diagnose(simple_dcm('z', theta) * simple_dcm('x', psi), expected).causes == (SENTENCES['order'],)
-    assert diagnose(expected.T, expected).causes == (SENTENCES['transpose'],)
-    assert diagnose(expected.subs(psi, -psi), expected).causes == ('psi has the wrong sign',)
+    expected = simple_dcm("x", psi) * simple_dcm("z", theta)
+    assert diagnose(simple_dcm("z", theta) * simple_dcm("x", psi), expected).causes == (SENTENCES["order"],)
+    assert diagnose(expected.T, expected).causes == (SENTENCES["transpose"],)
+    assert diagnose(expected.subs(psi, -psi), expected).causes == ("psi has the wrong sign",)
 
 
 def test_expected_matrix_of_a_signed_and_reordered_sequence_is_recognised():
-    expected = composed((theta, -psi, phi), 'yzx')
-    assert diagnose(composed((phi, -psi, theta), 'xzy'), expected).causes == (SENTENCES['order'],)
-    assert diagnose(composed((theta, -psi, phi), 'yzy'), expected).causes == ('it is the sequence yzy, not yzx',)
+    expected = composed((theta, -psi, phi), "yzx")
+    assert diagnose(composed((phi, -psi, theta), "xzy"), expected).causes == (SENTENCES["order"],)
+    assert diagnose(composed((theta, -psi, phi), "yzy"), expected).causes == ("it is the sequence yzy, not yzx",)
 
 
 def test_given_angles_of_which_one_is_zero():
-    expected = composed((0.3, 0, 0.5), 'zxy')
-    assert 'the angle of the first turn has the wrong sign' in diagnose(
-        composed((-0.3, 0, 0.5), 'zxy'), expected, (0.3, 0, 0.5), 'zxy').causes
+    expected = composed((0.3, 0, 0.5), "zxy")
+    assert (
+        "the angle of the first turn has the wrong sign"
+        in diagnose(composed((-0.3, 0, 0.5), "zxy"), expected, (0.3, 0, 0.5), "zxy").causes
+    )
 
 
 # --- answers that are no orientation -----------------------------------------------------------------------
 
+
 def test_faults_of_matrices_are_told_alone():
-    for expected in (composed(NUMBERS, 'zxy'), composed(SYMBOLS, 'zxy')):
+    for expected in (composed(NUMBERS, "zxy"), composed(SYMBOLS, "zxy")):
         mirror = expected * sm.diag(1, 1, -1) if isinstance(expected, sm.MatrixBase) else expected * [1, 1, -1]
-        cause, = diagnose(mirror, expected).causes
-        assert cause.startswith('it is orthogonal but left-handed: its determinant is -1')
-        cause, = diagnose(2 * expected, expected).causes
-        assert 'row x has length 2, not 1' in cause and '2 times an orthogonal one' in cause
-    cause, = diagnose(composed(NUMBERS, 'zxy').round(3), composed(NUMBERS, 'zxy')).causes
-    assert re.match(r'it is not orthogonal: .*(length|dot product) .*Were its entries rounded', cause)
-    wrong_sign = composed(SYMBOLS, 'zxy')
+        (cause,) = diagnose(mirror, expected).causes
+        assert cause.startswith("it is orthogonal but left-handed: its determinant is -1")
+        (cause,) = diagnose(2 * expected, expected).causes
+        assert "row x has length 2, not 1" in cause and "2 times an orthogonal one" in cause
+    (cause,) = diagnose(composed(NUMBERS, "zxy").round(3), composed(NUMBERS, "zxy")).causes
+    assert re.match(r"it is not orthogonal: .*(length|dot product) .*Were its entries rounded", cause)
+    wrong_sign = composed(SYMBOLS, "zxy")
     wrong_sign[0, 1] *= -1
-    cause, = diagnose(wrong_sign, composed(SYMBOLS, 'zxy')).causes
-    assert cause.startswith('it is not orthogonal: row')
-    cause, = diagnose(sm.I * composed(SYMBOLS, 'zxy'), composed(SYMBOLS, 'zxy')).causes
-    assert cause.startswith('it is not real')
+    (cause,) = diagnose(wrong_sign, composed(SYMBOLS, "zxy")).causes
+    assert cause.startswith("it is not orthogonal: row")
+    (cause,) = diagnose(sm.I * composed(SYMBOLS, "zxy"), composed(SYMBOLS, "zxy")).causes
+    assert cause.startswith("it is not real")
 
 
 def test_symbols_that_obey_a_condition_are_not_said_to_be_at_fault():
-    quaternion = sm.Matrix(sm.symbols('q_0, q_i, q_j, q_k'))
+    quaternion = sm.Matrix(sm.symbols("q_0, q_i, q_j, q_k"))
     dcm = dcm_from_quaternion(quaternion)
-    assert SENTENCES['transpose'] in diagnose(dcm.T, dcm).causes
+    assert SENTENCES["transpose"] in diagnose(dcm.T, dcm).causes
     last = sm.Matrix([*quaternion[1:], quaternion[0]])
-    assert diagnose(last, quaternion).causes == ('the scalar part stands last; in this book it stands first',)
+    assert diagnose(last, quaternion).causes == ("the scalar part stands last; in this book it stands first",)
 
 
 # --- quaternions --------------------------------------------------------------------------------------------
 
-LAST = 'the scalar part stands last; in this book it stands first'
-CONJUGATE = 'it is the conjugate, the orientation the other way round'
-NOT_HALVED = 'the angle was not halved: a quaternion holds the cosine and sine of half the angle'
+LAST = "the scalar part stands last; in this book it stands first"
+CONJUGATE = "it is the conjugate, the orientation the other way round"
+NOT_HALVED = "the angle was not halved: a quaternion holds the cosine and sine of half the angle"
 
 
 def quaternion_mixups(turn):
     """Wrong answers about the quaternion ``turn(angle)``, made without the package's product."""
+
     def parts(quaternion):
         return list(quaternion)
 
     a, b, c, d = parts(turn(1))
-    return {LAST: [b, c, d, a], CONJUGATE: [a, -b, -c, -d],
-            'it is the conjugate, and the scalar part stands last; in this book it stands first': [-b, -c, -d, a],
-            NOT_HALVED: parts(turn(2))}
+    return {
+        LAST: [b, c, d, a],
+        CONJUGATE: [a, -b, -c, -d],
+        "it is the conjugate, and the scalar part stands last; in this book it stands first": [-b, -c, -d, a],
+        NOT_HALVED: parts(turn(2)),
+    }
 
 
-@pytest.mark.parametrize('sign', [1, -1])
+@pytest.mark.parametrize("sign", [1, -1])
 def test_quaternion_mixups_are_named(sign):
     for axis in ((1, 2, 3), (3, -1, 2)):
         for angle in (0.7, -2.0, theta, theta + psi):
+
             def turn(times):
                 return quaternion_from_axis_angle(axis, times * angle)
+
             for cause, answer in quaternion_mixups(turn).items():
                 answer = [sign * entry for entry in answer]
                 causes = diagnose(answer, turn(1)).causes
                 assert cause in causes
-                assert set(causes) - {cause} <= ({'theta has the wrong sign'} if angle == theta else set())
+                assert set(causes) - {cause} <= ({"theta has the wrong sign"} if angle == theta else set())
 
 
 def test_quaternion_and_its_negative_are_the_same():
@@ -384,43 +424,47 @@ def test_nothing_is_named_for_other_quaternions():
     expected = quaternion_from_axis_angle((1, 2, 3), 0.7)
     for answer in random_unit_vectors(50, 6, size=4):
         assert diagnose(answer, expected) == (False, ())
-    assert diagnose(quaternion_from_axis_angle((1, 2, 3), psi),
-                    quaternion_from_axis_angle((1, 2, 3), theta)) == (False, ())
+    assert diagnose(quaternion_from_axis_angle((1, 2, 3), psi), quaternion_from_axis_angle((1, 2, 3), theta)) == (
+        False,
+        (),
+    )
 
 
 def test_degrees_in_a_quaternion():
     expected = quaternion_from_axis_angle((1, 2, 3), theta)
     assert diagnose(expected.subs(theta, theta * 180 / sm.pi), expected).causes == (
-        'theta was given in degrees where radians are expected',)
+        "theta was given in degrees where radians are expected",
+    )
 
 
 def test_a_quaternion_of_the_wrong_length():
-    cause, = diagnose((1, 1, 0, 0), (1, 0, 0, 0)).causes
-    assert cause.startswith('it has length 1.41421356')
+    (cause,) = diagnose((1, 1, 0, 0), (1, 0, 0, 0)).causes
+    assert cause.startswith("it has length 1.41421356")
 
 
 # --- what cannot be compared ----------------------------------------------------------------------------------
 
+
 def test_bad_input():
-    dcm, quaternion = composed(NUMBERS, 'zxy'), (1, 0, 0, 0)
+    dcm, quaternion = composed(NUMBERS, "zxy"), (1, 0, 0, 0)
     for function in (same_orientation, diagnose):
-        with pytest.raises(ValueError, match='is a direction cosine matrix and .* is a quaternion: convert one'):
+        with pytest.raises(ValueError, match="is a direction cosine matrix and .* is a quaternion: convert one"):
             function(dcm, quaternion)
-        with pytest.raises(ValueError, match='is neither a direction cosine matrix, of shape'):
+        with pytest.raises(ValueError, match="is neither a direction cosine matrix, of shape"):
             function(dcm, (1, 2, 3))
-        with pytest.raises(ValueError, match='is neither'):
+        with pytest.raises(ValueError, match="is neither"):
             function(theta, dcm)
-        with pytest.raises(ValueError, match=r'\[0, 0\] is nan'):
+        with pytest.raises(ValueError, match=r"\[0, 0\] is nan"):
             function(dcm * np.nan, dcm)
-        with pytest.raises(TypeError, match='must hold real numbers'):
-            function(dcm, 'zxy')
-    with pytest.raises(ValueError, match='one answer at a time'):
+        with pytest.raises(TypeError, match="must hold real numbers"):
+            function(dcm, "zxy")
+    with pytest.raises(ValueError, match="one answer at a time"):
         diagnose(random_dcms(3, 7), random_dcms(3, 7))
-    with pytest.raises(ValueError, match='angles and sequence belong together'):
+    with pytest.raises(ValueError, match="angles and sequence belong together"):
         diagnose(dcm.T, dcm, NUMBERS)
-    with pytest.raises(ValueError, match='angles and sequence belong together'):
-        diagnose(dcm.T, dcm, sequence='zxy')
+    with pytest.raises(ValueError, match="angles and sequence belong together"):
+        diagnose(dcm.T, dcm, sequence="zxy")
     with pytest.raises(ValueError, match="'zzx' is not a sequence"):
-        diagnose(dcm.T, dcm, NUMBERS, 'zzx')
-    with pytest.raises(ValueError, match='expected is not the body fixed orientation yxz of these angles'):
-        diagnose(dcm.T, dcm, NUMBERS, 'yxz')
+        diagnose(dcm.T, dcm, NUMBERS, "zzx")
+    with pytest.raises(ValueError, match="expected is not the body fixed orientation yxz of these angles"):
+        diagnose(dcm.T, dcm, NUMBERS, "yxz")

@@ -8,15 +8,24 @@ from orientations import angles_near, lock_angles, random_dcms, rotation_error
 from scipy.spatial.transform import Rotation
 
 from orientation import (
-    PROPER_EULER, SEQUENCES, TAIT_BRYAN, SymbolsNotPossible, body_fixed_from_dcm, dcm_from_body_fixed,
-    dcm_from_space_fixed, gimbal_lock_margin, simple_dcm, space_fixed_from_dcm)
+    PROPER_EULER,
+    SEQUENCES,
+    TAIT_BRYAN,
+    SymbolsNotPossible,
+    body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_space_fixed,
+    gimbal_lock_margin,
+    simple_dcm,
+    space_fixed_from_dcm,
+)
 
-psi, theta, phi = SYMBOLS = sm.symbols('psi, theta, varphi')
-all_sequences = pytest.mark.parametrize('sequence', SEQUENCES)
+psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
+all_sequences = pytest.mark.parametrize("sequence", SEQUENCES)
 
 
 def test_the_twelve_sequences():
-    allowed = {a + b + c for a in 'xyz' for b in 'xyz' for c in 'xyz' if a != b != c}
+    allowed = {a + b + c for a in "xyz" for b in "xyz" for c in "xyz" if a != b != c}
     assert set(SEQUENCES) == allowed and len(SEQUENCES) == 12
     assert set(PROPER_EULER) == {one for one in allowed if one[0] == one[2]}
     assert set(TAIT_BRYAN) == allowed - set(PROPER_EULER)
@@ -24,12 +33,17 @@ def test_the_twelve_sequences():
 
 # --- from angles to a matrix ------------------------------------------------------------------------
 
+
 def test_zxy_is_the_matrix_derived_by_hand():
     c1, s1, c2, s2, c3, s3 = (f(x) for x in SYMBOLS for f in (sm.cos, sm.sin))
-    by_hand = sm.Matrix([[c1 * c3 - s1 * s2 * s3, s1 * c3 + c1 * s2 * s3, -c2 * s3],
-                         [-s1 * c2, c1 * c2, s2],
-                         [c1 * s3 + s1 * s2 * c3, s1 * s3 - c1 * s2 * c3, c2 * c3]])
-    assert (dcm_from_body_fixed(SYMBOLS, 'zxy') - by_hand).expand() == sm.zeros(3)
+    by_hand = sm.Matrix(
+        [
+            [c1 * c3 - s1 * s2 * s3, s1 * c3 + c1 * s2 * s3, -c2 * s3],
+            [-s1 * c2, c1 * c2, s2],
+            [c1 * s3 + s1 * s2 * c3, s1 * s3 - c1 * s2 * c3, c2 * c3],
+        ]
+    )
+    assert (dcm_from_body_fixed(SYMBOLS, "zxy") - by_hand).expand() == sm.zeros(3)
 
 
 @all_sequences
@@ -41,7 +55,7 @@ def test_body_fixed_is_the_product_of_simple_orientations(sequence):
 
 @all_sequences
 def test_symbols_agree_with_reference_frames(sequence):
-    A, D, S = (me.ReferenceFrame(name) for name in 'ADS')
+    A, D, S = (me.ReferenceFrame(name) for name in "ADS")
     D.orient_body_fixed(A, SYMBOLS, sequence)
     S.orient_space_fixed(A, SYMBOLS, sequence)
     assert (dcm_from_body_fixed(SYMBOLS, sequence) - D.dcm(A)).expand() == sm.zeros(3)
@@ -58,6 +72,7 @@ def test_numbers_agree_with_scipy(sequence):
 
 
 # --- and back ---------------------------------------------------------------------------------------
+
 
 def demand_way_back(dcms, sequence, largest=1e-14):
     angles = body_fixed_from_dcm(dcms, sequence)
@@ -81,14 +96,14 @@ def test_way_back_gives_the_angles_themselves_away_from_lock(sequence):
     middle = np.pi / 2 if sequence in PROPER_EULER else 0.0
     angles = angles_near(middle, 2000, 11) * [0.999, 1, 0.999]
     angles[:, 1] += np.random.default_rng(12).uniform(-1.4, 1.4, 2000)
-    np.testing.assert_allclose(body_fixed_from_dcm(dcm_from_body_fixed(angles, sequence), sequence),
-                               angles, atol=2e-14)
-    np.testing.assert_allclose(space_fixed_from_dcm(dcm_from_space_fixed(angles, sequence), sequence),
-                               angles, atol=2e-14)
+    np.testing.assert_allclose(body_fixed_from_dcm(dcm_from_body_fixed(angles, sequence), sequence), angles, atol=2e-14)
+    np.testing.assert_allclose(
+        space_fixed_from_dcm(dcm_from_space_fixed(angles, sequence), sequence), angles, atol=2e-14
+    )
 
 
 @all_sequences
-@pytest.mark.parametrize('offset', [0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1e-1])
+@pytest.mark.parametrize("offset", [0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1e-1])
 def test_way_back_at_and_near_lock(sequence, offset):
     source = np.random.default_rng(13)
     for lock in lock_angles(sequence):
@@ -100,7 +115,7 @@ def test_way_back_at_and_near_lock(sequence, offset):
 
 
 @all_sequences
-@pytest.mark.parametrize('zero', [0.0, -0.0])
+@pytest.mark.parametrize("zero", [0.0, -0.0])
 def test_way_back_at_exact_lock_with_either_zero(sequence, zero):
     quarters = np.arange(-1, 3) * np.pi / 2
     for lock in lock_angles(sequence):
@@ -117,8 +132,11 @@ def test_way_back_at_exact_lock_with_either_zero(sequence, zero):
 
 @all_sequences
 def test_way_back_among_the_24_ways_a_cube_fits_its_box(sequence):
-    cube = np.unique(dcm_from_body_fixed(np.stack(np.meshgrid(*3 * [np.arange(4) * np.pi / 2]), -1)
-                                         .reshape(-1, 3), sequence).round() + 0.0, axis=0)
+    cube = np.unique(
+        dcm_from_body_fixed(np.stack(np.meshgrid(*3 * [np.arange(4) * np.pi / 2]), -1).reshape(-1, 3), sequence).round()
+        + 0.0,
+        axis=0,
+    )
     assert len(cube) == 24
     demand_way_back(cube, sequence, largest=1e-15)
     demand_way_back(np.where(cube == 0, -0.0, cube), sequence, largest=1e-15)
@@ -126,20 +144,21 @@ def test_way_back_among_the_24_ways_a_cube_fits_its_box(sequence):
 
 # --- gimbal lock as a quantity ------------------------------------------------------------------------
 
+
 @all_sequences
 def test_margin_is_the_angle_between_the_first_and_the_last_axis(sequence):
     angles = np.random.default_rng(15).uniform(-10, 10, (500, 3))
     dcms = dcm_from_body_fixed(angles, sequence)
     # Both axes along D: the first axis is A's and D's alone knows it by the matrix.
-    first = dcms[:, :, 'xyz'.index(sequence[0])]
-    last = np.eye(3)['xyz'.index(sequence[2])]
+    first = dcms[:, :, "xyz".index(sequence[0])]
+    last = np.eye(3)["xyz".index(sequence[2])]
     between = np.arctan2(np.linalg.norm(np.cross(first, last), axis=1), abs(first @ last))
     np.testing.assert_allclose(gimbal_lock_margin(angles, sequence), between, atol=1e-14)
     assert isinstance(gimbal_lock_margin(angles[0], sequence), float)
 
 
 @all_sequences
-@pytest.mark.parametrize('offset', [0.0, 1e-12, 1e-3, 1.0])
+@pytest.mark.parametrize("offset", [0.0, 1e-12, 1e-3, 1.0])
 def test_margin_near_lock(sequence, offset):
     for lock in lock_angles(sequence):
         for turn in (0, 2 * np.pi):
@@ -148,18 +167,19 @@ def test_margin_near_lock(sequence, offset):
 
 # --- what needs numbers ----------------------------------------------------------------------------------
 
-@pytest.mark.parametrize('function', [body_fixed_from_dcm, space_fixed_from_dcm])
+
+@pytest.mark.parametrize("function", [body_fixed_from_dcm, space_fixed_from_dcm])
 def test_symbols_cannot_be_taken_back(function):
-    with pytest.raises(SymbolsNotPossible, match='dcm holds .*psi.* needs numbers'):
-        function(dcm_from_body_fixed(SYMBOLS, 'zxy'), 'zxy')
+    with pytest.raises(SymbolsNotPossible, match="dcm holds .*psi.* needs numbers"):
+        function(dcm_from_body_fixed(SYMBOLS, "zxy"), "zxy")
 
 
 def test_margin_of_symbols_is_refused():
-    with pytest.raises(SymbolsNotPossible, match='angles holds psi'):
-        gimbal_lock_margin(SYMBOLS, 'zxy')
+    with pytest.raises(SymbolsNotPossible, match="angles holds psi"):
+        gimbal_lock_margin(SYMBOLS, "zxy")
 
 
 def test_sympy_numbers_are_numbers_on_the_way_back():
-    exact = dcm_from_body_fixed((sm.pi / 6, sm.pi / 4, sm.pi / 3), 'zxy')
+    exact = dcm_from_body_fixed((sm.pi / 6, sm.pi / 4, sm.pi / 3), "zxy")
     assert isinstance(exact, sm.MatrixBase)
-    np.testing.assert_allclose(body_fixed_from_dcm(exact, 'zxy'), np.pi / np.array((6, 4, 3)), atol=1e-15)
+    np.testing.assert_allclose(body_fixed_from_dcm(exact, "zxy"), np.pi / np.array((6, 4, 3)), atol=1e-15)

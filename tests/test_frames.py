@@ -8,49 +8,56 @@ import sympy as sm
 from orientations import composed, random_dcms, random_unit_vectors, rotation_error
 
 from orientation import (
-    Frames, check_dcm, dcm_from_axis_angle, dcm_from_body_fixed, dcm_from_quaternion, same_orientation,
-    simple_dcm)
+    Frames,
+    check_dcm,
+    dcm_from_axis_angle,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    same_orientation,
+    simple_dcm,
+)
 
-psi, theta, phi = SYMBOLS = sm.symbols('psi, theta, varphi')
+psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
 
 
 @pytest.fixture
 def gimbal():
-    return Frames().orient_axis('B', 'A', 'z', psi).orient_axis('C', 'B', 'x', theta).orient_axis('D', 'C', 'y', phi)
+    return Frames().orient_axis("B", "A", "z", psi).orient_axis("C", "B", "x", theta).orient_axis("D", "C", "y", phi)
 
 
 # --- products over paths --------------------------------------------------------------------------------
 
+
 def test_camera_in_handgrip(gimbal):
-    assert (gimbal.dcm('D', 'A') - composed(SYMBOLS, 'zxy')).expand() == sm.zeros(3)
-    assert (gimbal.dcm('A', 'D') - composed(SYMBOLS, 'zxy').T).expand() == sm.zeros(3)
-    assert gimbal.dcm('B', 'A') == simple_dcm('z', psi)
-    assert gimbal.dcm('A', 'B') == simple_dcm('z', -psi)
-    assert gimbal.dcm('C', 'C') == sm.eye(3)
-    assert gimbal.path('D', 'A') == 'D - C - B - A'
-    assert gimbal.path('A', 'C') == 'A - B - C'
-    assert gimbal.path('B', 'B') == 'B'
+    assert (gimbal.dcm("D", "A") - composed(SYMBOLS, "zxy")).expand() == sm.zeros(3)
+    assert (gimbal.dcm("A", "D") - composed(SYMBOLS, "zxy").T).expand() == sm.zeros(3)
+    assert gimbal.dcm("B", "A") == simple_dcm("z", psi)
+    assert gimbal.dcm("A", "B") == simple_dcm("z", -psi)
+    assert gimbal.dcm("C", "C") == sm.eye(3)
+    assert gimbal.path("D", "A") == "D - C - B - A"
+    assert gimbal.path("A", "C") == "A - B - C"
+    assert gimbal.path("B", "B") == "B"
 
 
 def random_tree(seed, count=6):
     """Edges of a random tree: joined in random order, each given from either end, in every way there is."""
     source = np.random.default_rng(seed)
-    names = [f'F{k}' for k in range(count)]
+    names = [f"F{k}" for k in range(count)]
     edges = [(names[k], names[source.integers(k)]) for k in range(1, count)]
     source.shuffle(edges)
     frames, truth = Frames(), {}
     for k, edge in enumerate(edges):
-        frame, reference = (str(name) for name in edge[::source.choice((1, -1))])
+        frame, reference = (str(name) for name in edge[:: source.choice((1, -1))])
         angle, kind = float(source.uniform(-3, 3)), (seed + k) % 5
         if kind == 0:
-            axis = 'xyz'[source.integers(3)]
+            axis = "xyz"[source.integers(3)]
             frames, dcm = frames.orient_axis(frame, reference, axis, angle), composed((angle,), axis)
         elif kind == 1:
             axis = source.normal(size=3)
             frames, dcm = frames.orient_axis(frame, reference, axis, angle), dcm_from_axis_angle(axis, angle)
         elif kind == 2:
             angles = source.uniform(-3, 3, 3)
-            frames, dcm = frames.orient_body_fixed(frame, reference, angles, 'xzx'), composed(angles, 'xzx')
+            frames, dcm = frames.orient_body_fixed(frame, reference, angles, "xzx"), composed(angles, "xzx")
         elif kind == 3:
             quaternion = random_unit_vectors(1, seed + k, size=4)[0]
             frames, dcm = frames.orient_quaternion(frame, reference, quaternion), dcm_from_quaternion(quaternion)
@@ -64,14 +71,14 @@ def random_tree(seed, count=6):
 def complete(truth, names):
     """Every pair's matrix, found by multiplying what is known until nothing is missing."""
     truth = {**truth, **{(name, name): np.eye(3) for name in names}}
-    while len(truth) < len(names)**2:
+    while len(truth) < len(names) ** 2:
         for (a, b), (c, d) in itertools.product(list(truth), repeat=2):
             if b == c and (a, d) not in truth:
                 truth[a, d] = truth[a, b] @ truth[c, d]
     return truth
 
 
-@pytest.mark.parametrize('seed', range(12))
+@pytest.mark.parametrize("seed", range(12))
 def test_trees_of_every_shape_both_ways_and_as_reference_frames(seed):
     frames, names, truth = random_tree(seed)
     sympy_frames = frames.reference_frames()
@@ -85,253 +92,299 @@ def test_trees_of_every_shape_both_ways_and_as_reference_frames(seed):
 
 
 def test_frames_given_from_either_end_and_trees_joined_later():
-    frames = (Frames().orient_axis('A', 'B', 'z', psi).orient_axis('C', 'D', 'x', theta)
-              .orient_axis('B', 'C', 'y', phi))
-    assert frames.path('A', 'D') == 'A - B - C - D'
-    expected = simple_dcm('z', psi) * simple_dcm('y', phi) * simple_dcm('x', theta)
-    assert (frames.dcm('A', 'D') - expected).expand() == sm.zeros(3)
+    frames = Frames().orient_axis("A", "B", "z", psi).orient_axis("C", "D", "x", theta).orient_axis("B", "C", "y", phi)
+    assert frames.path("A", "D") == "A - B - C - D"
+    expected = simple_dcm("z", psi) * simple_dcm("y", phi) * simple_dcm("x", theta)
+    assert (frames.dcm("A", "D") - expected).expand() == sm.zeros(3)
     sympy_frames = frames.reference_frames()
-    for target, source in itertools.product('ABCD', repeat=2):
+    for target, source in itertools.product("ABCD", repeat=2):
         ours, theirs = frames.dcm(target, source), sympy_frames[target].dcm(sympy_frames[source])
         assert (ours - theirs).expand() == sm.zeros(3)
 
 
 def test_reference_frames_of_several_trees():
-    frames = Frames().orient_axis('A', 'N', 'z', psi).orient_axis('C', 'B', 'x', theta)
+    frames = Frames().orient_axis("A", "N", "z", psi).orient_axis("C", "B", "x", theta)
     made = frames.reference_frames()
-    assert made['A'].dcm(made['N']) == simple_dcm('z', psi)
-    assert made['C'].dcm(made['B']) == simple_dcm('x', theta)
-    with pytest.raises(ValueError, match='no path of orientations connects C and A'):
-        frames.dcm('C', 'A')
+    assert made["A"].dcm(made["N"]) == simple_dcm("z", psi)
+    assert made["C"].dcm(made["B"]) == simple_dcm("x", theta)
+    with pytest.raises(ValueError, match="no path of orientations connects C and A"):
+        frames.dcm("C", "A")
 
 
 def test_reference_frames_are_new_each_time(gimbal):
-    assert gimbal.reference_frames()['A'] is not gimbal.reference_frames()['A']
+    assert gimbal.reference_frames()["A"] is not gimbal.reference_frames()["A"]
 
 
 def test_symbols_and_numbers_mix(gimbal):
-    mixed = gimbal.orient_axis('E', 'D', 'z', 0.3).orient_quaternion('F', 'E', (0.6, 0, 0.8, 0)) \
-        .orient_dcm('G', 'F', simple_dcm('x', 0.1)).orient_axis('H', 'G', (0, 0.5, 0), psi)
-    expected = (simple_dcm('y', psi) * sm.Matrix(simple_dcm('x', 0.1) @ dcm_from_quaternion((0.6, 0, 0.8, 0))
-                @ simple_dcm('z', 0.3)) * composed(SYMBOLS, 'zxy'))
-    assert same_orientation(mixed.dcm('H', 'A'), expected)
-    assert isinstance(mixed.dcm('E', 'D'), np.ndarray)
+    mixed = (
+        gimbal.orient_axis("E", "D", "z", 0.3)
+        .orient_quaternion("F", "E", (0.6, 0, 0.8, 0))
+        .orient_dcm("G", "F", simple_dcm("x", 0.1))
+        .orient_axis("H", "G", (0, 0.5, 0), psi)
+    )
+    expected = (
+        simple_dcm("y", psi)
+        * sm.Matrix(simple_dcm("x", 0.1) @ dcm_from_quaternion((0.6, 0, 0.8, 0)) @ simple_dcm("z", 0.3))
+        * composed(SYMBOLS, "zxy")
+    )
+    assert same_orientation(mixed.dcm("H", "A"), expected)
+    assert isinstance(mixed.dcm("E", "D"), np.ndarray)
     made = mixed.reference_frames()
-    assert same_orientation(made['H'].dcm(made['A']), expected)
+    assert same_orientation(made["H"].dcm(made["A"]), expected)
 
 
 def test_body_fixed_angles_of_which_some_are_numbers():
-    frames = Frames().orient_body_fixed('D', 'A', (psi, 0, 0.5), 'zxy')
-    assert same_orientation(frames.dcm('D', 'A'), composed((psi, 0, 0.5), 'zxy'))
+    frames = Frames().orient_body_fixed("D", "A", (psi, 0, 0.5), "zxy")
+    assert same_orientation(frames.dcm("D", "A"), composed((psi, 0, 0.5), "zxy"))
 
 
 # --- batches -----------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize('kind', [np.array, list, tuple])
+
+@pytest.mark.parametrize("kind", [np.array, list, tuple])
 def test_batches(kind):
     many, few = np.linspace(-3, 3, 7), np.linspace(0, 1, 7)
-    frames = (Frames().orient_axis('B', 'A', 'z', kind(many)).orient_axis('C', 'B', 'z', kind(few))
-              .orient_axis('D', 'C', [0, 2, 0], kind(few)).orient_axis('E', 'D', 'x', 0.2))
-    expected = np.array([composed((a + b, b, 0.2), 'zyx') for a, b in zip(many, few)])
-    assert frames.dcm('E', 'A').shape == (7, 3, 3)
-    assert rotation_error(frames.dcm('E', 'A'), expected) < 1e-14
-    assert rotation_error(frames.dcm('A', 'E'), expected.swapaxes(1, 2)) < 1e-14
+    frames = (
+        Frames()
+        .orient_axis("B", "A", "z", kind(many))
+        .orient_axis("C", "B", "z", kind(few))
+        .orient_axis("D", "C", [0, 2, 0], kind(few))
+        .orient_axis("E", "D", "x", 0.2)
+    )
+    expected = np.array([composed((a + b, b, 0.2), "zyx") for a, b in zip(many, few)])
+    assert frames.dcm("E", "A").shape == (7, 3, 3)
+    assert rotation_error(frames.dcm("E", "A"), expected) < 1e-14
+    assert rotation_error(frames.dcm("A", "E"), expected.swapaxes(1, 2)) < 1e-14
     angles = np.random.default_rng(1).normal(size=(2, 7, 3))
-    frames = frames.orient_body_fixed('G', 'E', angles, 'zxz').orient_dcm('H', 'G', random_dcms(7, 2))
-    assert frames.dcm('H', 'A').shape == (2, 7, 3, 3)
-    assert rotation_error(frames.dcm('H', 'A'),
-                          random_dcms(7, 2) @ dcm_from_body_fixed(angles, 'zxz') @ expected) < 1e-14
+    frames = frames.orient_body_fixed("G", "E", angles, "zxz").orient_dcm("H", "G", random_dcms(7, 2))
+    assert frames.dcm("H", "A").shape == (2, 7, 3, 3)
+    assert (
+        rotation_error(frames.dcm("H", "A"), random_dcms(7, 2) @ dcm_from_body_fixed(angles, "zxz") @ expected) < 1e-14
+    )
     axes = random_unit_vectors(7, 3).tolist()
-    assert rotation_error(Frames().orient_axis('B', 'A', axes, 0.3).dcm('B', 'A'), dcm_from_axis_angle(axes, 0.3)) == 0
+    assert rotation_error(Frames().orient_axis("B", "A", axes, 0.3).dcm("B", "A"), dcm_from_axis_angle(axes, 0.3)) == 0
 
 
 def test_batches_that_do_not_fit_are_refused():
-    for axis in 'zx':
-        frames = Frames().orient_axis('B', 'A', 'z', np.zeros(2)).orient_axis('C', 'B', axis, np.zeros(3))
-        with pytest.raises(ValueError, match=r'batches along this path do not fit .* \(2,\) and \(3,\)'):
-            frames.dcm('C', 'A')
-        frames = Frames().orient_axis('B', 'A', 'z', np.zeros(2)).orient_axis('C', 'B', axis, psi)
-        with pytest.raises(ValueError, match='this path holds symbols and a batch'):
-            frames.dcm('C', 'A')
+    for axis in "zx":
+        frames = Frames().orient_axis("B", "A", "z", np.zeros(2)).orient_axis("C", "B", axis, np.zeros(3))
+        with pytest.raises(ValueError, match=r"batches along this path do not fit .* \(2,\) and \(3,\)"):
+            frames.dcm("C", "A")
+        frames = Frames().orient_axis("B", "A", "z", np.zeros(2)).orient_axis("C", "B", axis, psi)
+        with pytest.raises(ValueError, match="this path holds symbols and a batch"):
+            frames.dcm("C", "A")
 
 
-@pytest.mark.parametrize('frames', [
-    Frames().orient_axis('B', 'A', 'z', np.zeros(2)), Frames().orient_dcm('B', 'A', random_dcms(2, 1)),
-    Frames().orient_body_fixed('B', 'A', np.zeros((2, 3)), 'zxy')])
+@pytest.mark.parametrize(
+    "frames",
+    [
+        Frames().orient_axis("B", "A", "z", np.zeros(2)),
+        Frames().orient_dcm("B", "A", random_dcms(2, 1)),
+        Frames().orient_body_fixed("B", "A", np.zeros((2, 3)), "zxy"),
+    ],
+)
 def test_a_batch_is_no_reference_frame(frames):
-    with pytest.raises(ValueError, match=r'B in A is a batch of shape \(2,\); a ReferenceFrame holds one'):
+    with pytest.raises(ValueError, match=r"B in A is a batch of shape \(2,\); a ReferenceFrame holds one"):
         frames.reference_frames()
 
 
 # --- successive turns about one axis are joined ---------------------------------------------------------------
 
+
 def test_chain_of_twelve_turns_about_z_stays_small():
-    angles = sm.symbols('a:12')
+    angles = sm.symbols("a:12")
     frames = Frames()
     for k, angle in enumerate(angles):
-        frames = frames.orient_axis(f'F{k + 1}', f'F{k}', 'z', angle)
-    dcm = frames.dcm('F12', 'F0')
-    assert dcm == simple_dcm('z', sum(angles))
+        frames = frames.orient_axis(f"F{k + 1}", f"F{k}", "z", angle)
+    dcm = frames.dcm("F12", "F0")
+    assert dcm == simple_dcm("z", sum(angles))
     assert sm.count_ops(dcm) < 60
-    assert frames.dcm('F0', 'F12') == simple_dcm('z', -sum(angles))
-    assert frames.dcm('F3', 'F1') == simple_dcm('z', angles[1] + angles[2])
+    assert frames.dcm("F0", "F12") == simple_dcm("z", -sum(angles))
+    assert frames.dcm("F3", "F1") == simple_dcm("z", angles[1] + angles[2])
 
 
 def test_turns_are_joined_within_and_across_orientations():
-    frames = Frames().orient_body_fixed('B', 'A', SYMBOLS, 'zxz').orient_axis('C', 'B', 'z', -phi)
-    expected = simple_dcm('x', theta) * simple_dcm('z', psi)
-    assert (frames.dcm('C', 'A') - expected) == sm.zeros(3)
+    frames = Frames().orient_body_fixed("B", "A", SYMBOLS, "zxz").orient_axis("C", "B", "z", -phi)
+    expected = simple_dcm("x", theta) * simple_dcm("z", psi)
+    assert (frames.dcm("C", "A") - expected) == sm.zeros(3)
 
 
 def test_turns_about_other_axes_are_not_joined():
-    frames = Frames().orient_axis('B', 'A', 'z', psi).orient_axis('C', 'B', 'x', theta).orient_axis('D', 'C', 'z', -psi)
-    assert not same_orientation(frames.dcm('D', 'A'), simple_dcm('x', theta))
-    frames = Frames().orient_axis('B', 'A', 'z', 0.1).orient_axis('C', 'B', (0, 0, 1), 0.2)
-    assert rotation_error(frames.dcm('C', 'A'), simple_dcm('z', 0.3)) < 1e-15
+    frames = Frames().orient_axis("B", "A", "z", psi).orient_axis("C", "B", "x", theta).orient_axis("D", "C", "z", -psi)
+    assert not same_orientation(frames.dcm("D", "A"), simple_dcm("x", theta))
+    frames = Frames().orient_axis("B", "A", "z", 0.1).orient_axis("C", "B", (0, 0, 1), 0.2)
+    assert rotation_error(frames.dcm("C", "A"), simple_dcm("z", 0.3)) < 1e-15
 
 
 # --- nothing goes stale ---------------------------------------------------------------------------------------
 
+
 def test_orienting_leaves_the_frames_as_they_were():
     empty = Frames()
-    one = empty.orient_axis('A', 'N', 'z', psi)
-    two = one.orient_axis('B', 'A', 'x', theta)
-    other = one.orient_axis('B', 'A', 'y', theta)
-    assert repr(empty) == 'Frames()' and repr(one) == 'Frames(A in N)' and repr(two) == 'Frames(A in N, B in A)'
+    one = empty.orient_axis("A", "N", "z", psi)
+    two = one.orient_axis("B", "A", "x", theta)
+    other = one.orient_axis("B", "A", "y", theta)
+    assert repr(empty) == "Frames()" and repr(one) == "Frames(A in N)" and repr(two) == "Frames(A in N, B in A)"
     with pytest.raises(ValueError, match="no frame 'A' here; there are none"):
-        empty.dcm('A', 'N')
+        empty.dcm("A", "N")
     with pytest.raises(ValueError, match="no frame 'B' here; there are A, N"):
-        one.dcm('B', 'N')
-    assert not same_orientation(two.dcm('B', 'N'), other.dcm('B', 'N'))
+        one.dcm("B", "N")
+    assert not same_orientation(two.dcm("B", "N"), other.dcm("B", "N"))
 
 
 ORIENTATIONS = {
-    'axis': lambda frames, x: frames.orient_axis('D', 'A', 'z', x),
-    'other axis': lambda frames, x: frames.orient_axis('D', 'A', (1, 2, 3), x),
-    'body fixed': lambda frames, x: frames.orient_body_fixed('D', 'A', (x, 0.2, 0.3), 'zxy'),
-    'matrix': lambda frames, x: frames.orient_dcm('D', 'A', simple_dcm('z', x)),
-    'quaternion': lambda frames, x: frames.orient_quaternion('D', 'A', (np.cos(x), 0, 0, np.sin(x))
-                                                             if isinstance(x, float) else
-                                                             (sm.cos(x), 0, 0, sm.sin(x))),
+    "axis": lambda frames, x: frames.orient_axis("D", "A", "z", x),
+    "other axis": lambda frames, x: frames.orient_axis("D", "A", (1, 2, 3), x),
+    "body fixed": lambda frames, x: frames.orient_body_fixed("D", "A", (x, 0.2, 0.3), "zxy"),
+    "matrix": lambda frames, x: frames.orient_dcm("D", "A", simple_dcm("z", x)),
+    "quaternion": lambda frames, x: frames.orient_quaternion(
+        "D", "A", (np.cos(x), 0, 0, np.sin(x)) if isinstance(x, float) else (sm.cos(x), 0, 0, sm.sin(x))
+    ),
 }
 
 
-@pytest.mark.parametrize('angle, changed', [(psi, theta), (0.1, 0.2), (psi, 0.2)])
-@pytest.mark.parametrize('orientation', ORIENTATIONS.values(), ids=ORIENTATIONS)
+@pytest.mark.parametrize("angle, changed", [(psi, theta), (0.1, 0.2), (psi, 0.2)])
+@pytest.mark.parametrize("orientation", ORIENTATIONS.values(), ids=ORIENTATIONS)
 def test_a_cell_can_be_run_again_but_not_with_another_answer(orientation, angle, changed):
-    frames = orientation(Frames().orient_axis('A', 'N', 'x', phi), angle)
+    frames = orientation(Frames().orient_axis("A", "N", "x", phi), angle)
     assert orientation(frames, angle) is frames
-    assert frames.orient_dcm('A', 'D', frames.dcm('A', 'D')) is frames  # the same, from the other end
-    with pytest.raises(ValueError, match='D and A are already connected, by D - A: a second path could contradict'):
+    assert frames.orient_dcm("A", "D", frames.dcm("A", "D")) is frames  # the same, from the other end
+    with pytest.raises(ValueError, match="D and A are already connected, by D - A: a second path could contradict"):
         orientation(frames, changed)
 
 
 def test_a_cell_can_be_run_again_with_another_form_of_the_same_orientation(gimbal):
-    assert gimbal.orient_axis('B', 'A', 'z', psi + 2 * sm.pi) is gimbal
-    assert gimbal.orient_axis('A', 'B', 'z', -psi) is gimbal
-    assert gimbal.orient_axis('B', 'A', (0, 0, 3), psi) is gimbal
+    assert gimbal.orient_axis("B", "A", "z", psi + 2 * sm.pi) is gimbal
+    assert gimbal.orient_axis("A", "B", "z", -psi) is gimbal
+    assert gimbal.orient_axis("B", "A", (0, 0, 3), psi) is gimbal
 
 
 def test_a_second_path_is_refused_and_the_first_is_named(gimbal):
-    for frame, reference, path in (('D', 'A', 'D - C - B - A'), ('A', 'D', 'A - B - C - D'), ('C', 'A', 'C - B - A')):
-        with pytest.raises(ValueError, match=f'{frame} and {reference} are already connected, by {path}:'):
-            gimbal.orient_axis(frame, reference, 'z', 1)
-    with pytest.raises(ValueError, match='already connected'):
-        gimbal.orient_dcm('D', 'A', gimbal.dcm('D', 'A'))
+    for frame, reference, path in (("D", "A", "D - C - B - A"), ("A", "D", "A - B - C - D"), ("C", "A", "C - B - A")):
+        with pytest.raises(ValueError, match=f"{frame} and {reference} are already connected, by {path}:"):
+            gimbal.orient_axis(frame, reference, "z", 1)
+    with pytest.raises(ValueError, match="already connected"):
+        gimbal.orient_dcm("D", "A", gimbal.dcm("D", "A"))
 
 
 def test_a_batch_run_again_with_other_data():
-    frames = Frames().orient_axis('B', 'A', 'z', np.zeros(3))
-    assert frames.orient_axis('B', 'A', 'z', np.zeros(3)) is frames
+    frames = Frames().orient_axis("B", "A", "z", np.zeros(3))
+    assert frames.orient_axis("B", "A", "z", np.zeros(3)) is frames
     for other in (np.ones(3), np.zeros(2), 0.0):
-        with pytest.raises(ValueError, match='already connected'):
-            frames.orient_axis('B', 'A', 'z', other)
-    empty = Frames().orient_axis('B', 'A', 'z', np.zeros(0))
-    assert empty.orient_axis('B', 'A', 'z', np.zeros(0)) is empty
+        with pytest.raises(ValueError, match="already connected"):
+            frames.orient_axis("B", "A", "z", other)
+    empty = Frames().orient_axis("B", "A", "z", np.zeros(0))
+    assert empty.orient_axis("B", "A", "z", np.zeros(0)) is empty
 
 
 def test_what_was_given_can_change_afterwards():
     angle, angles, axis = np.array([0.1, 0.2]), np.array([0.1, 0.2, 0.3]), np.array([0.0, 1, 0])
-    dcm, matrix, quaternion = simple_dcm('x', 0.3), simple_dcm('x', psi), np.array([1.0, 0, 0, 0])
-    frames = (Frames().orient_axis('B', 'A', 'z', angle).orient_axis('C', 'B', axis, angle)
-              .orient_body_fixed('D', 'C', angles, 'zxy').orient_dcm('E', 'D', dcm)
-              .orient_quaternion('F', 'E', quaternion).orient_dcm('M', 'N', matrix))
-    before = frames.dcm('F', 'A'), frames.dcm('M', 'N')
+    dcm, matrix, quaternion = simple_dcm("x", 0.3), simple_dcm("x", psi), np.array([1.0, 0, 0, 0])
+    frames = (
+        Frames()
+        .orient_axis("B", "A", "z", angle)
+        .orient_axis("C", "B", axis, angle)
+        .orient_body_fixed("D", "C", angles, "zxy")
+        .orient_dcm("E", "D", dcm)
+        .orient_quaternion("F", "E", quaternion)
+        .orient_dcm("M", "N", matrix)
+    )
+    before = frames.dcm("F", "A"), frames.dcm("M", "N")
     for given in (angle, angles, axis, dcm, quaternion, matrix):
         given[0] = 7
-    assert (frames.dcm('F', 'A') == before[0]).all() and frames.dcm('M', 'N') == before[1]
+    assert (frames.dcm("F", "A") == before[0]).all() and frames.dcm("M", "N") == before[1]
 
 
 def test_what_was_returned_can_change_afterwards():
-    frames = Frames().orient_dcm('A', 'N', simple_dcm('x', 0.3)).orient_dcm('C', 'B', simple_dcm('x', psi)) \
-        .orient_dcm('E', 'D', random_dcms(2, 1))
-    for pair in (('A', 'N'), ('C', 'B'), ('E', 'D'), ('A', 'A')):
+    frames = (
+        Frames()
+        .orient_dcm("A", "N", simple_dcm("x", 0.3))
+        .orient_dcm("C", "B", simple_dcm("x", psi))
+        .orient_dcm("E", "D", random_dcms(2, 1))
+    )
+    for pair in (("A", "N"), ("C", "B"), ("E", "D"), ("A", "A")):
         before = frames.dcm(*pair)
         frames.dcm(*pair)[0, 0] = 7
         assert same_orientation(frames.dcm(*pair), before)
 
 
-@pytest.mark.parametrize('kind', [np.uint8, np.int8, int, np.float32, np.float64, sm.Integer])
+@pytest.mark.parametrize("kind", [np.uint8, np.int8, int, np.float32, np.float64, sm.Integer])
 def test_every_kind_of_number_turns_back_and_joins(kind):
-    frames = Frames().orient_axis('B', 'A', 'z', kind(100)).orient_axis('C', 'B', 'z', kind(100))
-    assert rotation_error(sm.Matrix(frames.dcm('C', 'A')).evalf(), simple_dcm('z', 200.0)) < 1e-14
-    assert rotation_error(sm.Matrix(frames.dcm('A', 'B')).evalf(), simple_dcm('z', -100.0)) < 1e-14
+    frames = Frames().orient_axis("B", "A", "z", kind(100)).orient_axis("C", "B", "z", kind(100))
+    assert rotation_error(sm.Matrix(frames.dcm("C", "A")).evalf(), simple_dcm("z", 200.0)) < 1e-14
+    assert rotation_error(sm.Matrix(frames.dcm("A", "B")).evalf(), simple_dcm("z", -100.0)) < 1e-14
 
 
 # --- the equation ------------------------------------------------------------------------------------------------
 
+
 def test_equation(gimbal):
-    tex = str(gimbal.equation('D', 'A'))
-    assert tex == (r'{}^{D}\mathbf{C}^{A} = '
-                   r'\underbrace{{}^{D}\mathbf{C}^{C}}_{y,\ \varphi}\; '
-                   r'\underbrace{{}^{C}\mathbf{C}^{B}}_{x,\ \theta}\; '
-                   r'\underbrace{{}^{B}\mathbf{C}^{A}}_{z,\ \psi}')
-    assert gimbal.equation('D', 'A')._repr_latex_() == rf'$\displaystyle {tex}$'
-    back = str(gimbal.equation('A', 'B'))
-    assert back == r'{}^{A}\mathbf{C}^{B} = \underbrace{{}^{A}\mathbf{C}^{B}}_{z,\ - \psi}'
-    assert str(gimbal.equation('A', 'A')) == r'{}^{A}\mathbf{C}^{A} = \mathbf{I}'
+    tex = str(gimbal.equation("D", "A"))
+    assert tex == (
+        r"{}^{D}\mathbf{C}^{A} = "
+        r"\underbrace{{}^{D}\mathbf{C}^{C}}_{y,\ \varphi}\; "
+        r"\underbrace{{}^{C}\mathbf{C}^{B}}_{x,\ \theta}\; "
+        r"\underbrace{{}^{B}\mathbf{C}^{A}}_{z,\ \psi}"
+    )
+    assert gimbal.equation("D", "A")._repr_latex_() == rf"$\displaystyle {tex}$"
+    back = str(gimbal.equation("A", "B"))
+    assert back == r"{}^{A}\mathbf{C}^{B} = \underbrace{{}^{A}\mathbf{C}^{B}}_{z,\ - \psi}"
+    assert str(gimbal.equation("A", "A")) == r"{}^{A}\mathbf{C}^{A} = \mathbf{I}"
 
 
 def test_equation_tells_what_each_factor_is():
-    frames = (Frames().orient_axis('B', 'A', (0, 1, 1), 0.5).orient_dcm('C', 'B', simple_dcm('x', psi))
-              .orient_quaternion('D', 'C', (1, 0, 0, 0)).orient_axis('E_1', 'D', 'z', np.zeros(3))
-              .orient_body_fixed('F', 'E_1', SYMBOLS, 'zxy'))
-    for target, source, said in (('B', 'A', r'\text{axis }(0, 1, 1),\ 0.5'), ('C', 'B', r'\text{matrix}'),
-                                 ('B', 'C', r'\text{matrix},\ \text{back}'), ('D', 'C', r'\text{quaternion}'),
-                                 ('E_1', 'D', r'z,\ \text{batch}'),
-                                 ('F', 'E_1', r'z,\ \psi;\ x,\ \theta;\ y,\ \varphi'),
-                                 ('E_1', 'F', r'y,\ - \varphi;\ x,\ - \theta;\ z,\ - \psi')):
+    frames = (
+        Frames()
+        .orient_axis("B", "A", (0, 1, 1), 0.5)
+        .orient_dcm("C", "B", simple_dcm("x", psi))
+        .orient_quaternion("D", "C", (1, 0, 0, 0))
+        .orient_axis("E_1", "D", "z", np.zeros(3))
+        .orient_body_fixed("F", "E_1", SYMBOLS, "zxy")
+    )
+    for target, source, said in (
+        ("B", "A", r"\text{axis }(0, 1, 1),\ 0.5"),
+        ("C", "B", r"\text{matrix}"),
+        ("B", "C", r"\text{matrix},\ \text{back}"),
+        ("D", "C", r"\text{quaternion}"),
+        ("E_1", "D", r"z,\ \text{batch}"),
+        ("F", "E_1", r"z,\ \psi;\ x,\ \theta;\ y,\ \varphi"),
+        ("E_1", "F", r"y,\ - \varphi;\ x,\ - \theta;\ z,\ - \psi"),
+    ):
         tex = str(frames.equation(target, source))
-        assert rf'_{{{said}}}' in tex
-    assert r'E\_1' in str(frames.equation('E_1', 'D'))  # an underscore of a name is no subscript
+        assert rf"_{{{said}}}" in tex
+    assert r"E\_1" in str(frames.equation("E_1", "D"))  # an underscore of a name is no subscript
 
 
 # --- errors --------------------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize('name', ['', 'A B', 3, None, 'A-B'])
+
+@pytest.mark.parametrize("name", ["", "A B", 3, None, "A-B"])
 def test_names(name):
-    for pair in (('A', name), (name, 'A')):
-        with pytest.raises(ValueError, match='a frame is named by a string such as'):
-            Frames().orient_axis(*pair, 'z', 0.1)
+    for pair in (("A", name), (name, "A")):
+        with pytest.raises(ValueError, match="a frame is named by a string such as"):
+            Frames().orient_axis(*pair, "z", 0.1)
 
 
 def test_a_frame_in_itself():
-    with pytest.raises(ValueError, match='A cannot be oriented with respect to itself'):
-        Frames().orient_axis('A', 'A', 'z', 0.1)
+    with pytest.raises(ValueError, match="A cannot be oriented with respect to itself"):
+        Frames().orient_axis("A", "A", "z", 0.1)
 
 
-@pytest.mark.parametrize('orient, said', [
-    (lambda frames: frames.orient_axis('B', 'A', 'q', 1), "axis is 'q'"),
-    (lambda frames: frames.orient_axis('B', 'A', 'z', np.nan), 'angle is nan'),
-    (lambda frames: frames.orient_axis('B', 'A', (0, 0, 0), 1), 'a zero vector points nowhere'),
-    (lambda frames: frames.orient_axis('B', 'A', (0, 0, 0), psi), 'a zero vector points nowhere'),
-    (lambda frames: frames.orient_axis('B', 'A', 3, 1), r'axis has shape \(\)'),
-    (lambda frames: frames.orient_body_fixed('B', 'A', (1, 2, 3), 'zzx'), "'zzx' is not a sequence"),
-    (lambda frames: frames.orient_body_fixed('B', 'A', (1, 2), 'zxy'), r'angles has shape \(2,\)'),
-    (lambda frames: frames.orient_dcm('B', 'A', np.diag((1, 1, -1))), 'left-handed'),
-    (lambda frames: frames.orient_dcm('B', 'A', 2 * simple_dcm('x', psi)), 'not orthogonal: row x has length 2'),
-    (lambda frames: frames.orient_quaternion('B', 'A', (1, 1, 0, 0)), 'length 1.414'),
-])
+@pytest.mark.parametrize(
+    "orient, said",
+    [
+        (lambda frames: frames.orient_axis("B", "A", "q", 1), "axis is 'q'"),
+        (lambda frames: frames.orient_axis("B", "A", "z", np.nan), "angle is nan"),
+        (lambda frames: frames.orient_axis("B", "A", (0, 0, 0), 1), "a zero vector points nowhere"),
+        (lambda frames: frames.orient_axis("B", "A", (0, 0, 0), psi), "a zero vector points nowhere"),
+        (lambda frames: frames.orient_axis("B", "A", 3, 1), r"axis has shape \(\)"),
+        (lambda frames: frames.orient_body_fixed("B", "A", (1, 2, 3), "zzx"), "'zzx' is not a sequence"),
+        (lambda frames: frames.orient_body_fixed("B", "A", (1, 2), "zxy"), r"angles has shape \(2,\)"),
+        (lambda frames: frames.orient_dcm("B", "A", np.diag((1, 1, -1))), "left-handed"),
+        (lambda frames: frames.orient_dcm("B", "A", 2 * simple_dcm("x", psi)), "not orthogonal: row x has length 2"),
+        (lambda frames: frames.orient_quaternion("B", "A", (1, 1, 0, 0)), "length 1.414"),
+    ],
+)
 def test_bad_input_is_refused_when_it_is_given(orient, said):
     with pytest.raises(ValueError, match=said):
         orient(Frames())

@@ -34,8 +34,13 @@ SCRIPT = "<script>alert(1)</script>"
 def students():
     """The notebooks of a class by student: each is right in all that it does not name."""
     yield "right", handed_in()
-    yield "mistaken", handed_in(about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, sm.sin(theta), sm.cos(theta)]])",
-                                sum="sine = -sm.sin(alpha + beta)")
+    yield (
+        "mistaken",
+        handed_in(
+            about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, sm.sin(theta), sm.cos(theta)]])",
+            sum="sine = -sm.sin(alpha + beta)",
+        ),
+    )
     yield "blank", handed_in(about_x="A_C_N = ...", sum="sine = ...", doubled="def doubled(x):\n    ...")
     yield "broken", handed_in(sum="sine = (sm.sin(")
     yield "leaves", handed_in(sum="import os\nos._exit(0)")
@@ -47,13 +52,20 @@ def students():
     yield "backwards", backwards
     yield "nearly", handed_in(sum="sine = sm.sin(alpha + beta)*1.0004")
     yield "warns", handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)")
-    yield "corrects", handed_in(sum="sine = -sm.sin(alpha + beta)", also=[RIGHT["turns/sum"], "check('turns/sum', sine)"])
+    yield (
+        "corrects",
+        handed_in(sum="sine = -sm.sin(alpha + beta)", also=[RIGHT["turns/sum"], "check('turns/sum', sine)"]),
+    )
     yield "blank-again", handed_in(also=["sine = ...\ncheck('turns/sum', sine)"])
     yield "later", handed_in(sum="sine = ...", also=[RIGHT["turns/sum"]])
     yield "=1+1", handed_in(sum=f"sine = sm.Symbol('{SCRIPT}')")
-    yield SCRIPT.replace("/", ""), handed_in(
-        doubled=f"def doubled(x):\n    raise ValueError('{SCRIPT} $\\\\href{{javascript:alert(1)}}{{x}}$ ` `')",
-        also=[("markdown", SCRIPT), f"raise KeyError('{SCRIPT}')"])
+    yield (
+        SCRIPT.replace("/", ""),
+        handed_in(
+            doubled=f"def doubled(x):\n    raise ValueError('{SCRIPT} $\\\\href{{javascript:alert(1)}}{{x}}$ ` `')",
+            also=[("markdown", SCRIPT), f"raise KeyError('{SCRIPT}')"],
+        ),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -99,29 +111,36 @@ def outcomes(course, student):
 
 def contents(folder):
     """Every file that depends on nothing but what was handed in."""
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
-            if path.is_file() and path.name not in ("run.log", "lock")}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name not in ("run.log", "lock")
+    }
 
 
 # ---- what each notebook gets
 
-@pytest.mark.parametrize("student, expected, points", [
-    ("right", ["correct"] * 3, 6),
-    ("mistaken", ["wrong", "wrong", "correct"], 4),  # half of two for the transpose, by its author's word
-    ("blank", ["not attempted"] * 3, 0),
-    ("broken", ["correct", "not attempted", "correct"], 5),
-    ("leaves", ["correct", "not attempted", "correct"], 5),
-    ("endless", ["correct", "not attempted", "correct"], 5),
-    ("no-checks", ["correct"] * 3, 6),
-    ("backwards", ["not attempted", "correct", "not attempted"], 1),
-    ("nearly", ["correct", "undecided", "correct"], 5),
-    ("warns", ["correct"] * 3, 6),
-    ("corrects", ["correct"] * 3, 6),
-    ("blank-again", ["correct"] * 3, 6),
-    ("later", ["correct"] * 3, 6),
-    ("=1+1", ["correct", "invalid", "correct"], 5),
-    (SCRIPT.replace("/", ""), ["correct", "correct", "invalid"], 3),
-])
+
+@pytest.mark.parametrize(
+    "student, expected, points",
+    [
+        ("right", ["correct"] * 3, 6),
+        ("mistaken", ["wrong", "wrong", "correct"], 4),  # half of two for the transpose, by its author's word
+        ("blank", ["not attempted"] * 3, 0),
+        ("broken", ["correct", "not attempted", "correct"], 5),
+        ("leaves", ["correct", "not attempted", "correct"], 5),
+        ("endless", ["correct", "not attempted", "correct"], 5),
+        ("no-checks", ["correct"] * 3, 6),
+        ("backwards", ["not attempted", "correct", "not attempted"], 1),
+        ("nearly", ["correct", "undecided", "correct"], 5),
+        ("warns", ["correct"] * 3, 6),
+        ("corrects", ["correct"] * 3, 6),
+        ("blank-again", ["correct"] * 3, 6),
+        ("later", ["correct"] * 3, 6),
+        ("=1+1", ["correct", "invalid", "correct"], 5),
+        (SCRIPT.replace("/", ""), ["correct", "correct", "invalid"], 3),
+    ],
+)
 def test_marks(course, student, expected, points):
     assert outcomes(course, student) == expected
     found = record(course, student)
@@ -151,10 +170,14 @@ def test_submissions_were_only_read(course):
     for student, made in students():
         assert (course / "submissions" / student / "turns.ipynb").read_text() == nbformat.writes(made)
     assert {path.name for path in (course / "submissions").rglob("*") if path.is_file() or path.is_symlink()} == {
-        "turns.ipynb", "link.ipynb", "answers.pdf"}
+        "turns.ipynb",
+        "link.ipynb",
+        "answers.pdf",
+    }
 
 
 # ---- pages and tables are safe
+
 
 def page(course, student):
     return (course / "out" / "feedback" / file_name(student) / "turns.html").read_text("utf8")
@@ -177,7 +200,9 @@ def test_pages_hold_nothing_that_could_run_or_load(course):
         tags = Tags()
         tags.feed(path.read_text("utf8"))
         assert not tags.found & {"script", "iframe", "img", "object", "embed", "link", "base", "form", "a", "style-src"}
-        assert not [name for name in tags.attributes if name.startswith("on") or name in ("href", "src", "style", "srcdoc")]
+        assert not [
+            name for name in tags.attributes if name.startswith("on") or name in ("href", "src", "style", "srcdoc")
+        ]
         assert "default-src 'none'" in path.read_text("utf8")
     student = SCRIPT.replace("/", "")
     assert "&lt;script&gt;alert(1)" in page(course, student)
@@ -194,7 +219,9 @@ def test_nothing_in_a_table_is_a_formula(course):
     assert {row["student"]: row["turns/sum: outcome"] for row in rows}["nearly"] == "undecided"
 
 
-@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", "\uff1d1", "'=1", '"=1', "a,b", "\u202egnp"])
+@pytest.mark.parametrize(
+    "text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", "\uff1d1", "'=1", '"=1', "a,b", "\u202egnp"]
+)
 def test_cells(text):
     (row,) = list(csv.reader(io.StringIO(table([text], []))))
     assert row == [text] or text in ("\r=1",)
@@ -204,8 +231,17 @@ def test_cells(text):
 
 
 def test_mathematics_in_messages():
-    assert "<math" in pages.message("This is ${}^{A}\\mathbf{C}^{N}$ in `code`.") and "<code>code</code>" in pages.message("`code`")
-    for hostile in ("$\\href{javascript:alert(1)}{x}$", "$<img src=x>$", "`<b>`", "*<b>*", "<b>", "$" + "{" * 400 + "$"):
+    assert "<math" in pages.message(
+        "This is ${}^{A}\\mathbf{C}^{N}$ in `code`."
+    ) and "<code>code</code>" in pages.message("`code`")
+    for hostile in (
+        "$\\href{javascript:alert(1)}{x}$",
+        "$<img src=x>$",
+        "`<b>`",
+        "*<b>*",
+        "<b>",
+        "$" + "{" * 400 + "$",
+    ):
         said = pages.message(hostile)
         tags = Tags()
         tags.feed(said)
@@ -213,18 +249,34 @@ def test_mathematics_in_messages():
 
 
 def test_an_answer_is_printed_in_bounded_length():
-    doubling = {"value": ["expression", 60], "nodes": [["symbol", "x"], *(["Add", order, order] for order in range(60))]}
+    doubling = {
+        "value": ["expression", 60],
+        "nodes": [["symbol", "x"], *(["Add", order, order] for order in range(60))],
+    }
     assert len(pages.answer_as_text(doubling)) < 400
     deep = {"value": ["expression", 5_000], "nodes": [["symbol", "x"], *(["sin", order] for order in range(5_000))]}
     assert len(pages.answer_as_text(deep)) < 400
     import sympy as sm
+
     from coursework.checking.plain import to_plain
+
     x, y = sm.symbols("x y")
-    for expression in (x - y, -x / 2, (x + y) ** 2, sm.sqrt(x) * (y - 1), 2 ** (x * y), x ** -y, sm.sin(x) / y, -(x + y), (x ** 2) ** y):
+    for expression in (
+        x - y,
+        -x / 2,
+        (x + y) ** 2,
+        sm.sqrt(x) * (y - 1),
+        2 ** (x * y),
+        x**-y,
+        sm.sin(x) / y,
+        -(x + y),
+        (x**2) ** y,
+    ):
         assert sm.simplify(sm.sympify(pages.answer_as_text(to_plain(expression))) - expression) == 0
 
 
 # ---- the report
+
 
 def test_the_report_tells_what_was_misunderstood(course):
     text = re.sub(r"<[^>]+>", " ", (course / "out" / "report.html").read_text("utf8"))
@@ -238,10 +290,17 @@ def test_the_report_tells_what_was_misunderstood(course):
 
 def test_identical_wrong_answers_are_put_together(tmp_path, course):
     from coursework.grading.reports import report
+
     records = []
     for student in ("right", "right", "right"):
         found = json.loads(json.dumps(record(course, student)))
-        found["marks"]["turns/sum"] |= {"outcome": "wrong", "note": "", "group": "same", "points": 0, "messages": ["No."]}
+        found["marks"]["turns/sum"] |= {
+            "outcome": "wrong",
+            "note": "",
+            "group": "same",
+            "points": 0,
+            "messages": ["No."],
+        }
         found["answers"] = {"turns/sum": "42*alpha"}
         records.append(found)
     assert "42*alpha" in report({"turns": records}, [])
@@ -253,15 +312,18 @@ def test_identical_wrong_answers_are_put_together(tmp_path, course):
 
 # ---- never lost, never twice
 
+
 def graded_lines(folder):
     return [line.split("graded: ")[1] for line in (folder / "run.log").read_text().splitlines() if "graded: " in line]
 
 
 def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     out = prepared
-    code = (f"from coursework.grading.grade import grade; from coursework.grading.sandbox import Limits; "
-            f"grade({str(course / 'submissions')!r}, {str(out)!r}, solutions={str(course / 'solutions')!r}, workers=1, "
-            f"limits=Limits(**{dataclasses.asdict(LIMITS)!r}))")
+    code = (
+        f"from coursework.grading.grade import grade; from coursework.grading.sandbox import Limits; "
+        f"grade({str(course / 'submissions')!r}, {str(out)!r}, solutions={str(course / 'solutions')!r}, workers=1, "
+        f"limits=Limits(**{dataclasses.asdict(LIMITS)!r}))"
+    )
     running = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
     while len(list((out / "records").glob("*/*.json"))) < 3:
         assert running.poll() is None, "it ended before it could be killed"
@@ -279,7 +341,9 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
 
 
 def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
-    monkeypatch.setattr("coursework.grading.sandbox.run_notebooks", lambda *arguments, **options: pytest.fail("it was run"))
+    monkeypatch.setattr(
+        "coursework.grading.sandbox.run_notebooks", lambda *arguments, **options: pytest.fail("it was run")
+    )
     said = grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     assert said == {"graded": 0, "kept": 15, "refused": 3}
     assert contents(copied) == contents(course / "out")
@@ -299,7 +363,25 @@ def test_two_runs_on_one_folder_are_refused(course, copied):
 
 
 def test_names_lead_nowhere_and_stay_apart():
-    names = ["a", "A", "../a", "/a", "a/b", "a b", "a-b", "..", ".", "", "-", "é", "e", "a\0", "a" * 100, "a" * 101, "con."]
+    names = [
+        "a",
+        "A",
+        "../a",
+        "/a",
+        "a/b",
+        "a b",
+        "a-b",
+        "..",
+        ".",
+        "",
+        "-",
+        "é",
+        "e",
+        "a\0",
+        "a" * 100,
+        "a" * 101,
+        "con.",
+    ]
     files = [file_name(name) for name in names]
     assert len(set(map(str.lower, files))) == len(names)
     assert all(re.fullmatch(r"[a-z0-9_][a-z0-9._-]*", name) for name in files)
@@ -308,6 +390,7 @@ def test_names_lead_nowhere_and_stay_apart():
 
 def test_a_notebook_that_kills_sandbox_after_sandbox_costs_only_itself(course, monkeypatch):
     from coursework.grading import sandbox
+
     jobs = [{"id": str(number), "cells": [{"source": ""}], "questions": {"q": {}}, "seed": 0} for number in range(9)]
     done = []
 
@@ -326,9 +409,17 @@ def test_a_notebook_that_kills_sandbox_after_sandbox_costs_only_itself(course, m
 
 # ---- the same wherever it is run
 
+
 @pytest.mark.parametrize("workers", [1, 4])
 def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
-    grade(course / "submissions", prepared, solutions=course / "solutions", limits=LIMITS, workers=workers, show=io.StringIO())
+    grade(
+        course / "submissions",
+        prepared,
+        solutions=course / "solutions",
+        limits=LIMITS,
+        workers=workers,
+        show=io.StringIO(),
+    )
     assert contents(prepared) == contents(course / "out")
 
 
@@ -344,12 +435,20 @@ def test_a_cluster_that_loses_a_worker_changes_no_byte(course, prepared):
                 os.kill(lost[0], signal.SIGKILL)
                 return
 
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+    ) as cluster:
         killer = threading.Thread(target=lose_a_worker)
         killer.start()
         try:
-            said = grade(course / "submissions", prepared, solutions=course / "solutions", limits=LIMITS,
-                         scheduler=cluster.scheduler_address, show=io.StringIO())
+            said = grade(
+                course / "submissions",
+                prepared,
+                solutions=course / "solutions",
+                limits=LIMITS,
+                scheduler=cluster.scheduler_address,
+                show=io.StringIO(),
+            )
         finally:
             over.set()
             killer.join()
@@ -360,26 +459,58 @@ def test_a_cluster_that_loses_a_worker_changes_no_byte(course, prepared):
 def test_a_cluster_that_is_not_there_is_said(course, prepared, monkeypatch):
     pytest.importorskip("distributed")
     from coursework.grading import cluster
+
     monkeypatch.setattr(cluster, "CONNECT_WITHIN", "0.5s")
     with pytest.raises(ValueError, match="no Dask scheduler to be reached at tcp://127.0.0.1:1"):
-        grade(course / "submissions", prepared, solutions=course / "solutions", scheduler="tcp://127.0.0.1:1", show=io.StringIO())
+        grade(
+            course / "submissions",
+            prepared,
+            solutions=course / "solutions",
+            scheduler="tcp://127.0.0.1:1",
+            show=io.StringIO(),
+        )
 
 
 def test_it_fails_closed(course, prepared, monkeypatch):
     from coursework.grading import isolation
+
     monkeypatch.setattr(isolation, "lacking", lambda report: ["namespaces: switched off for this test"])
     with pytest.raises(WeakIsolation):
-        grade(course / "submissions", prepared, solutions=course / "solutions", limits=LIMITS, workers=1, show=io.StringIO())
+        grade(
+            course / "submissions",
+            prepared,
+            solutions=course / "solutions",
+            limits=LIMITS,
+            workers=1,
+            show=io.StringIO(),
+        )
     with pytest.raises(SystemExit, match="switched off for this test"):
-        main(["grade", str(course / "submissions"), "--out", str(prepared), "--solutions", str(course / "solutions"), "--workers", "1"])
+        main(
+            [
+                "grade",
+                str(course / "submissions"),
+                "--out",
+                str(prepared),
+                "--solutions",
+                str(course / "solutions"),
+                "--workers",
+                "1",
+            ]
+        )
     assert not list((prepared / "records").glob("*/*"))
 
 
 # ---- judged again
 
+
 def test_a_changed_question_moves_only_whom_it_concerns(course, copied, tmp_path):
-    changed = write_sources(tmp_path / "solutions", [("credit={'transposed': 0.5}", "credit={'transposed': 1}"),
-                                                     ("symbols='alpha beta', worth=1", "symbols='alpha beta', worth=4")])
+    changed = write_sources(
+        tmp_path / "solutions",
+        [
+            ("credit={'transposed': 0.5}", "credit={'transposed': 1}"),
+            ("symbols='alpha beta', worth=1", "symbols='alpha beta', worth=4"),
+        ],
+    )
     moved = {one.student: (one.before, one.after) for one in regrade(copied, solutions=changed)}
     assert moved["mistaken"] == (4, 5) and moved["right"] == (6, 9) and "blank" not in moved
     assert "mistaken" in moved and regrade(copied, solutions=changed) == []
@@ -391,7 +522,9 @@ def test_a_person_decides_what_is_undecided(course, copied):
     (row,) = rows_of(copied / "undecided.csv")
     assert (row["student"], row["question"], row["credit"]) == ("nearly", "turns/sum", "")
     row |= {"credit": "0.5", "comment": "Rounded."}
-    (copied / "decisions.csv").write_text(table(list(row), [list(row.values()), ["right", "turns/sum", "0", "Never.", 1, "", "", ""]]))
+    (copied / "decisions.csv").write_text(
+        table(list(row), [list(row.values()), ["right", "turns/sum", "0", "Never.", 1, "", "", ""]])
+    )
     (moved,) = regrade(copied, solutions=course / "solutions")
     assert (moved.student, moved.before, moved.after) == ("nearly", 5, 5.5)
     mark = Store(copied).read("nearly", "turns")["marks"]["turns/sum"]
@@ -404,27 +537,42 @@ def test_a_person_decides_what_is_undecided(course, copied):
 
 # ---- handed on
 
+
 @pytest.fixture(scope="module")
 def marks(course):
     return gradebooks.Marks(Store(course / "out"))
 
 
-CANVAS = ('Student,ID,SIS User ID,SIS Login ID,Section,Turns (77),"Final, all"\r\n'
-          '    Points Possible,,,,,12,(read only)\r\n'
-          '"Right, Student",1,S1,right,"A ""quoted"" section",,\r\n'
-          '"Nobody, Student",2,S2,nobody,,3,\r\n'
-          'Nearly,3,S3,nearly,,,\r\n'
-          '"Two\r\nlines",4,S4,mistaken,x,"",9')
+CANVAS = (
+    'Student,ID,SIS User ID,SIS Login ID,Section,Turns (77),"Final, all"\r\n'
+    "    Points Possible,,,,,12,(read only)\r\n"
+    '"Right, Student",1,S1,right,"A ""quoted"" section",,\r\n'
+    '"Nobody, Student",2,S2,nobody,,3,\r\n'
+    "Nearly,3,S3,nearly,,,\r\n"
+    '"Two\r\nlines",4,S4,mistaken,x,"",9'
+)
 
 
-@pytest.mark.parametrize("before, student, written", [
-    ("\ufeff" + CANVAS, "right", '"A ""quoted"" section",12,'),
-    (CANVAS, "mistaken", 'x,"8",9'),
-    ('Identifier;"Full name";"ID number";Grade;"Maximum Grade";"Grade can be changed"\n'
-     '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n"Participant 7";D;broken;"";6,00;Yes\n', "right", "right;6;6,00"),
-    ("OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric MaxPoints:3>\tEnd-of-Line Indicator\r\n"
-     "#1\t#right\tR\tS\t\t#\r\n#2\t#broken\tB\tS\t1\t#\r\n", "broken", "#broken\tB\tS\t2.5\t#"),
-], ids=["canvas with mark", "canvas", "moodle", "brightspace"])
+@pytest.mark.parametrize(
+    "before, student, written",
+    [
+        ("\ufeff" + CANVAS, "right", '"A ""quoted"" section",12,'),
+        (CANVAS, "mistaken", 'x,"8",9'),
+        (
+            'Identifier;"Full name";"ID number";Grade;"Maximum Grade";"Grade can be changed"\n'
+            '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n"Participant 7";D;broken;"";6,00;Yes\n',
+            "right",
+            "right;6;6,00",
+        ),
+        (
+            "OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric MaxPoints:3>\tEnd-of-Line Indicator\r\n"
+            "#1\t#right\tR\tS\t\t#\r\n#2\t#broken\tB\tS\t1\t#\r\n",
+            "broken",
+            "#broken\tB\tS\t2.5\t#",
+        ),
+    ],
+    ids=["canvas with mark", "canvas", "moodle", "brightspace"],
+)
 def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, before, student, written):
     path = tmp_path / "book.csv"
     path.write_bytes(before.encode())
@@ -435,7 +583,7 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, b
     book, filled = gradebooks.Gradebook(before.encode()), gradebooks.Gradebook(after.encode())
     place = gradebooks._column(book, gradebooks._system(book), None)
     for (old, old_end), (new, new_end) in zip(book.lines, filled.lines, strict=True):
-        assert old[:place] == new[:place] and old[place + 1:] == new[place + 1:] and old_end == new_end
+        assert old[:place] == new[:place] and old[place + 1 :] == new[place + 1 :] and old_end == new_end
     assert after.startswith("\ufeff") == before.startswith("\ufeff")
     text = "\n".join(said)
     assert "blank" in text.partition("not in the gradebook")[2]
@@ -446,7 +594,15 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, b
         assert "C;mistaken;-;6,00;No" in after and "mistaken" in text.partition("allows no change")[2]
 
 
-@pytest.mark.parametrize("data", [CANVAS.encode("utf-16"), CANVAS.replace("Nobody", "N\xf3body").encode("latin-1"), CANVAS.encode(), b"\xef\xbb\xbf" + CANVAS.encode()])
+@pytest.mark.parametrize(
+    "data",
+    [
+        CANVAS.encode("utf-16"),
+        CANVAS.replace("Nobody", "N\xf3body").encode("latin-1"),
+        CANVAS.encode(),
+        b"\xef\xbb\xbf" + CANVAS.encode(),
+    ],
+)
 def test_a_gradebook_that_is_not_changed_is_the_same_bytes(data):
     assert bytes(gradebooks.Gradebook(data)) == data
 
@@ -457,7 +613,9 @@ def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
         book = gradebooks.Gradebook(sample_class._gradebook(layout, list(files), 6))
         sample_class.LAYOUTS[layout](tmp_path, files, "turns")
         import zipfile
+
         from coursework.grading.intake import _Layout
+
         names = [name for name in zipfile.ZipFile(tmp_path / "submissions.zip").namelist() if name.endswith("ipynb")]
         whose = {one.student: one.identity for one in map(_Layout(names, ["turns"]).who, names)}
         stub = type("Marks", (), {"students": whose, "identity": lambda self, student: whose[student]})()
@@ -476,11 +634,14 @@ def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
     assert (tmp_path / "book-filled.csv").read_text() == path.read_text()
 
 
-@pytest.mark.parametrize("header, message", [
-    ("Name,Points\nA,1\n", "no gradebook of Canvas"),
-    ("Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n", "'Turns (1)', 'Axes (2)'"),
-    ("Student,ID\n", "no students"),
-])
+@pytest.mark.parametrize(
+    "header, message",
+    [
+        ("Name,Points\nA,1\n", "no gradebook of Canvas"),
+        ("Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n", "'Turns (1)', 'Axes (2)'"),
+        ("Student,ID\n", "no students"),
+    ],
+)
 def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, message):
     path = tmp_path / "book.csv"
     path.write_text(header)
@@ -491,10 +652,25 @@ def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, mess
 
 def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
     out = str(course / "out")
-    main(["export", out, "--nbgrader", str(tmp_path / "grades.csv"), "--gradescope", str(tmp_path / "results.json"), "--student", "mistaken"])
+    main(
+        [
+            "export",
+            out,
+            "--nbgrader",
+            str(tmp_path / "grades.csv"),
+            "--gradescope",
+            str(tmp_path / "results.json"),
+            "--student",
+            "mistaken",
+        ]
+    )
     rows = {row["student_id"]: row for row in rows_of(tmp_path / "grades.csv")}
     assert list(rows["right"]) == list(gradebooks.NBGRADER)
-    assert (rows["mistaken"]["assignment"], rows["mistaken"]["score"], rows["mistaken"]["max_score"]) == ("turns", "4", "6")
+    assert (rows["mistaken"]["assignment"], rows["mistaken"]["score"], rows["mistaken"]["max_score"]) == (
+        "turns",
+        "4",
+        "6",
+    )
     results = json.loads((tmp_path / "results.json").read_text())
     assert results["score"] == 4 and [test["score"] for test in results["tests"]] == [1, 0, 3]
     assert results["tests"][0]["max_score"] == 2 and "the transpose" in results["tests"][0]["output"]
@@ -506,14 +682,53 @@ def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
 
 # ---- the sample class, and the commands
 
+
 def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
     solutions = str(course / "solutions")
-    main(["sample-class", "--out", str(tmp_path / "class"), "--students", "60", "--seed", "3", "--notebooks", "turns,axes", "--solutions", solutions])
+    main(
+        [
+            "sample-class",
+            "--out",
+            str(tmp_path / "class"),
+            "--students",
+            "60",
+            "--seed",
+            "3",
+            "--notebooks",
+            "turns,axes",
+            "--solutions",
+            solutions,
+        ]
+    )
     made = contents(tmp_path / "class")
-    main(["sample-class", "--out", str(tmp_path / "again"), "--students", "60", "--seed", "3", "--notebooks", "turns,axes", "--solutions", solutions])
+    main(
+        [
+            "sample-class",
+            "--out",
+            str(tmp_path / "again"),
+            "--students",
+            "60",
+            "--seed",
+            "3",
+            "--notebooks",
+            "turns,axes",
+            "--solutions",
+            solutions,
+        ]
+    )
     assert contents(tmp_path / "again") == made
-    main(["grade", str(tmp_path / "class" / "submissions"), "--out", str(tmp_path / "out"), "--solutions", solutions,
-          "--assignment", "homework=turns,axes"])
+    main(
+        [
+            "grade",
+            str(tmp_path / "class" / "submissions"),
+            "--out",
+            str(tmp_path / "out"),
+            "--solutions",
+            solutions,
+            "--assignment",
+            "homework=turns,axes",
+        ]
+    )
     said = capsys.readouterr()
     assert "report.html" in said.out and "Isolation: " in said.err
     expected = json.loads((tmp_path / "class" / "expected.json").read_text())
@@ -525,7 +740,9 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
         for name, (outcome, note) in ({} if refused else about["questions"]).items():
             mark = found["marks"][name]
             if any(did.startswith("hostile") for did in about["did"]):
-                assert not mark["points"] or outcome != "not attempted"   # it may have spoilt its own, and gained nothing
+                assert (
+                    not mark["points"] or outcome != "not attempted"
+                )  # it may have spoilt its own, and gained nothing
             else:
                 assert mark["outcome"] == outcome and (not note or mark["note"] == note), (student, about["did"], name)
                 compared += 1
@@ -541,8 +758,23 @@ def test_what_is_missing_is_said(course, tmp_path):
     with pytest.raises(NothingToGrade, match="no notebook with solutions in"):
         grade(course / "submissions", tmp_path / "out", solutions=tmp_path, show=io.StringIO())
     with pytest.raises(NothingToGrade, match="no notebook with solutions 'turn'"):
-        grade(course / "submissions", tmp_path / "out", solutions=course / "solutions", assignments={"x": ["turn"]}, show=io.StringIO())
+        grade(
+            course / "submissions",
+            tmp_path / "out",
+            solutions=course / "solutions",
+            assignments={"x": ["turn"]},
+            show=io.StringIO(),
+        )
     with pytest.raises(SystemExit, match="nothing at"):
-        main(["grade", str(tmp_path / "nowhere"), "--out", str(tmp_path / "out"), "--solutions", str(course / "solutions")])
+        main(
+            [
+                "grade",
+                str(tmp_path / "nowhere"),
+                "--out",
+                str(tmp_path / "out"),
+                "--solutions",
+                str(course / "solutions"),
+            ]
+        )
     with pytest.raises(SystemExit, match="no records"):
         main(["regrade", str(tmp_path / "empty"), "--solutions", str(course / "solutions")])

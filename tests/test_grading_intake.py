@@ -46,24 +46,54 @@ def archive(path, *entries):
 
 # ---- whose a notebook is
 
-@pytest.mark.parametrize("name, student, identity, late", [
-    ("student-017/turns.ipynb", "student-017", {}, False),
-    ("student-017/work/turns.ipynb", "student-017", {}, False),
-    ("student-017.ipynb", "student-017", {}, False),
-    ("student-017_turns.ipynb", "student-017", {}, False),
-    ("turns (student-017).ipynb", "student-017", {}, False),
-    ("submitted/student-017/turns/turns.ipynb", "student-017", {}, False),
-    ("seventeenstudent_100017_800017_turns.ipynb", "seventeenstudent_100017", {"canvas": "100017", "name": "seventeenstudent"}, False),
-    ("seventeenstudent_LATE_100017_800017_turns-1.ipynb", "seventeenstudent_100017", {"canvas": "100017", "name": "seventeenstudent"}, True),
-    ("Student Seventeen_100017_assignsubmission_file_/turns.ipynb", "Student Seventeen 100017",
-     {"moodle": "100017", "name": "Student Seventeen"}, False),
-    ("Student Seventeen_100017_assignsubmission_file/turns.ipynb", "Student Seventeen 100017",
-     {"moodle": "100017", "name": "Student Seventeen"}, False),
-    ("Student Seventeen_100017_assignsubmission_file_turns.ipynb", "Student Seventeen 100017",
-     {"moodle": "100017", "name": "Student Seventeen"}, False),
-    ("100017-4711 - Student Seventeen - Nov 21, 2026 801 PM/turns.ipynb", "Student Seventeen 100017",
-     {"brightspace": "100017", "name": "Student Seventeen"}, False),
-])
+
+@pytest.mark.parametrize(
+    "name, student, identity, late",
+    [
+        ("student-017/turns.ipynb", "student-017", {}, False),
+        ("student-017/work/turns.ipynb", "student-017", {}, False),
+        ("student-017.ipynb", "student-017", {}, False),
+        ("student-017_turns.ipynb", "student-017", {}, False),
+        ("turns (student-017).ipynb", "student-017", {}, False),
+        ("submitted/student-017/turns/turns.ipynb", "student-017", {}, False),
+        (
+            "seventeenstudent_100017_800017_turns.ipynb",
+            "seventeenstudent_100017",
+            {"canvas": "100017", "name": "seventeenstudent"},
+            False,
+        ),
+        (
+            "seventeenstudent_LATE_100017_800017_turns-1.ipynb",
+            "seventeenstudent_100017",
+            {"canvas": "100017", "name": "seventeenstudent"},
+            True,
+        ),
+        (
+            "Student Seventeen_100017_assignsubmission_file_/turns.ipynb",
+            "Student Seventeen 100017",
+            {"moodle": "100017", "name": "Student Seventeen"},
+            False,
+        ),
+        (
+            "Student Seventeen_100017_assignsubmission_file/turns.ipynb",
+            "Student Seventeen 100017",
+            {"moodle": "100017", "name": "Student Seventeen"},
+            False,
+        ),
+        (
+            "Student Seventeen_100017_assignsubmission_file_turns.ipynb",
+            "Student Seventeen 100017",
+            {"moodle": "100017", "name": "Student Seventeen"},
+            False,
+        ),
+        (
+            "100017-4711 - Student Seventeen - Nov 21, 2026 801 PM/turns.ipynb",
+            "Student Seventeen 100017",
+            {"brightspace": "100017", "name": "Student Seventeen"},
+            False,
+        ),
+    ],
+)
 @pytest.mark.parametrize("packed", [False, True])
 def test_whose_a_notebook_is(tmp_path, name, student, identity, late, packed):
     if packed:
@@ -89,8 +119,9 @@ def test_two_numbers_in_a_students_own_file_are_not_taken_for_canvas(folder):
 
 # ---- what is refused
 
+
 def half(data):
-    return data[:len(data) // 2]
+    return data[: len(data) // 2]
 
 
 def with_cells(cells, **others):
@@ -100,30 +131,34 @@ def with_cells(cells, **others):
 CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execution_count": None}
 
 
-@pytest.mark.parametrize("data, why", [
-    (b"", "empty"),
-    (b" \n", "empty"),
-    (half(GOOD), "not well-formed JSON"),
-    (b"PK\x03\x04 another format", "not well-formed JSON"),
-    (b"[]", "no cells"),
-    (b'{"nbformat": 4}', "no cells"),
-    (b'{"cells": {}, "nbformat": 4}', "no list"),
-    (with_cells([1]), "one of its cells is none"),
-    (with_cells([CODE | {"source": 3}]), "text of one of its cells"),
-    (with_cells([CODE | {"source": [["a"]]}]), "text of one of its cells"),
-    (with_cells([CODE | {"source": "\ud800"}]), "half of a character"),
-    (with_cells([], nbformat=2), "version 2"),
-    (with_cells([], nbformat=5), "version 5"),
-    (with_cells([], nbformat=[4]), "version"),
-    (GOOD.replace(b"{", b'{"cells": [], ', 1), "same name twice"),
-    (GOOD.decode().encode("utf-16"), "UTF-16"),
-    (with_cells([CODE | {"source": "é"}]).replace(rb"\u00e9", "é".encode("latin-1")), "UTF-8"),
-    (b'{"cells": ' + b"[" * 100_000 + b"]" * 100_000 + b"}", "nested too deeply"),
-    (with_cells([]).replace(b"[]", b"[" + b"9" * 10_000 + b"]"), "not well-formed"),
-    (with_cells([CODE] * (intake.MOST_CELLS + 1)), "1001 cells"),
-    (with_cells([CODE | {"source": "#" * (intake.MOST_CODE + 1)}]), "code is longer"),
-    (b" " * (intake.MOST_BYTES + 1), "larger than 20 MB"),
-], ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize(
+    "data, why",
+    [
+        (b"", "empty"),
+        (b" \n", "empty"),
+        (half(GOOD), "not well-formed JSON"),
+        (b"PK\x03\x04 another format", "not well-formed JSON"),
+        (b"[]", "no cells"),
+        (b'{"nbformat": 4}', "no cells"),
+        (b'{"cells": {}, "nbformat": 4}', "no list"),
+        (with_cells([1]), "one of its cells is none"),
+        (with_cells([CODE | {"source": 3}]), "text of one of its cells"),
+        (with_cells([CODE | {"source": [["a"]]}]), "text of one of its cells"),
+        (with_cells([CODE | {"source": "\ud800"}]), "half of a character"),
+        (with_cells([], nbformat=2), "version 2"),
+        (with_cells([], nbformat=5), "version 5"),
+        (with_cells([], nbformat=[4]), "version"),
+        (GOOD.replace(b"{", b'{"cells": [], ', 1), "same name twice"),
+        (GOOD.decode().encode("utf-16"), "UTF-16"),
+        (with_cells([CODE | {"source": "é"}]).replace(rb"\u00e9", "é".encode("latin-1")), "UTF-8"),
+        (b'{"cells": ' + b"[" * 100_000 + b"]" * 100_000 + b"}", "nested too deeply"),
+        (with_cells([]).replace(b"[]", b"[" + b"9" * 10_000 + b"]"), "not well-formed"),
+        (with_cells([CODE] * (intake.MOST_CELLS + 1)), "1001 cells"),
+        (with_cells([CODE | {"source": "#" * (intake.MOST_CODE + 1)}]), "code is longer"),
+        (b" " * (intake.MOST_BYTES + 1), "larger than 20 MB"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
 def test_what_is_no_notebook_is_refused_by_name(folder, data, why):
     (folder / "stranger").mkdir()
     (folder / "stranger" / "turns.ipynb").write_bytes(data)
@@ -137,7 +172,11 @@ def test_other_files_are_refused_by_name_and_litter_is_not_mentioned(folder):
     checkpoints = folder / "neighbour" / ".ipynb_checkpoints"
     checkpoints.mkdir()
     (checkpoints / "turns-checkpoint.ipynb").write_bytes(GOOD)
-    assert sorted(the_refused(folder)) == ["neighbour/answers.pdf", "neighbour/answers.zip", "neighbour/turns.ipynb.exe"]
+    assert sorted(the_refused(folder)) == [
+        "neighbour/answers.pdf",
+        "neighbour/answers.zip",
+        "neighbour/turns.ipynb.exe",
+    ]
 
 
 def test_links_and_channels_are_refused_and_not_followed(folder, tmp_path):
@@ -152,7 +191,8 @@ def test_links_and_channels_are_refused_and_not_followed(folder, tmp_path):
     os.mkfifo(mine / "channel.ipynb")
     assert {name: why.split(".")[0] for name, why in the_refused(folder).items()} == {
         "stranger/channel.ipynb": "This is no file but a device or a channel",
-        **dict.fromkeys(("stranger/file.ipynb", "stranger/folder", "student"), "This is a link to another place")}
+        **dict.fromkeys(("stranger/file.ipynb", "stranger/folder", "student"), "This is a link to another place"),
+    }
 
 
 def test_a_file_that_is_exchanged_for_a_link_meanwhile_is_not_read(folder, tmp_path, monkeypatch):
@@ -187,8 +227,19 @@ def test_names_that_are_no_text_are_shown(folder):
 
 # ---- archives
 
-@pytest.mark.parametrize("name", ["../turns.ipynb", "a/../../turns.ipynb", "/turns.ipynb", "..\\turns.ipynb", "\\turns.ipynb",
-                                  "C:turns.ipynb", "a/..\\b.ipynb"])
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../turns.ipynb",
+        "a/../../turns.ipynb",
+        "/turns.ipynb",
+        "..\\turns.ipynb",
+        "\\turns.ipynb",
+        "C:turns.ipynb",
+        "a/..\\b.ipynb",
+    ],
+)
 def test_paths_that_lead_out_of_an_archive_are_refused(tmp_path, name):
     refused = the_refused(archive(tmp_path / "class.zip", (name, GOOD)))
     assert refused == {name: "Its name leads out of the archive."}
@@ -253,12 +304,29 @@ def test_what_is_no_archive_is_said(tmp_path):
 
 # ---- what is read
 
+
 def test_a_mark_of_byte_order_and_older_notebooks_are_read():
     cells, _ = intake.read_notebook(codecs.BOM_UTF8 + GOOD)
     assert cells == intake.read_notebook(GOOD)[0]
-    older = {"nbformat": 3, "nbformat_minor": 0, "metadata": {}, "worksheets": [{"cells": [
-        {"cell_type": "code", "input": ["a = 1\n", "b = 2"], "prompt_number": 7, "outputs": [], "language": "python"},
-        {"cell_type": "heading", "source": "A title", "level": 1}]}]}
+    older = {
+        "nbformat": 3,
+        "nbformat_minor": 0,
+        "metadata": {},
+        "worksheets": [
+            {
+                "cells": [
+                    {
+                        "cell_type": "code",
+                        "input": ["a = 1\n", "b = 2"],
+                        "prompt_number": 7,
+                        "outputs": [],
+                        "language": "python",
+                    },
+                    {"cell_type": "heading", "source": "A title", "level": 1},
+                ]
+            }
+        ],
+    }
     assert intake.read_notebook(json.dumps(older).encode()) == ([{"source": "a = 1\nb = 2", "execution_count": 7}], [])
 
 
@@ -267,8 +335,15 @@ def test_submissions_stay_as_they_are(folder):
         path.chmod(0o500)
 
     def state():
-        return {path: (path.is_file() and path.read_bytes(), path.stat().st_mtime_ns, path.stat().st_mode, path.stat().st_ctime_ns)
-                for path in [folder, *folder.rglob("*")]}
+        return {
+            path: (
+                path.is_file() and path.read_bytes(),
+                path.stat().st_mtime_ns,
+                path.stat().st_mode,
+                path.stat().st_ctime_ns,
+            )
+            for path in [folder, *folder.rglob("*")]
+        }
 
     before = state()
     assert len(intake.take_in(folder)[0]) == 1
@@ -278,17 +353,24 @@ def test_submissions_stay_as_they_are(folder):
 
 # ---- which notebook counts
 
+
 @pytest.fixture
 def course(tmp_path):
     from grading_class import write_sources
+
     return Course(write_sources(tmp_path / "solutions"))
 
 
 def sorted_work(folder, course):
     refused = []
     work = sort_work(intake.take_in(folder, course.assignments)[0], course, refused)
-    return {(one.student, one.assignment): ([notebook.file for notebook in one.notebooks], [notebook.file for notebook in one.superseded])
-            for one in work}, refused
+    return {
+        (one.student, one.assignment): (
+            [notebook.file for notebook in one.notebooks],
+            [notebook.file for notebook in one.superseded],
+        )
+        for one in work
+    }, refused
 
 
 def test_the_newest_of_several_counts(folder, course):
@@ -320,17 +402,22 @@ def test_the_date_that_brightspace_wrote_says_which_is_newer(tmp_path, course):
 def test_an_assignment_in_several_notebooks_is_one(folder, tmp_path, course):
     (folder / "neighbour" / "axes.ipynb").write_bytes(nbformat.writes(handed_in("axes")).encode())
     both = Course(tmp_path / "solutions", {"homework": ["turns", "axes"]})
-    assert sorted_work(folder, both)[0] == {("neighbour", "homework"): (["neighbour/axes.ipynb", "neighbour/turns.ipynb"], [])}
+    assert sorted_work(folder, both)[0] == {
+        ("neighbour", "homework"): (["neighbour/axes.ipynb", "neighbour/turns.ipynb"], [])
+    }
     assert sorted(sorted_work(folder, course)[0]) == [("neighbour", "axes"), ("neighbour", "turns")]
 
 
-@pytest.mark.parametrize("name, cells, found", [
-    ("any.ipynb", ["check('turns/sum', 1)"], "turns"),
-    ("any.ipynb", ['check( "axes/angle" ,\n 1)', "check('turns/sum', 1)", "check('axes/length', 1)"], "axes"),
-    ("turns final.ipynb", ["A_C_N = 1"], "turns"),
-    ("any.ipynb", ["A_C_N = 1"], None),
-    ("any.ipynb", ["check('turns/nothing', 1)"], None),
-])
+@pytest.mark.parametrize(
+    "name, cells, found",
+    [
+        ("any.ipynb", ["check('turns/sum', 1)"], "turns"),
+        ("any.ipynb", ['check( "axes/angle" ,\n 1)', "check('turns/sum', 1)", "check('axes/length', 1)"], "axes"),
+        ("turns final.ipynb", ["A_C_N = 1"], "turns"),
+        ("any.ipynb", ["A_C_N = 1"], None),
+        ("any.ipynb", ["check('turns/nothing', 1)"], None),
+    ],
+)
 def test_which_assignment_a_notebook_is(folder, course, name, cells, found):
     (folder / "stranger").mkdir()
     (folder / "stranger" / name).write_text(nbformat.writes(notebook(cells)))
@@ -349,5 +436,9 @@ def test_nbgraders_names_tell_the_assignment_where_the_checks_are_gone(folder, c
 
 def test_the_names_of_questions_are_found_without_running_a_solution(tmp_path):
     from grading_class import write_sources
+
     solutions = write_sources(tmp_path / "solutions", [("import sympy as sm", "import sympy as sm\nraise SystemExit")])
-    assert Course(solutions).names == {"turns": ["turns/about-x", "turns/sum", "turns/doubled"], "axes": ["axes/angle", "axes/length"]}
+    assert Course(solutions).names == {
+        "turns": ["turns/about-x", "turns/sum", "turns/doubled"],
+        "axes": ["axes/angle", "axes/length"],
+    }

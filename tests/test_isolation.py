@@ -145,9 +145,14 @@ OWN = 4711
 def decision(machine, number, *arguments, architecture=None):
     """What the filter says to one system call: an interpreter of the few instructions that it has."""
     code = system_calls.program(OWN, machine)
-    data = struct.pack("=iI Q 6Q", ctypes.c_int32(number).value,
-                       architecture or system_calls.MACHINES[machine][0], 0,
-                       *[a & (2**64 - 1) for a in arguments], *[0] * (6 - len(arguments)))
+    data = struct.pack(
+        "=iI Q 6Q",
+        ctypes.c_int32(number).value,
+        architecture or system_calls.MACHINES[machine][0],
+        0,
+        *[a & (2**64 - 1) for a in arguments],
+        *[0] * (6 - len(arguments)),
+    )
     accumulator, position = 0, 0
     while True:
         operation, if_true, if_false, value = struct.unpack_from("=HBBI", code, 8 * position)
@@ -161,14 +166,69 @@ def decision(machine, number, *arguments, architecture=None):
         position += if_true if holds else if_false
 
 
-@pytest.mark.parametrize("machine, numbers", [
-    ("x86_64", dict(read=0, write=1, mmap=9, openat=257, clone=56, kill=62, prlimit=302, fcntl=72, ioctl=16,
-                    socket=41, socketpair=53, fork=57, vfork=58, execve=59, ptrace=101, mount=165, bpf=321,
-                    chmod=90, unshare=272, memfd=319, setrlimit=160, prctl=157, keyctl=250, perf=298, faults=323)),
-    ("aarch64", dict(read=63, write=64, mmap=222, openat=56, clone=220, kill=129, prlimit=261, fcntl=25, ioctl=29,
-                     socket=198, socketpair=199, execve=221, ptrace=117, mount=40, bpf=280, chmod=53, unshare=97,
-                     memfd=279, setrlimit=164, prctl=167, keyctl=219, perf=241, faults=282)),
-])
+@pytest.mark.parametrize(
+    "machine, numbers",
+    [
+        (
+            "x86_64",
+            dict(
+                read=0,
+                write=1,
+                mmap=9,
+                openat=257,
+                clone=56,
+                kill=62,
+                prlimit=302,
+                fcntl=72,
+                ioctl=16,
+                socket=41,
+                socketpair=53,
+                fork=57,
+                vfork=58,
+                execve=59,
+                ptrace=101,
+                mount=165,
+                bpf=321,
+                chmod=90,
+                unshare=272,
+                memfd=319,
+                setrlimit=160,
+                prctl=157,
+                keyctl=250,
+                perf=298,
+                faults=323,
+            ),
+        ),
+        (
+            "aarch64",
+            dict(
+                read=63,
+                write=64,
+                mmap=222,
+                openat=56,
+                clone=220,
+                kill=129,
+                prlimit=261,
+                fcntl=25,
+                ioctl=29,
+                socket=198,
+                socketpair=199,
+                execve=221,
+                ptrace=117,
+                mount=40,
+                bpf=280,
+                chmod=53,
+                unshare=97,
+                memfd=279,
+                setrlimit=164,
+                prctl=167,
+                keyctl=219,
+                perf=241,
+                faults=282,
+            ),
+        ),
+    ],
+)
 def test_the_filter_lets_computing_through_and_nothing_else(machine, numbers):
     def says(name, *arguments):
         return decision(machine, numbers[name], *arguments)
@@ -207,6 +267,7 @@ def test_the_filter_says_for_which_machines_it_is_written():
 
 # ---- what is missing, in words
 
+
 def test_what_is_missing_is_said_with_its_remedy():
     layers = {layer: {"in force": True, "why not": ""} for layer in LAYERS}
     layers[SECCOMP] = {"in force": False, "why not": "the container forbids it"}
@@ -218,6 +279,7 @@ def test_what_is_missing_is_said_with_its_remedy():
 
 
 # ---- scratch folders on disk
+
 
 def test_a_hostile_folder_is_removed_and_nothing_else(tmp_path):
     outside = tmp_path / "outside"

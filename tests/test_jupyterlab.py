@@ -27,7 +27,7 @@ SET = {
 }
 FIRST_CELL = f"""
 from orientation_figures import moving
-figures = {{name: getattr(moving, figure)() for name, figure in {({kind: FIGURES[kind].__name__ for kind in KINDS})!r}.items()}}
+figures = {{name: getattr(moving, figure)() for name, figure in { ({kind: FIGURES[kind].__name__ for kind in KINDS})!r}.items()}}
 heard = []
 for name, figure in figures.items():
     figure.observe(lambda change, name=name: heard.append((name, change.name, change.new)), list(figure.state()))
@@ -38,19 +38,29 @@ for name, figure in figures.items():
 def laboratory(tmp_path_factory):
     """The address of a JupyterLab of our own, with a notebook that shows every figure."""
     folder = tmp_path_factory.mktemp("laboratory")
-    cells = [FIRST_CELL, *(f"figures[{kind!r}]" for kind in KINDS), "explorer = moving.SequenceExplorer('zyx')\nexplorer"]
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source, id=f"c{k}") for k, source in enumerate(cells)])
+    cells = [
+        FIRST_CELL,
+        *(f"figures[{kind!r}]" for kind in KINDS),
+        "explorer = moving.SequenceExplorer('zyx')\nexplorer",
+    ]
+    notebook = nbformat.v4.new_notebook(
+        cells=[nbformat.v4.new_code_cell(source, id=f"c{k}") for k, source in enumerate(cells)]
+    )
     notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
     nbformat.write(notebook, folder / "figures.ipynb")
     # Every cell stands in the page, also those out of sight; no questions about news.
-    for name, values in (("notebook-extension/tracker", {"windowingMode": "none"}),
-                         ("apputils-extension/notification", {"fetchNews": "false", "checkForUpdates": False})):
+    for name, values in (
+        ("notebook-extension/tracker", {"windowingMode": "none"}),
+        ("apputils-extension/notification", {"fetchNews": "false", "checkForUpdates": False}),
+    ):
         file = folder / "settings" / "@jupyterlab" / f"{name}.jupyterlab-settings"
         file.parent.mkdir(parents=True)
         file.write_text(json.dumps(values), "utf8")
     homes = ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR", "IPYTHONDIR")
     places = {name: str(folder / name.lower()) for name in homes}
-    environment = os.environ | places | {"JUPYTERLAB_SETTINGS_DIR": str(folder / "settings"), "JUPYTER_PREFER_ENV_PATH": "1"}
+    environment = (
+        os.environ | places | {"JUPYTERLAB_SETTINGS_DIR": str(folder / "settings"), "JUPYTER_PREFER_ENV_PATH": "1"}
+    )
     with (folder / "log").open("w") as log:
         server = subprocess.Popen(
             [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--port=0", "--ip=127.0.0.1",
@@ -93,7 +103,12 @@ class Kernel:
 
     def value(self, code):
         reply = self.client.execute(
-            "", store_history=False, reply=True, timeout=PATIENCE, user_expressions={"value": f"__import__('json').dumps({code})"})
+            "",
+            store_history=False,
+            reply=True,
+            timeout=PATIENCE,
+            user_expressions={"value": f"__import__('json').dumps({code})"},
+        )
         return json.loads(eval(reply["content"]["user_expressions"]["value"]["data"]["text/plain"]))
 
 
@@ -140,7 +155,9 @@ def test_python_and_every_figure_move_together(browser, laboratory):
         # Python moves the figure.
         kernel.run(f"figures[{kind!r}].{name} = {value!r}")
         field = cell.get_by_label(label, exact=True).first
-        page.wait_for_function("([field, value]) => Math.abs(field.value - value) < 0.01", arg=[field.element_handle(), shown])
+        page.wait_for_function(
+            "([field, value]) => Math.abs(field.value - value) < 0.01", arg=[field.element_handle(), shown]
+        )
         page.wait_for_function(f"([cell, before]) => ({DRAWN})(cell) !== before", arg=[element, before])
         assert kernel.value("heard[-1][:2]") == [kind, name]
         # Keys move Python, and nothing else of the notebook.

@@ -12,13 +12,30 @@ from orientations import composed, random_dcms, random_unit_vectors
 
 import orientation
 from orientation import (
-    SymbolsNotPossible, angular_velocity_matrix, axis_angle_from_dcm, body_fixed_from_dcm, check_dcm,
-    dcm_from_axis_angle, dcm_from_body_fixed, dcm_from_quaternion, dcm_from_rotation_vector,
-    dcm_from_space_fixed, dcm_rate, gimbal_lock_margin, interpolate_quaternions, multiply_quaternions,
-    nearest_dcm, quaternion_from_axis_angle, quaternion_from_dcm, quaternion_rate, rotation_vector_from_dcm,
-    simple_dcm, space_fixed_from_dcm)
+    SymbolsNotPossible,
+    angular_velocity_matrix,
+    axis_angle_from_dcm,
+    body_fixed_from_dcm,
+    check_dcm,
+    dcm_from_axis_angle,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    dcm_from_rotation_vector,
+    dcm_from_space_fixed,
+    dcm_rate,
+    gimbal_lock_margin,
+    interpolate_quaternions,
+    multiply_quaternions,
+    nearest_dcm,
+    quaternion_from_axis_angle,
+    quaternion_from_dcm,
+    quaternion_rate,
+    rotation_vector_from_dcm,
+    simple_dcm,
+    space_fixed_from_dcm,
+)
 
-psi, theta, phi = SYMBOLS = sm.symbols('psi, theta, varphi')
+psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
 COUNT = 12
 source = np.random.default_rng(1)
 ANGLE, SHARE = source.uniform(-3, 3, COUNT), source.uniform(0, 1, COUNT)
@@ -28,46 +45,47 @@ DCMS = random_dcms(COUNT, 4)
 
 # Every conversion, with a batch of each of its arguments.
 CONVERSIONS = {
-    'simple_dcm': (lambda angle: simple_dcm('y', angle), ANGLE),
-    'dcm_from_body_fixed': (lambda angles: dcm_from_body_fixed(angles, 'zxy'), ANGLES),
-    'dcm_from_body_fixed proper': (lambda angles: dcm_from_body_fixed(angles, 'yxy'), ANGLES),
-    'dcm_from_space_fixed': (lambda angles: dcm_from_space_fixed(angles, 'zyx'), ANGLES),
-    'angular_velocity_matrix': (lambda angles: angular_velocity_matrix(angles, 'zxz'), ANGLES),
-    'dcm_from_axis_angle': (dcm_from_axis_angle, AXES, ANGLE),
-    'quaternion_from_axis_angle': (quaternion_from_axis_angle, AXES, ANGLE),
-    'dcm_from_rotation_vector': (dcm_from_rotation_vector, AXES),
-    'dcm_from_quaternion': (dcm_from_quaternion, QUATERNIONS),
-    'multiply_quaternions': (multiply_quaternions, QUATERNIONS, OTHERS),
-    'dcm_rate': (dcm_rate, DCMS, RATES),
-    'quaternion_rate': (quaternion_rate, QUATERNIONS, RATES),
+    "simple_dcm": (lambda angle: simple_dcm("y", angle), ANGLE),
+    "dcm_from_body_fixed": (lambda angles: dcm_from_body_fixed(angles, "zxy"), ANGLES),
+    "dcm_from_body_fixed proper": (lambda angles: dcm_from_body_fixed(angles, "yxy"), ANGLES),
+    "dcm_from_space_fixed": (lambda angles: dcm_from_space_fixed(angles, "zyx"), ANGLES),
+    "angular_velocity_matrix": (lambda angles: angular_velocity_matrix(angles, "zxz"), ANGLES),
+    "dcm_from_axis_angle": (dcm_from_axis_angle, AXES, ANGLE),
+    "quaternion_from_axis_angle": (quaternion_from_axis_angle, AXES, ANGLE),
+    "dcm_from_rotation_vector": (dcm_from_rotation_vector, AXES),
+    "dcm_from_quaternion": (dcm_from_quaternion, QUATERNIONS),
+    "multiply_quaternions": (multiply_quaternions, QUATERNIONS, OTHERS),
+    "dcm_rate": (dcm_rate, DCMS, RATES),
+    "quaternion_rate": (quaternion_rate, QUATERNIONS, RATES),
 }
 NUMBERS_ONLY = {
-    'body_fixed_from_dcm': (lambda dcm: body_fixed_from_dcm(dcm, 'zxy'), DCMS),
-    'body_fixed_from_dcm proper': (lambda dcm: body_fixed_from_dcm(dcm, 'xzx'), DCMS),
-    'space_fixed_from_dcm': (lambda dcm: space_fixed_from_dcm(dcm, 'yzx'), DCMS),
-    'gimbal_lock_margin': (lambda angles: gimbal_lock_margin(angles, 'zxy'), ANGLES),
-    'axis of axis_angle_from_dcm': (lambda dcm: axis_angle_from_dcm(dcm)[0], DCMS),
-    'angle of axis_angle_from_dcm': (lambda dcm: axis_angle_from_dcm(dcm)[1], DCMS),
-    'quaternion_from_dcm': (quaternion_from_dcm, DCMS),
-    'rotation_vector_from_dcm': (rotation_vector_from_dcm, DCMS),
-    'interpolate_quaternions': (interpolate_quaternions, QUATERNIONS, OTHERS, SHARE),
-    'nearest_dcm': (lambda dcm: nearest_dcm(dcm).dcm, DCMS),
-    'distance of nearest_dcm': (lambda matrix: nearest_dcm(matrix).distance, DCMS + 0.01),
+    "body_fixed_from_dcm": (lambda dcm: body_fixed_from_dcm(dcm, "zxy"), DCMS),
+    "body_fixed_from_dcm proper": (lambda dcm: body_fixed_from_dcm(dcm, "xzx"), DCMS),
+    "space_fixed_from_dcm": (lambda dcm: space_fixed_from_dcm(dcm, "yzx"), DCMS),
+    "gimbal_lock_margin": (lambda angles: gimbal_lock_margin(angles, "zxy"), ANGLES),
+    "axis of axis_angle_from_dcm": (lambda dcm: axis_angle_from_dcm(dcm)[0], DCMS),
+    "angle of axis_angle_from_dcm": (lambda dcm: axis_angle_from_dcm(dcm)[1], DCMS),
+    "quaternion_from_dcm": (quaternion_from_dcm, DCMS),
+    "rotation_vector_from_dcm": (rotation_vector_from_dcm, DCMS),
+    "interpolate_quaternions": (interpolate_quaternions, QUATERNIONS, OTHERS, SHARE),
+    "nearest_dcm": (lambda dcm: nearest_dcm(dcm).dcm, DCMS),
+    "distance of nearest_dcm": (lambda matrix: nearest_dcm(matrix).distance, DCMS + 0.01),
 }
 ALL = CONVERSIONS | NUMBERS_ONLY
-every = pytest.mark.parametrize('function, batches', [(f, b) for f, *b in ALL.values()], ids=ALL)
-symbolic = pytest.mark.parametrize('function, batches', [(f, b) for f, *b in CONVERSIONS.values()], ids=CONVERSIONS)
+every = pytest.mark.parametrize("function, batches", [(f, b) for f, *b in ALL.values()], ids=ALL)
+symbolic = pytest.mark.parametrize("function, batches", [(f, b) for f, *b in CONVERSIONS.values()], ids=CONVERSIONS)
 
 
 def test_no_conversion_is_forgotten():
     public = {name for name in orientation.__all__ if callable(getattr(orientation, name)) and name[0].islower()}
-    tested = {name.split(' ')[-1] if ' of ' in name else name.split(' ')[0] for name in ALL}
-    elsewhere = {'check_dcm', 'diagnose', 'same_orientation', 'dcm_from_scipy_rotation', 'scipy_rotation_from_dcm'}
-    drawing = {name for name in public if 'drawing' in getattr(orientation, name).__module__}
+    tested = {name.split(" ")[-1] if " of " in name else name.split(" ")[0] for name in ALL}
+    elsewhere = {"check_dcm", "diagnose", "same_orientation", "dcm_from_scipy_rotation", "scipy_rotation_from_dcm"}
+    drawing = {name for name in public if "drawing" in getattr(orientation, name).__module__}
     assert public - elsewhere - drawing == tested
 
 
 # --- batches -------------------------------------------------------------------------------------------------
+
 
 @every
 def test_a_batch_is_what_its_items_are(function, batches):
@@ -88,7 +106,7 @@ def test_batches_of_more_dimensions_and_of_none(function, batches):
         assert function(*(np.zeros(shape + batch.shape[1:]) for batch in batches)).shape == shape + flat.shape[1:]
 
 
-@pytest.mark.parametrize('count', [8191, 8192, 8193, 20000])
+@pytest.mark.parametrize("count", [8191, 8192, 8193, 20000])
 @every
 def test_large_batches_have_no_seams(function, batches, count):
     repeats = -(-count // COUNT)
@@ -96,7 +114,7 @@ def test_large_batches_have_no_seams(function, batches, count):
     assert (large == np.concatenate(repeats * [function(*batches)])[:count]).all()
 
 
-@pytest.mark.parametrize('function, batches', [(f, b) for f, *b in ALL.values() if len(b) > 1])
+@pytest.mark.parametrize("function, batches", [(f, b) for f, *b in ALL.values() if len(b) > 1])
 def test_arguments_are_broadcast(function, batches):
     for place in range(len(batches)):
         one = [batch[0] if k == place else batch for k, batch in enumerate(batches)]
@@ -106,7 +124,7 @@ def test_arguments_are_broadcast(function, batches):
     grid = function(first[:, None], *(batch[None, :5] for batch in rest))
     assert grid.shape[:2] == (COUNT, 5)
     np.testing.assert_allclose(grid[3, 2], function(first[3], *(batch[2] for batch in rest)), atol=2e-15)
-    with pytest.raises(ValueError, match=r'the batches do not fit each other: .* \(12.* and .* \(11'):
+    with pytest.raises(ValueError, match=r"the batches do not fit each other: .* \(12.* and .* \(11"):
         function(first, *(batch[:11] for batch in rest))
 
 
@@ -128,8 +146,11 @@ def test_nothing_is_changed_and_nothing_is_shared(function, batches):
 @every
 def test_memory_order_does_not_matter(function, batches):
     expected = function(*batches)
-    for form in (np.asfortranarray, lambda batch: np.repeat(batch, 2, axis=0)[::2],
-                 lambda batch: np.flip(np.ascontiguousarray(np.flip(batch)))):
+    for form in (
+        np.asfortranarray,
+        lambda batch: np.repeat(batch, 2, axis=0)[::2],
+        lambda batch: np.flip(np.ascontiguousarray(np.flip(batch))),
+    ):
         assert (function(*map(form, batches)) == expected).all()
 
 
@@ -139,46 +160,52 @@ def test_lists_tuples_and_objects(function, batches):
         return tuple(map(nested_tuple, value)) if isinstance(value, list) else value
 
     expected, single = function(*batches), function(*(batch[0] for batch in batches))
-    for form in (np.ndarray.tolist, lambda batch: nested_tuple(batch.tolist()), lambda batch: batch.astype(object),
-                 lambda batch: batch.astype(np.longdouble)):
+    for form in (
+        np.ndarray.tolist,
+        lambda batch: nested_tuple(batch.tolist()),
+        lambda batch: batch.astype(object),
+        lambda batch: batch.astype(np.longdouble),
+    ):
         assert (function(*map(form, batches)) == expected).all()
         assert np.all(function(*(form(batch[0]) if batch[0].ndim else batch[0] for batch in batches)) == single)
 
 
 # --- kinds of numbers -------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize('kind', [int, np.int8, np.uint8, np.int64, np.float16, np.float32, np.longdouble, Fraction])
+
+@pytest.mark.parametrize("kind", [int, np.int8, np.uint8, np.int64, np.float16, np.float32, np.longdouble, Fraction])
 def test_kinds_of_numbers(kind):
     angles = [kind(1), kind(2), kind(3)]
-    expected = dcm_from_body_fixed((1.0, 2.0, 3.0), 'zxy')
+    expected = dcm_from_body_fixed((1.0, 2.0, 3.0), "zxy")
     for form in (angles, tuple(angles), np.array(angles), [angles, angles]):
-        result = dcm_from_body_fixed(form, 'zxy')
+        result = dcm_from_body_fixed(form, "zxy")
         assert result.dtype == float and (result == expected).all()
-    assert (simple_dcm('x', kind(3)) == simple_dcm('x', 3.0)).all()
+    assert (simple_dcm("x", kind(3)) == simple_dcm("x", 3.0)).all()
     assert (dcm_from_axis_angle((kind(0), kind(2), kind(1)), kind(1)) == dcm_from_axis_angle((0, 2, 1), 1)).all()
     assert (quaternion_from_dcm(np.array([[kind(1), 0, 0], [0, kind(1), 0], [0, 0, kind(1)]])) == (1, 0, 0, 0)).all()
 
 
 def test_numbers_of_any_size():
-    np.testing.assert_allclose(simple_dcm('z', 10**30), simple_dcm('z', 1e30))
-    assert (simple_dcm('z', [10**30, 1]) == simple_dcm('z', [1e30, 1])).all()
-    check_dcm(dcm_from_body_fixed((1e15, -1e18, 1e22), 'zxz'))
+    np.testing.assert_allclose(simple_dcm("z", 10**30), simple_dcm("z", 1e30))
+    assert (simple_dcm("z", [10**30, 1]) == simple_dcm("z", [1e30, 1])).all()
+    check_dcm(dcm_from_body_fixed((1e15, -1e18, 1e22), "zxz"))
 
 
 def test_missing_samples_are_not_passed_over():
     masked = np.ma.masked_array(ANGLES, np.zeros_like(ANGLES, dtype=bool))
-    assert (dcm_from_body_fixed(masked, 'zxy') == dcm_from_body_fixed(ANGLES, 'zxy')).all()
+    assert (dcm_from_body_fixed(masked, "zxy") == dcm_from_body_fixed(ANGLES, "zxy")).all()
     masked[3, 1] = np.ma.masked
-    with pytest.raises(ValueError, match=r'angles\[3, 1\] is nan: a number is missing'):
-        dcm_from_body_fixed(masked, 'zxy')
+    with pytest.raises(ValueError, match=r"angles\[3, 1\] is nan: a number is missing"):
+        dcm_from_body_fixed(masked, "zxy")
 
 
 # --- symbols ------------------------------------------------------------------------------------------------------
 
+
 @symbolic
 def test_symbols_give_the_numbers_that_numbers_give(function, batches):
     points = [batch[0] for batch in batches]
-    names = iter(sm.symbols('s:30', real=True))
+    names = iter(sm.symbols("s:30", real=True))
     held, values = [], {}
     for point in points:
         symbols = [next(names) for _ in range(point.size)]
@@ -201,39 +228,55 @@ def test_exact_numbers_stay_exact(function, batches):
 
 
 def test_every_way_to_hold_symbols():
-    expected = composed(SYMBOLS, 'zxy')
-    for form in (SYMBOLS, list(SYMBOLS), sm.Matrix(SYMBOLS), sm.Matrix(SYMBOLS).T, sm.ImmutableMatrix(SYMBOLS),
-                 np.array(SYMBOLS), sm.Array(SYMBOLS), sm.Tuple(*SYMBOLS),
-                 np.array([SYMBOLS]).T):
-        assert (dcm_from_body_fixed(form, 'zxy') - expected).expand() == sm.zeros(3)
-        assert (dcm_from_space_fixed(form, 'zxy') - composed(SYMBOLS[::-1], 'yxz')).expand() == sm.zeros(3)
-    for form in (expected, expected.as_immutable(), expected.tolist(), np.array(expected), sm.Array(expected),
-                 [expected[0, :], list(expected[1, :]), tuple(expected[2, :])], [expected[k, :].T for k in range(3)]):
+    expected = composed(SYMBOLS, "zxy")
+    for form in (
+        SYMBOLS,
+        list(SYMBOLS),
+        sm.Matrix(SYMBOLS),
+        sm.Matrix(SYMBOLS).T,
+        sm.ImmutableMatrix(SYMBOLS),
+        np.array(SYMBOLS),
+        sm.Array(SYMBOLS),
+        sm.Tuple(*SYMBOLS),
+        np.array([SYMBOLS]).T,
+    ):
+        assert (dcm_from_body_fixed(form, "zxy") - expected).expand() == sm.zeros(3)
+        assert (dcm_from_space_fixed(form, "zxy") - composed(SYMBOLS[::-1], "yxz")).expand() == sm.zeros(3)
+    for form in (
+        expected,
+        expected.as_immutable(),
+        expected.tolist(),
+        np.array(expected),
+        sm.Array(expected),
+        [expected[0, :], list(expected[1, :]), tuple(expected[2, :])],
+        [expected[k, :].T for k in range(3)],
+    ):
         check_dcm(form)
 
 
 def test_functions_of_time():
-    angles = me.dynamicsymbols('psi, theta, varphi')
-    assert (dcm_from_body_fixed(angles, 'zxy') - composed(angles, 'zxy')).expand() == sm.zeros(3)
+    angles = me.dynamicsymbols("psi, theta, varphi")
+    assert (dcm_from_body_fixed(angles, "zxy") - composed(angles, "zxy")).expand() == sm.zeros(3)
 
 
 def test_symbols_among_numbers():
-    expected = composed((psi, 0.5, 2), 'zxy')
+    expected = composed((psi, 0.5, 2), "zxy")
     for form in ((psi, 0.5, 2), (psi, np.float64(0.5), np.int64(2)), np.array((psi, 0.5, 2)), [psi, sm.Float(0.5), 2]):
-        difference = np.array((dcm_from_body_fixed(form, 'zxy') - expected).subs(psi, 0.3), dtype=float)
+        difference = np.array((dcm_from_body_fixed(form, "zxy") - expected).subs(psi, 0.3), dtype=float)
         assert abs(difference).max() < 1e-15
-    assert dcm_from_axis_angle(np.array((0, 0, 1)), theta) == simple_dcm('z', theta)
+    assert dcm_from_axis_angle(np.array((0, 0, 1)), theta) == simple_dcm("z", theta)
 
 
-@pytest.mark.parametrize('function, batches', [(f, b) for f, *b in NUMBERS_ONLY.values()], ids=NUMBERS_ONLY)
+@pytest.mark.parametrize("function, batches", [(f, b) for f, *b in NUMBERS_ONLY.values()], ids=NUMBERS_ONLY)
 def test_what_needs_numbers_says_so(function, batches):
-    symbols = sm.symbols('s:9')
+    symbols = sm.symbols("s:9")
     first = {(3,): list(symbols[:3]), (4,): list(symbols[:4]), (3, 3): sm.Matrix(3, 3, symbols)}[batches[0].shape[1:]]
-    with pytest.raises(SymbolsNotPossible, match='holds .*s0.*, and this conversion needs numbers.*subs'):
+    with pytest.raises(SymbolsNotPossible, match="holds .*s0.*, and this conversion needs numbers.*subs"):
         function(first, *(batch[0] for batch in batches[1:]))
 
 
 # --- bad input ------------------------------------------------------------------------------------------------------
+
 
 @every
 def test_missing_numbers_are_found(function, batches):
@@ -241,9 +284,9 @@ def test_missing_numbers_are_found(function, batches):
         for bad in (np.nan, np.inf, -np.inf):
             spoilt = [batch.copy() for batch in batches]
             spoilt[place].reshape(COUNT, -1)[7, -1] = bad
-            with pytest.raises(ValueError, match=r'\[7.*\] is (nan|inf|-inf): a number is missing or a division'):
+            with pytest.raises(ValueError, match=r"\[7.*\] is (nan|inf|-inf): a number is missing or a division"):
                 function(*spoilt)
-            with pytest.raises(ValueError, match=r'is (nan|inf|-inf): a number is missing or a division'):
+            with pytest.raises(ValueError, match=r"is (nan|inf|-inf): a number is missing or a division"):
                 function(*(batch[7] for batch in spoilt))
 
 
@@ -255,14 +298,14 @@ def test_wrong_shapes_are_told(function, batches):
             continue
         for wrong in (np.zeros(item[:-1] + (2,)), np.zeros((5, 5)), 1.0, np.float64(1), np.array(1.0), [], [[]]):
             bad = [wrong if k == place else batch[0] for k, batch in enumerate(batches)]
-            with pytest.raises(ValueError, match=rf'has shape \(.*\), where \({item[0]}.*\) or \(\.\.\., '):
+            with pytest.raises(ValueError, match=rf"has shape \(.*\), where \({item[0]}.*\) or \(\.\.\., "):
                 function(*bad)
 
 
 @every
 def test_what_is_no_number_is_told(function, batches):
-    for wrong in ('abc', None, True, 1j, [1, [2, 3]], {'angle': 1}, ['a', 'b', 'c'], [None, 1, 2], object()):
-        with pytest.raises(TypeError, match='must hold real numbers or SymPy expressions in a regular shape, not'):
+    for wrong in ("abc", None, True, 1j, [1, [2, 3]], {"angle": 1}, ["a", "b", "c"], [None, 1, 2], object()):
+        with pytest.raises(TypeError, match="must hold real numbers or SymPy expressions in a regular shape, not"):
             function(wrong, *(batch[0] for batch in batches[1:]))
 
 
@@ -271,141 +314,163 @@ def test_what_is_no_expression_is_told(function, batches):
     item = batches[0].shape[1:]
     count = int(np.prod(item, dtype=int))
     rest = [batch[0] for batch in batches[1:]]
-    for wrong in ('theta', None, True, sm.true):
+    for wrong in ("theta", None, True, sm.true):
         entries = [psi] * (count - 1) + [wrong]
         if item:
-            with pytest.raises(TypeError, match='holds .* neither a number nor a SymPy expression'):
+            with pytest.raises(TypeError, match="holds .* neither a number nor a SymPy expression"):
                 function(entries if len(item) == 1 else [entries[:3], entries[3:6], entries[6:]], *rest)
     for wrong in (sm.nan, sm.oo, -sm.oo, sm.zoo, psi + sm.oo):
         entries = [psi] * (count - 1) + [wrong]
-        with pytest.raises(ValueError, match='a division by zero happened before'):
+        with pytest.raises(ValueError, match="a division by zero happened before"):
             function(wrong if item == () else entries if len(item) == 1 else sm.Matrix(3, 3, entries), *rest)
     for wrong in ([psi, psi], sm.Matrix([psi, psi]), [[psi], [psi]]):
-        with pytest.raises(ValueError, match='has shape .*, where .* expected .*one item at a time'):
+        with pytest.raises(ValueError, match="has shape .*, where .* expected .*one item at a time"):
             function(wrong, *rest)
-    with pytest.raises(TypeError, match='is the vector N.x: give its components along one frame'):
-        function(me.ReferenceFrame('N').x, *rest)
+    with pytest.raises(TypeError, match="is the vector N.x: give its components along one frame"):
+        function(me.ReferenceFrame("N").x, *rest)
 
 
-@pytest.mark.parametrize('call', [
-    lambda sequence: dcm_from_body_fixed((1, 2, 3), sequence),
-    lambda sequence: dcm_from_body_fixed(SYMBOLS, sequence),
-    lambda sequence: dcm_from_space_fixed((1, 2, 3), sequence),
-    lambda sequence: body_fixed_from_dcm(np.eye(3), sequence),
-    lambda sequence: space_fixed_from_dcm(np.eye(3), sequence),
-    lambda sequence: gimbal_lock_margin((1, 2, 3), sequence),
-    lambda sequence: angular_velocity_matrix((1, 2, 3), sequence)])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda sequence: dcm_from_body_fixed((1, 2, 3), sequence),
+        lambda sequence: dcm_from_body_fixed(SYMBOLS, sequence),
+        lambda sequence: dcm_from_space_fixed((1, 2, 3), sequence),
+        lambda sequence: body_fixed_from_dcm(np.eye(3), sequence),
+        lambda sequence: space_fixed_from_dcm(np.eye(3), sequence),
+        lambda sequence: gimbal_lock_margin((1, 2, 3), sequence),
+        lambda sequence: angular_velocity_matrix((1, 2, 3), sequence),
+    ],
+)
 def test_sequences_that_are_none(call):
-    for sequence in ('zzx', 'xyy', 'xxx'):
+    for sequence in ("zzx", "xyy", "xxx"):
         with pytest.raises(ValueError, match=f"'{sequence}' is not a sequence .*: two turns in a row about one axis"):
             call(sequence)
-    for sequence in ('ZXY', 'Zxz'):
+    for sequence in ("ZXY", "Zxz"):
         with pytest.raises(ValueError, match=f"'{sequence}' is not .*: write '{sequence.lower()}': .*body fixed"):
             call(sequence)
-    for sequence in ('zx', '', 'zxyz', 'abc', '313', 313, None, ('z', 'x', 'y'), ['z', 'x', 'y']):
-        with pytest.raises(ValueError, match='is not a sequence of Euler angles: the twelve are zxz, '):
+    for sequence in ("zx", "", "zxyz", "abc", "313", 313, None, ("z", "x", "y"), ["z", "x", "y"]):
+        with pytest.raises(ValueError, match="is not a sequence of Euler angles: the twelve are zxz, "):
             call(sequence)
 
 
-@pytest.mark.parametrize('axis', ['X', 'w', '', 'xy', '-y', 3, None, (0, 0, 1), np.eye(3)[2], me.ReferenceFrame('N').z])
+@pytest.mark.parametrize("axis", ["X", "w", "", "xy", "-y", 3, None, (0, 0, 1), np.eye(3)[2], me.ReferenceFrame("N").z])
 def test_axes_that_are_none(axis):
     with pytest.raises(ValueError, match="axis is .*, where 'x', 'y' or 'z' was expected; .*dcm_from_axis_angle"):
         simple_dcm(axis, 0.1)
 
 
-@pytest.mark.parametrize('function', [dcm_from_axis_angle, quaternion_from_axis_angle])
-@pytest.mark.parametrize('angle', [0.5, theta, np.zeros(2)])
+@pytest.mark.parametrize("function", [dcm_from_axis_angle, quaternion_from_axis_angle])
+@pytest.mark.parametrize("angle", [0.5, theta, np.zeros(2)])
 def test_axes_without_a_direction(function, angle):
-    for axis, said in (((0, 0, 0), 'a zero vector points nowhere'), ((0.0, -0.0, 0), 'a zero vector points nowhere'),
-                       ((1e-200, 0, 0), 'too short'), ((0, 1e200, 0), 'too long')):
-        with pytest.raises(ValueError, match=rf'axis.* is \(.*\): {said}'):
+    for axis, said in (
+        ((0, 0, 0), "a zero vector points nowhere"),
+        ((0.0, -0.0, 0), "a zero vector points nowhere"),
+        ((1e-200, 0, 0), "too short"),
+        ((0, 1e200, 0), "too long"),
+    ):
+        with pytest.raises(ValueError, match=rf"axis.* is \(.*\): {said}"):
             function(axis, angle)
     if angle is not theta:
-        with pytest.raises(ValueError, match=r'axis \(item \[1\]\) is \(0\.0, 0\.0, 0\.0\): a zero vector'):
+        with pytest.raises(ValueError, match=r"axis \(item \[1\]\) is \(0\.0, 0\.0, 0\.0\): a zero vector"):
             function([(1, 0, 0), (0, 0, 0)], angle)
 
 
-@pytest.mark.parametrize('function', [
-    lambda dcm: body_fixed_from_dcm(dcm, 'zxy'), lambda dcm: space_fixed_from_dcm(dcm, 'zxz'), quaternion_from_dcm,
-    axis_angle_from_dcm, rotation_vector_from_dcm, check_dcm, orientation.scipy_rotation_from_dcm])
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda dcm: body_fixed_from_dcm(dcm, "zxy"),
+        lambda dcm: space_fixed_from_dcm(dcm, "zxz"),
+        quaternion_from_dcm,
+        axis_angle_from_dcm,
+        rotation_vector_from_dcm,
+        check_dcm,
+        orientation.scipy_rotation_from_dcm,
+    ],
+)
 def test_matrices_that_are_no_orientation(function):
-    dcm = composed((0.3, 0.4, 0.5), 'zxy')
+    dcm = composed((0.3, 0.4, 0.5), "zxy")
     swapped, typo = dcm[[1, 0, 2]], dcm.copy()
     typo[1, 2] = 2
-    for bad, said in ((swapped, 'is orthogonal but left-handed: its determinant is -1, not .1. One row or column'),
-                      (-dcm, 'is orthogonal but left-handed'),
-                      (dcm.round(4), r'is not orthogonal: row.* Were its entries rounded or measured\? nearest_dcm'),
-                      (2 * dcm, 'is not orthogonal: row . has length 2, not 1. The whole matrix is 2 times an'),
-                      (typo, r'is not orthogonal: row y has length 2\..*An entry or a sign is wrong'),
-                      (np.zeros((3, 3)), 'is not orthogonal: row x has length 0, not 1. Every entry is zero'),
-                      (np.full((3, 3), 1e200), 'is not orthogonal: row x has length inf')):
-        with pytest.raises(ValueError, match='dcm ' + said):
+    for bad, said in (
+        (swapped, "is orthogonal but left-handed: its determinant is -1, not .1. One row or column"),
+        (-dcm, "is orthogonal but left-handed"),
+        (dcm.round(4), r"is not orthogonal: row.* Were its entries rounded or measured\? nearest_dcm"),
+        (2 * dcm, "is not orthogonal: row . has length 2, not 1. The whole matrix is 2 times an"),
+        (typo, r"is not orthogonal: row y has length 2\..*An entry or a sign is wrong"),
+        (np.zeros((3, 3)), "is not orthogonal: row x has length 0, not 1. Every entry is zero"),
+        (np.full((3, 3), 1e200), "is not orthogonal: row x has length inf"),
+    ):
+        with pytest.raises(ValueError, match="dcm " + said):
             function(bad)
-        with pytest.raises(ValueError, match=r'dcm \(item \[9000\]\) ' + said):
+        with pytest.raises(ValueError, match=r"dcm \(item \[9000\]\) " + said):
             function(np.concatenate([np.stack(9000 * [dcm]), [bad]]))
-        with pytest.raises(ValueError, match=r'dcm \(item \[1, 2\]\) ' + said):
+        with pytest.raises(ValueError, match=r"dcm \(item \[1, 2\]\) " + said):
             function(np.stack([*5 * [dcm], bad]).reshape(2, 3, 3, 3))
 
 
 def test_single_precision_is_rounding_and_is_told_as_such():
-    with pytest.raises(ValueError, match='Were its entries rounded or measured'):
-        check_dcm(composed((0.3, 0.4, 0.5), 'zxy').astype(np.float32))
-    check_dcm(nearest_dcm(composed((0.3, 0.4, 0.5), 'zxy').astype(np.float32)).dcm)
+    with pytest.raises(ValueError, match="Were its entries rounded or measured"):
+        check_dcm(composed((0.3, 0.4, 0.5), "zxy").astype(np.float32))
+    check_dcm(nearest_dcm(composed((0.3, 0.4, 0.5), "zxy").astype(np.float32)).dcm)
 
 
 def test_symbolic_matrices_that_are_no_orientation():
-    with pytest.raises(ValueError, match='dcm at random values of its symbols is not orthogonal'):
-        check_dcm(composed(SYMBOLS, 'zxy') + sm.eye(3))
-    with pytest.raises(ValueError, match='dcm at random values of its symbols is orthogonal but left-handed'):
-        check_dcm(-composed(SYMBOLS, 'zxy'))
-    with pytest.raises(ValueError, match='is not real: an entry has an imaginary part of 1'):
-        check_dcm(composed(SYMBOLS, 'zxy') + sm.I * sm.ones(3))
-    with pytest.raises(ValueError, match='is not real: an entry has an imaginary part of 1'):
+    with pytest.raises(ValueError, match="dcm at random values of its symbols is not orthogonal"):
+        check_dcm(composed(SYMBOLS, "zxy") + sm.eye(3))
+    with pytest.raises(ValueError, match="dcm at random values of its symbols is orthogonal but left-handed"):
+        check_dcm(-composed(SYMBOLS, "zxy"))
+    with pytest.raises(ValueError, match="is not real: an entry has an imaginary part of 1"):
+        check_dcm(composed(SYMBOLS, "zxy") + sm.I * sm.ones(3))
+    with pytest.raises(ValueError, match="is not real: an entry has an imaginary part of 1"):
         check_dcm(sm.eye(3) - sm.I * sm.ones(3))
-    with pytest.raises(ValueError, match='^dcm is not orthogonal: row x has length 2'):
+    with pytest.raises(ValueError, match="^dcm is not orthogonal: row x has length 2"):
         check_dcm(2 * sm.eye(3))
 
 
 def test_components_in_separate_arrays_are_not_guessed_at():
-    with pytest.raises(ValueError, match='a sequence of 3 arrays, which can be read in two ways.*axis=-1'):
-        dcm_from_body_fixed(tuple(ANGLES.T), 'zxy')
-    with pytest.raises(ValueError, match='a sequence of 4 arrays'):
+    with pytest.raises(ValueError, match="a sequence of 3 arrays, which can be read in two ways.*axis=-1"):
+        dcm_from_body_fixed(tuple(ANGLES.T), "zxy")
+    with pytest.raises(ValueError, match="a sequence of 4 arrays"):
         dcm_from_quaternion(list(QUATERNIONS.T))
-    assert dcm_from_body_fixed(list(ANGLES), 'zxy').shape == (COUNT, 3, 3)
+    assert dcm_from_body_fixed(list(ANGLES), "zxy").shape == (COUNT, 3, 3)
 
 
 def test_degrees_are_not_guessed_at():
-    check_dcm(dcm_from_body_fixed((90, 45, 30), 'zxy'))
-    np.testing.assert_allclose(simple_dcm('z', 90)[0, 0], np.cos(90.0))
+    check_dcm(dcm_from_body_fixed((90, 45, 30), "zxy"))
+    np.testing.assert_allclose(simple_dcm("z", 90)[0, 0], np.cos(90.0))
 
 
 # --- what the package loads -------------------------------------------------------------------------------------------
 
+
 def python(code):
-    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
 def test_import_loads_almost_nothing():
     loaded = python('import sys, orientation; print(*sorted({name.split(".")[0] for name in sys.modules}))').split()
-    assert not {'numpy', 'scipy', 'sympy', 'mpmath', 'matplotlib', 'ipywidgets', 'anywidget', 'IPython'} & set(loaded)
+    assert not {"numpy", "scipy", "sympy", "mpmath", "matplotlib", "ipywidgets", "anywidget", "IPython"} & set(loaded)
 
 
 def test_numbers_load_no_sympy():
-    loaded = python('import sys, orientation as o\n'
-                    'dcm = o.dcm_from_body_fixed((1, 2, 3), "zxy")\n'
-                    'o.body_fixed_from_dcm(dcm, "zxy"), o.axis_angle_from_dcm(dcm), o.quaternion_from_dcm([dcm, dcm])\n'
-                    'o.same_orientation(dcm, dcm), o.diagnose(dcm.T, dcm, (1, 2, 3), "zxy"), o.nearest_dcm(dcm)\n'
-                    'frames = o.Frames().orient_body_fixed("D", "A", (1, 2, 3), "zxy").orient_axis("E", "D", "x", 1)\n'
-                    'frames.dcm("A", "E"), frames.equation("A", "E")\n'
-                    'print(*sys.modules)').split()
-    assert 'numpy' in loaded and not {'sympy', 'matplotlib', 'scipy'} & set(loaded)
+    loaded = python(
+        "import sys, orientation as o\n"
+        'dcm = o.dcm_from_body_fixed((1, 2, 3), "zxy")\n'
+        'o.body_fixed_from_dcm(dcm, "zxy"), o.axis_angle_from_dcm(dcm), o.quaternion_from_dcm([dcm, dcm])\n'
+        'o.same_orientation(dcm, dcm), o.diagnose(dcm.T, dcm, (1, 2, 3), "zxy"), o.nearest_dcm(dcm)\n'
+        'frames = o.Frames().orient_body_fixed("D", "A", (1, 2, 3), "zxy").orient_axis("E", "D", "x", 1)\n'
+        'frames.dcm("A", "E"), frames.equation("A", "E")\n'
+        "print(*sys.modules)"
+    ).split()
+    assert "numpy" in loaded and not {"sympy", "matplotlib", "scipy"} & set(loaded)
 
 
 def test_symbols_work_without_numpy():
     """In the browser there may be none."""
-    said = python('''
+    said = python("""
 import sys
 
 class Blocked:
@@ -439,9 +504,10 @@ try:
 except ValueError as error:
     print(error)
 assert 'numpy' not in sys.modules
-''')
-    assert [line.split(':')[-1].strip() for line in said.splitlines()] == [
-        'it is the transpose, the orientation the other way round.',
-        'the matrices are multiplied in the other order, which is space fixed.',
-        'the scalar part stands last; in this book it stands first.',
-        'a second path could contradict the first. To change an orientation, build the frames anew']
+""")
+    assert [line.split(":")[-1].strip() for line in said.splitlines()] == [
+        "it is the transpose, the orientation the other way round.",
+        "the matrices are multiplied in the other order, which is space fixed.",
+        "the scalar part stands last; in this book it stands first.",
+        "a second path could contradict the first. To change an orientation, build the frames anew",
+    ]

@@ -122,7 +122,8 @@ class Interface:
         """Put the cursor into the code of a cell."""
         self.page.evaluate(
             "async place => { const { content } = jupyterapp.shell.currentWidget;"
-            " content.activeCellIndex = place; await content.scrollToItem(place); }", place
+            " content.activeCellIndex = place; await content.scrollToItem(place); }",
+            place,
         )
         cell = self.page.locator(".jp-Notebook .jp-Cell.jp-mod-active")
         # The code that draws a figure is folded away.
@@ -234,5 +235,8 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
     (output,) = interface.run(interface.number("import matplotlib"))
     assert output["output_type"] == "error"
     assert {url.split("/")[2] for url in interface.outside()} == {"cdn.jsdelivr.net"}
-    assert interface.run(interface.number("sm.trigsimp(D_C_A.subs(theta, -sm.pi/2))"))[0]["output_type"] == "execute_result"
+    assert (
+        interface.run(interface.number("sm.trigsimp(D_C_A.subs(theta, -sm.pi/2))"))[0]["output_type"]
+        == "execute_result"
+    )
     context.close()

@@ -339,7 +339,10 @@ def test_edit_and_run(shared):
     assert "42" in shared.try_code(3, "print(6 * 7)")
     assert "cell 3 ran. Result: 42" in shared.words().replace("Cell", "cell")
     assert shared.try_code(3, "a = 1; a;").strip() == ""
-    assert shared.try_code(3, "a, b = 'é', '数'\nprint(a + b)\nnäme = '\\N{GREEK SMALL LETTER PSI}'\nnäme").split() == ["é数", "'ψ'"]
+    assert shared.try_code(3, "a, b = 'é', '数'\nprint(a + b)\nnäme = '\\N{GREEK SMALL LETTER PSI}'\nnäme").split() == [
+        "é数",
+        "'ψ'",
+    ]
     assert "made anew" in shared.try_code(3, "a = 'made anew'\na")
     assert "made anew" in shared.try_code(5, "a")
 
@@ -395,7 +398,9 @@ def test_sleep(shared):
 
 
 def test_forms_of_values(shared):
-    shared.try_code(3, "class Reply:\n    def _repr_html_(self):\n        return '<p class=\"reply\">Right.</p>'\nReply()")
+    shared.try_code(
+        3, "class Reply:\n    def _repr_html_(self):\n        return '<p class=\"reply\">Right.</p>'\nReply()"
+    )
     assert shared.cell(3).locator("p.reply").inner_text() == "Right."
     shared.try_code(3, "import sympy as sm\nx = sm.Symbol('x')\ndisplay(x**2)\ndisplay(x/3, 'text')")
     assert shared.cell(3).locator(".katex").count() == 2

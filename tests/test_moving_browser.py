@@ -63,7 +63,9 @@ def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
         asleep = open_figure(kind, viewport=viewport, java_script_enabled=True)
         box = asleep.locator(".sheet").first.bounding_box()
         after = asleep.locator("#after").bounding_box()
-        asleep.evaluate("() => { document.querySelector('.live').remove(); delete document.querySelector('.moving').dataset.ready; }")
+        asleep.evaluate(
+            "() => { document.querySelector('.live').remove(); delete document.querySelector('.moving').dataset.ready; }"
+        )
         still = asleep.locator(".still svg").first.bounding_box()
         assert [still[side] for side in ("x", "y", "width", "height")] == pytest.approx(
             [box[side] for side in ("x", "y", "width", "height")], abs=1
@@ -395,7 +397,9 @@ def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(op
     page = open_figure(kind)
     counts = page.evaluate(MOVES, {"pictures": 5, "moves": 10})
     # A run that still grows has asked for the next picture by itself.
-    assert {count["asked"] for count in counts} <= ({0, 1} if kind == "motion" else {1}), "several pictures for one frame"
+    assert {count["asked"] for count in counts} <= ({0, 1} if kind == "motion" else {1}), (
+        "several pictures for one frame"
+    )
     assert 0 < max(count["written"] for count in counts) < MOST_WRITTEN
     assert np.median([count["made"] for count in counts]) == 0, "elements are made anew"
 

@@ -144,8 +144,11 @@ def test_half_a_turn_has_no_shorter_way():
     assert "not defined" in figure.drawing().alt
 
 
-@pytest.mark.parametrize("figure", [SuccessiveFigure(**FOUR_TURNS) for FOUR_TURNS in CHAINS] + [
-    QuaternionFigure(), QuaternionFigure(angle=11.0), *(QuaternionFigure(view="way", **ends) for ends in ENDS)])
+@pytest.mark.parametrize(
+    "figure",
+    [SuccessiveFigure(**FOUR_TURNS) for FOUR_TURNS in CHAINS]
+    + [QuaternionFigure(), QuaternionFigure(angle=11.0), *(QuaternionFigure(view="way", **ends) for ends in ENDS)],
+)
 def test_still_has_the_state_and_stands_for_the_figure(figure):
     soup = BeautifulSoup(figure.still(), "html.parser")
     assert json.loads(soup.figure["data-state"]) == json.loads(json.dumps(figure.state()))
@@ -169,6 +172,7 @@ def test_still_keeps_within_its_sheet():
 
 
 # In the browser.
+
 
 def matrix(page, name="Direction cosine matrix of the end"):
     return numbers(page, name)
@@ -199,7 +203,8 @@ def test_chain_shows_the_numbers_of_the_module(open_figure, chain):
     shown = page.eval_on_selector_all(
         ".factor:not([hidden])",
         "all => all.sort((a, b) => a.style.order - b.style.order)"
-        ".map(f => [...f.querySelectorAll('.small-matrix span')].map(s => s.textContent.replace('\u2212', '-')))")
+        ".map(f => [...f.querySelectorAll('.small-matrix span')].map(s => s.textContent.replace('\u2212', '-')))",
+    )
     product = np.linalg.multi_dot([np.eye(3), *(np.reshape([float(e) for e in one], (3, 3)) for one in shown)])
     assert len(shown) == len(figure.turns)
     assert np.abs(product - figure.dcm).max() < 0.03
@@ -347,8 +352,12 @@ def test_quaternion_by_touch(open_figure):
     assert page.locator(".sheet:visible").count() == 1 and numbers(page, "The three ways").shape == (3, 2)
 
 
-EVERY = [SuccessiveFigure, lambda: SuccessiveFigure(turns=FOUR, compare="1 and 2 exchanged", share=0.4),
-         QuaternionFigure, lambda: QuaternionFigure(view="way")]
+EVERY = [
+    SuccessiveFigure,
+    lambda: SuccessiveFigure(turns=FOUR, compare="1 and 2 exchanged", share=0.4),
+    QuaternionFigure,
+    lambda: QuaternionFigure(view="way"),
+]
 
 
 @pytest.mark.parametrize("make", EVERY)
@@ -371,13 +380,19 @@ STEADY = """() => {
 
 
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
-@pytest.mark.parametrize("figure, start, end", [
-    (SuccessiveFigure(), 0, 6), (QuaternionFigure(view="way", share=0.0), 0, 4), (MotionFigure(time=17, method="Runge-Kutta"), 17, 20)])
+@pytest.mark.parametrize(
+    "figure, start, end",
+    [
+        (SuccessiveFigure(), 0, 6),
+        (QuaternionFigure(view="way", share=0.0), 0, 4),
+        (MotionFigure(time=17, method="Runge-Kutta"), 17, 20),
+    ],
+)
 def test_play_reaches_the_end(open_figure, figure, start, end, motion):
     page = open_figure(figure, reduced_motion=motion)
     page.evaluate(STEADY)
     page.locator(".player:visible button", has_text="Play").click()
-    page.locator(".player:visible button", has_text="Play").wait_for()   # the click has made it Pause
+    page.locator(".player:visible button", has_text="Play").wait_for()  # the click has made it Pause
     settle(page)
     times = sorted({float(value) for value in page.evaluate("window.seen")})
     assert times[0] == start and times[-1] == end
@@ -402,7 +417,9 @@ EARLY = """() => {
 
 
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
-@pytest.mark.parametrize("figure", [SuccessiveFigure(share=0.0), QuaternionFigure(view="way", share=0.0), MotionFigure(time=0.0)])
+@pytest.mark.parametrize(
+    "figure", [SuccessiveFigure(share=0.0), QuaternionFigure(view="way", share=0.0), MotionFigure(time=0.0)]
+)
 def test_play_begins_with_a_picture_that_was_due_before(open_figure, figure, motion):
     page = open_figure(figure, reduced_motion=motion)
     page.evaluate(EARLY)

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation, Slerp
 import orientation as module
 from orientation_figures.moving import bundle
 
-LARGEST = 1e-12   # radians
+LARGEST = 1e-12  # radians
 NODE = Path(sys.executable).with_name("node")
 OFFSETS = (0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3)
 COORDINATE_HALF_TURNS = [np.diag(signs) for signs in ((1, -1, -1), (-1, 1, -1), (-1, -1, 1), (1, 1, 1))]
@@ -86,7 +86,9 @@ def test_euler_angles(in_browser_language, sequence, fixed):
 def test_angles_are_those_of_the_module_at_exact_lock(in_browser_language):
     for sequence in module.SEQUENCES:
         angles = np.array([module.body_fixed_from_dcm(dcm, sequence) for dcm in COORDINATE_HALF_TURNS])
-        assert np.allclose(in_browser_language("bodyFixedFromDcm", COORDINATE_HALF_TURNS, [sequence] * 4), angles, rtol=0, atol=1e-15)
+        assert np.allclose(
+            in_browser_language("bodyFixedFromDcm", COORDINATE_HALF_TURNS, [sequence] * 4), angles, rtol=0, atol=1e-15
+        )
         margins = in_browser_language("gimbalLockMargin", angles, [sequence] * 4)
         assert np.allclose(margins, module.gimbal_lock_margin(angles, sequence), rtol=0, atol=1e-15)
 
@@ -103,7 +105,7 @@ def test_axis_and_angle(in_browser_language):
 
 def test_quaternions(in_browser_language):
     found = np.array(in_browser_language("quaternionFromDcm", DCMS))
-    assert np.abs(found - module.quaternion_from_dcm(DCMS)).max() < LARGEST   # sign included
+    assert np.abs(found - module.quaternion_from_dcm(DCMS)).max() < LARGEST  # sign included
     assert rotation_error(in_browser_language("dcmFromQuaternion", found), DCMS) < LARGEST
     others = random_unit_vectors(len(found), 9, size=4)
     product = in_browser_language("multiplyQuaternions", found, others)
@@ -114,7 +116,7 @@ def test_quaternions(in_browser_language):
 
 def test_slerp_is_that_of_the_module_and_of_scipy(in_browser_language):
     first, second = random_unit_vectors(300, 5, size=4), random_unit_vectors(300, 6, size=4)
-    second *= np.sign(np.sum(first * second, axis=1))[:, None]   # SciPy goes the short way
+    second *= np.sign(np.sum(first * second, axis=1))[:, None]  # SciPy goes the short way
     second[:3] = first[:3]
     second[3] = (first[3] + 1e-10 * second[3]) / np.linalg.norm(first[3] + 1e-10 * second[3])
     parts = np.linspace(0, 1, 300)
@@ -129,11 +131,17 @@ def test_slerp_is_that_of_the_module_and_of_scipy(in_browser_language):
 def test_simple_matrices_and_products(in_browser_language):
     angles = np.linspace(-7, 7, 99)
     for axis in "xyz":
-        assert np.abs(in_browser_language("simpleDcm", [axis] * 99, angles) - module.simple_dcm(axis, angles)).max() < 1e-15
+        assert (
+            np.abs(in_browser_language("simpleDcm", [axis] * 99, angles) - module.simple_dcm(axis, angles)).max()
+            < 1e-15
+        )
     product = in_browser_language("multiply", DCMS[:500], DCMS[500:1000])
     assert np.abs(product - DCMS[:500] @ DCMS[500:1000]).max() < 1e-15
     vectors = random_unit_vectors(500, 2)
-    assert np.abs(in_browser_language("times", DCMS[:500], vectors) - np.einsum("nij,nj->ni", DCMS[:500], vectors)).max() < 1e-15
+    assert (
+        np.abs(in_browser_language("times", DCMS[:500], vectors) - np.einsum("nij,nj->ni", DCMS[:500], vectors)).max()
+        < 1e-15
+    )
     assert np.abs(np.array(in_browser_language("determinant", DCMS)) - 1).max() < LARGEST
 
 
@@ -147,7 +155,7 @@ def test_nearest_matrix(in_browser_language):
     matrices = measured(3000)
     scales = np.linalg.svd(matrices, compute_uv=False)
     gap = scales[:, 1] + np.sign(np.linalg.det(matrices)) * scales[:, 2]
-    matrices = matrices[gap > 0.05 * scales[:, 0]]   # close to several equally near ones no method is exact
+    matrices = matrices[gap > 0.05 * scales[:, 0]]  # close to several equally near ones no method is exact
     assert len(matrices) > 2500 and (np.linalg.det(matrices) < 0).any()
     expected = module.nearest_dcm(matrices)
     found = in_browser_language("nearestDcm", matrices)
@@ -155,7 +163,13 @@ def test_nearest_matrix(in_browser_language):
     assert np.abs(np.array([one["distance"] for one in found]) - expected.distance).max() < LARGEST
 
 
-SEVERAL_NEAREST = [np.diag((1, 1, -1)), np.zeros((3, 3)), np.diag((2, 0, 0)), np.outer((1, 2, 3), (0.1, -0.4, 2)), -np.eye(3)]
+SEVERAL_NEAREST = [
+    np.diag((1, 1, -1)),
+    np.zeros((3, 3)),
+    np.diag((2, 0, 0)),
+    np.outer((1, 2, 3), (0.1, -0.4, 2)),
+    -np.eye(3),
+]
 
 
 @pytest.mark.parametrize("matrix", SEVERAL_NEAREST)
@@ -180,7 +194,11 @@ def test_faults_are_told_in_the_words_of_check_dcm(in_browser_language):
         *(valid + 3e-10 * np.eye(3)), *(valid + 1e-7), *(valid[:, [1, 0, 2]]), np.zeros((3, 3)), 1e-5 * np.eye(3), 3e7 * np.eye(3),
     ]  # fmt: skip
     expected = [words_of_the_module(matrix) for matrix in matrices]
-    assert {message.split(":")[0] for message in expected} == {"", "dcm is not orthogonal", "dcm is orthogonal but left-handed"}
+    assert {message.split(":")[0] for message in expected} == {
+        "",
+        "dcm is not orthogonal",
+        "dcm is orthogonal but left-handed",
+    }
     assert in_browser_language("checkDcm", matrices) == expected
 
 

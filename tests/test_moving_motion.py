@@ -332,7 +332,9 @@ def curves(page):
 
 
 def table(page):
-    return page.eval_on_selector_all(".runs tbody tr", "(rows) => rows.map((row) => row.innerText.trim().split(/\\s*\\t\\s*/))")
+    return page.eval_on_selector_all(
+        ".runs tbody tr", "(rows) => rows.map((row) => row.innerText.trim().split(/\\s*\\t\\s*/))"
+    )
 
 
 def test_it_opens_on_what_the_still_shows(open_figure):
@@ -435,9 +437,13 @@ def test_moments_that_no_body_has_are_refused_and_not_drawn(open_figure):
     assert (curves(page), drawing(page)) == before
 
 
-@pytest.mark.parametrize("moments, texts", [
-    ((5, 3, 7), ["middle moment", "smallest moment", "largest moment"]),
-    ((5, 5, 7), ["equal to another", "equal to another", "largest moment"])])
+@pytest.mark.parametrize(
+    "moments, texts",
+    [
+        ((5, 3, 7), ["middle moment", "smallest moment", "largest moment"]),
+        ((5, 5, 7), ["equal to another", "equal to another", "largest moment"]),
+    ],
+)
 def test_the_axes_are_told_apart_by_their_moments(open_figure, moments, texts):
     page = open_figure(MotionFigure(moments=moments, axis="x"))
     options = page.get_by_label("Spin about", exact=True).locator("option").all_text_contents()
@@ -457,7 +463,10 @@ def test_keyboard_alone(open_figure):
         )
     expected = ["Play", "Time", "Time in seconds", "Reset", "Matrix", "Restore after every step", "Method", "Step"]
     expected += ["Step in milliseconds", "Disturbance", "Disturbance in radians per second", "a racket", "a book"]
-    expected += ["Spin about", *(f"Moment of inertia about {axis}{unit}" for axis in "xyz" for unit in ("", " in gram square metres"))]
+    expected += [
+        "Spin about",
+        *(f"Moment of inertia about {axis}{unit}" for axis in "xyz" for unit in ("", " in gram square metres")),
+    ]
     found = [name for name in names if name in expected]
     assert found[: len(expected)] == expected
     page.get_by_label("Time", exact=True).and_(page.locator("input")).focus()

@@ -17,7 +17,15 @@ from traitlets import TraitError
 
 import orientation as module
 from orientation_figures import moving
-from orientation_figures.moving import GimbalFigure, MotionFigure, NineNumbersFigure, SuccessiveFigure, TriadFigure, bundle, glyphs
+from orientation_figures.moving import (
+    GimbalFigure,
+    MotionFigure,
+    NineNumbersFigure,
+    SuccessiveFigure,
+    TriadFigure,
+    bundle,
+    glyphs,
+)
 from orientation_figures.moving.stills.quaternion import TOPS
 from website.moving import WIDGET
 from website.notebooks import normalise

@@ -11,38 +11,47 @@ import pytest
 
 from coursework.authoring import release
 
-nbgrader_utils = pytest.importorskip('nbgrader.utils')
+nbgrader_utils = pytest.importorskip("nbgrader.utils")
 
-ASSIGNMENT = 'simple-orientations'
+ASSIGNMENT = "simple-orientations"
 
 
 def test_the_checksums_are_nbgraders():
-    for path in release.EXERCISES.glob('*.ipynb'):
+    for path in release.EXERCISES.glob("*.ipynb"):
         for cell in nbformat.read(path, as_version=4).cells:
-            about = cell.metadata.get('nbgrader')
+            about = cell.metadata.get("nbgrader")
             if about:
-                assert about['checksum'] == nbgrader_utils.compute_checksum(cell)
+                assert about["checksum"] == nbgrader_utils.compute_checksum(cell)
 
 
 def test_the_metadata_is_of_schema_3():
     from nbgrader.nbgraderformat.v3 import MetadataValidatorV3
-    for path in release.EXERCISES.glob('*.ipynb'):
+
+    for path in release.EXERCISES.glob("*.ipynb"):
         notebook = nbformat.read(path, as_version=4)
         for cell in notebook.cells:
-            if 'nbgrader' in cell.metadata:
+            if "nbgrader" in cell.metadata:
                 MetadataValidatorV3().validate_cell(cell)
-        points = [cell.metadata.nbgrader.points for cell in notebook.cells
-                  if cell.metadata.get('nbgrader', {}).get('grade')]
+        points = [
+            cell.metadata.nbgrader.points for cell in notebook.cells if cell.metadata.get("nbgrader", {}).get("grade")
+        ]
         assert len(points) >= 4 and all(points)
 
 
 def run(*command, folder):
     # nbgrader calls a tool of its own by name, so the folder of the tools is on the path.
-    path = f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}'
-    environment = {**os.environ, 'PATH': path, 'JUPYTER_CONFIG_DIR': str(folder), 'JUPYTER_DATA_DIR': str(folder / 'data'),
-                   'IPYTHONDIR': str(folder / 'ipython'), 'HOME': str(folder)}
-    done = subprocess.run([sys.executable, '-m', 'nbgrader', *command], cwd=folder, env=environment,
-                          capture_output=True, text=True)
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {
+        **os.environ,
+        "PATH": path,
+        "JUPYTER_CONFIG_DIR": str(folder),
+        "JUPYTER_DATA_DIR": str(folder / "data"),
+        "IPYTHONDIR": str(folder / "ipython"),
+        "HOME": str(folder),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "nbgrader", *command], cwd=folder, env=environment, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout + done.stderr
 
@@ -50,27 +59,28 @@ def run(*command, folder):
 def test_nbgrader_grades_a_submission_by_our_checks(tmp_path):
     """One question right, one wrong, the rest untouched: the points are those of the right one."""
     from nbgrader.api import Gradebook
-    source = release.read_source(release.SOURCES / f'{ASSIGNMENT}.ipynb')
+
+    source = release.read_source(release.SOURCES / f"{ASSIGNMENT}.ipynb")
     names = list(source.questions)
     answers = {cell.source for cell in source.notebook.cells}
-    notebook = nbformat.read(release.EXERCISES / f'{ASSIGNMENT}.ipynb', as_version=4)
+    notebook = nbformat.read(release.EXERCISES / f"{ASSIGNMENT}.ipynb", as_version=4)
     right, wrong = (source.questions[name].variable for name in names[:2])
     for cell in notebook.cells:
-        if cell.source.startswith(f'{right} = ...'):
-            solved = next(text for text in answers if 'BEGIN SOLUTION' in text and f'{right} =' in text)
+        if cell.source.startswith(f"{right} = ..."):
+            solved = next(text for text in answers if "BEGIN SOLUTION" in text and f"{right} =" in text)
             cell.source = solved
-        elif cell.source.startswith(f'{wrong} = ...'):
-            cell.source = f'{wrong} = sm.eye(3)'
-    for folder, content in (('source', None), ('submitted/someone', notebook)):
+        elif cell.source.startswith(f"{wrong} = ..."):
+            cell.source = f"{wrong} = sm.eye(3)"
+    for folder, content in (("source", None), ("submitted/someone", notebook)):
         place = tmp_path / folder / ASSIGNMENT
         place.mkdir(parents=True)
-        shutil.copy(release.EXERCISES / f'{ASSIGNMENT}.ipynb', place)
+        shutil.copy(release.EXERCISES / f"{ASSIGNMENT}.ipynb", place)
         if content:
-            nbformat.write(content, place / f'{ASSIGNMENT}.ipynb')
-    (tmp_path / 'nbgrader_config.py').write_text("c = get_config()\nc.CourseDirectory.course_id = 'trial'\n")
-    run('generate_assignment', ASSIGNMENT, '--force', folder=tmp_path)
-    run('autograde', ASSIGNMENT, '--force', folder=tmp_path)
-    with Gradebook(f'sqlite:///{tmp_path}/gradebook.db') as book:
-        submission = book.find_submission(ASSIGNMENT, 'someone')
+            nbformat.write(content, place / f"{ASSIGNMENT}.ipynb")
+    (tmp_path / "nbgrader_config.py").write_text("c = get_config()\nc.CourseDirectory.course_id = 'trial'\n")
+    run("generate_assignment", ASSIGNMENT, "--force", folder=tmp_path)
+    run("autograde", ASSIGNMENT, "--force", folder=tmp_path)
+    with Gradebook(f"sqlite:///{tmp_path}/gradebook.db") as book:
+        submission = book.find_submission(ASSIGNMENT, "someone")
         assert submission.score == source.questions[names[0]].worth
         assert submission.max_score == sum(question.worth for question in source.questions.values())

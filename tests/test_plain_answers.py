@@ -13,38 +13,85 @@ import sympy.physics.mechanics as me
 from coursework.checking.evaluate import FUNCTIONS, MP, Undefined, number, real, values
 from coursework.checking.plain import NotPlain, read_plain, to_plain
 
-x, y = sm.symbols('x y')
-POINT = {'x': MP.mpf('0.37'), 'y': MP.mpf('-0.81'), "x'": MP.mpf('2.5')}
+x, y = sm.symbols("x y")
+POINT = {"x": MP.mpf("0.37"), "y": MP.mpf("-0.81"), "x'": MP.mpf("2.5")}
 
 
 def value_of(expression, point=POINT):
     plain = read_plain(json.loads(json.dumps(to_plain(expression))))
-    assert plain['value'][0] == 'expression'
-    return number(values(plain['nodes'], point)[plain['value'][1]])
+    assert plain["value"][0] == "expression"
+    return number(values(plain["nodes"], point)[plain["value"][1]])
 
 
 EXPRESSIONS = [
-    x + y, x * y / 3, x**y, x**-2, sm.sqrt(x), sm.exp(x * y), sm.exp(sm.I * x), sm.log(x), sm.log(x, 10), sm.sin(x),
-    sm.cos(x), sm.tan(x), sm.cot(x), sm.sec(x), sm.csc(x), sm.sinc(x), sm.asin(y), sm.acos(y), sm.atan(y), sm.acot(y),
-    sm.asec(3 + x), sm.acsc(3 + x), sm.atan2(y, x), sm.atan2(-y, -x), sm.sinh(x), sm.cosh(x), sm.tanh(x), sm.coth(x),
-    sm.sech(x), sm.csch(x), sm.asinh(x), sm.acosh(2 + x), sm.atanh(x), sm.Abs(y), sm.sign(y), sm.re(x + sm.I * y),
-    sm.im(x + sm.I * y), sm.conjugate(x + sm.I * y), sm.arg(x + sm.I * y), sm.Min(x, y), sm.Max(x, y),
-    sm.floor(10 * y), sm.ceiling(10 * y), sm.Mod(7 * y, 2), sm.Heaviside(y), sm.Heaviside(x), sm.pi, sm.E,
-    sm.GoldenRatio, sm.Rational(22, 7), sm.Float('0.1', 30), sm.Piecewise((x, x > 1), (y, y < 0), (3, True)),
-    sm.Piecewise((1 / (x - x), x > 1), (y, True)), sm.UnevaluatedExpr(x + 1), sm.Add(x, -x, evaluate=False),
+    x + y,
+    x * y / 3,
+    x**y,
+    x**-2,
+    sm.sqrt(x),
+    sm.exp(x * y),
+    sm.exp(sm.I * x),
+    sm.log(x),
+    sm.log(x, 10),
+    sm.sin(x),
+    sm.cos(x),
+    sm.tan(x),
+    sm.cot(x),
+    sm.sec(x),
+    sm.csc(x),
+    sm.sinc(x),
+    sm.asin(y),
+    sm.acos(y),
+    sm.atan(y),
+    sm.acot(y),
+    sm.asec(3 + x),
+    sm.acsc(3 + x),
+    sm.atan2(y, x),
+    sm.atan2(-y, -x),
+    sm.sinh(x),
+    sm.cosh(x),
+    sm.tanh(x),
+    sm.coth(x),
+    sm.sech(x),
+    sm.csch(x),
+    sm.asinh(x),
+    sm.acosh(2 + x),
+    sm.atanh(x),
+    sm.Abs(y),
+    sm.sign(y),
+    sm.re(x + sm.I * y),
+    sm.im(x + sm.I * y),
+    sm.conjugate(x + sm.I * y),
+    sm.arg(x + sm.I * y),
+    sm.Min(x, y),
+    sm.Max(x, y),
+    sm.floor(10 * y),
+    sm.ceiling(10 * y),
+    sm.Mod(7 * y, 2),
+    sm.Heaviside(y),
+    sm.Heaviside(x),
+    sm.pi,
+    sm.E,
+    sm.GoldenRatio,
+    sm.Rational(22, 7),
+    sm.Float("0.1", 30),
+    sm.Piecewise((x, x > 1), (y, y < 0), (3, True)),
+    sm.Piecewise((1 / (x - x), x > 1), (y, True)),
+    sm.UnevaluatedExpr(x + 1),
+    sm.Add(x, -x, evaluate=False),
 ]
 
 
-@pytest.mark.parametrize('expression', EXPRESSIONS, ids=str)
+@pytest.mark.parametrize("expression", EXPRESSIONS, ids=str)
 def test_the_value_is_what_sympy_gives(expression):
     expected = sm.N(expression.subs({x: sm.Rational(37, 100), y: sm.Rational(-81, 100)}).doit(), 30)
     parts = [MP.mpf(str(sm.N(part, 30))) for part in expected.as_real_imag()]
-    assert abs(value_of(expression) - MP.mpc(*parts)) < MP.mpf(10)**-25
+    assert abs(value_of(expression) - MP.mpc(*parts)) < MP.mpf(10) ** -25
 
 
 def test_every_function_was_compared():
-    written = {node[0] for expression in EXPRESSIONS for node in to_plain(expression)['nodes']}
-    assert set(FUNCTIONS) - written - {'Add', 'Mul'} == set()
+    written = {node[0] for expression in EXPRESSIONS for node in to_plain(expression)["nodes"]}
+    assert set(FUNCTIONS) - written - {"Add", "Mul"} == set()
 
 
 def test_plain_numbers_and_numpy_numbers():
@@ -55,69 +102,69 @@ def test_plain_numbers_and_numpy_numbers():
 
 
 def test_functions_of_time_go_by_their_name():
-    theta = me.dynamicsymbols('x')
-    assert value_of(theta) == POINT['x']
-    assert to_plain([[1, theta]])['value'][0] == 'list'
-    assert value_of(theta + 1) == POINT['x'] + 1
+    theta = me.dynamicsymbols("x")
+    assert value_of(theta) == POINT["x"]
+    assert to_plain([[1, theta]])["value"][0] == "list"
+    assert value_of(theta + 1) == POINT["x"] + 1
     assert value_of(theta.diff()) == POINT["x'"]
 
 
 def test_assumptions_do_not_matter():
-    assert to_plain(sm.Symbol('x', positive=True) + 1) == to_plain(x + 1)
+    assert to_plain(sm.Symbol("x", positive=True) + 1) == to_plain(x + 1)
 
 
-@pytest.mark.parametrize('blank', [..., None, NotImplemented])
+@pytest.mark.parametrize("blank", [..., None, NotImplemented])
 def test_blanks(blank):
-    assert to_plain(blank)['value'] == ['blank']
+    assert to_plain(blank)["value"] == ["blank"]
 
 
 def test_shapes():
     matrix = sm.Matrix([[1, x], [y, 2]])
-    assert to_plain(matrix)['value'][:3] == ['matrix', 2, 2]
+    assert to_plain(matrix)["value"][:3] == ["matrix", 2, 2]
     assert to_plain(sm.ImmutableMatrix(matrix)) == to_plain(matrix)
-    assert to_plain(sm.MatMul(sm.ImmutableMatrix(matrix), sm.Identity(2)))['value'][:3] == ['matrix', 2, 2]
-    assert to_plain(np.eye(3))['value'][0] == 'list'
-    assert to_plain([[1, 2], [3, 4]])['value'][0] == 'list'
-    assert to_plain(sm.Quaternion(1, x, 0, y))['value'][0] == 'list'
-    assert to_plain('zxz')['value'] == ['text', 'zxz']
-    assert to_plain(True)['value'] == to_plain(sm.true)['value'] == ['truth', True]
+    assert to_plain(sm.MatMul(sm.ImmutableMatrix(matrix), sm.Identity(2)))["value"][:3] == ["matrix", 2, 2]
+    assert to_plain(np.eye(3))["value"][0] == "list"
+    assert to_plain([[1, 2], [3, 4]])["value"][0] == "list"
+    assert to_plain(sm.Quaternion(1, x, 0, y))["value"][0] == "list"
+    assert to_plain("zxz")["value"] == ["text", "zxz"]
+    assert to_plain(True)["value"] == to_plain(sm.true)["value"] == ["truth", True]
 
 
 def test_frames_and_vectors_are_written_with_respect_to_every_frame():
-    N, A, B = map(me.ReferenceFrame, 'NAB')
+    N, A, B = map(me.ReferenceFrame, "NAB")
     A.orient_axis(N, x, N.z)
     B.orient_axis(A, y, A.x)
-    kind, name, others = to_plain(B)['value']
-    assert (kind, name, set(others)) == ('frame', 'B', {'N', 'A', 'B'})
-    assert set(to_plain(2 * N.x + A.y)['value'][1]) == {'N', 'A', 'B'}
+    kind, name, others = to_plain(B)["value"]
+    assert (kind, name, set(others)) == ("frame", "B", {"N", "A", "B"})
+    assert set(to_plain(2 * N.x + A.y)["value"][1]) == {"N", "A", "B"}
 
 
 def test_a_shared_part_is_written_once():
     expression = x
     for _ in range(60):
         expression = sm.sin(expression) * sm.cos(expression, evaluate=False)
-    assert len(to_plain(expression)['nodes']) < 200
+    assert len(to_plain(expression)["nodes"]) < 200
 
 
 def test_calls_of_a_function_keep_its_errors():
-    value = to_plain(lambda a: 1 / a, [[2], [0]])['value']
-    assert value[1][0][0] == 'expression'
-    assert value[1][1] == ['raised', 'ZeroDivisionError: division by zero']
+    value = to_plain(lambda a: 1 / a, [[2], [0]])["value"]
+    assert value[1][0][0] == "expression"
+    assert value[1][1] == ["raised", "ZeroDivisionError: division by zero"]
 
 
 BLOWN_UP = {
-    'a long integer': lambda: 10**(10**6),
-    'many entries': lambda: np.zeros((300, 300)),
-    'a big matrix': lambda: sm.zeros(100, 100),
-    'many nodes': lambda: sm.Add(*sm.symbols('s:70000'), evaluate=False),
-    'a long text': lambda: 'a' * 10_000,
-    'a deep list': lambda: [[[[[[[[1]]]]]]]],
-    'an object': lambda: object(),
-    'a Boolean function': lambda: sm.Symbol('p') & sm.Symbol('q'),
+    "a long integer": lambda: 10 ** (10**6),
+    "many entries": lambda: np.zeros((300, 300)),
+    "a big matrix": lambda: sm.zeros(100, 100),
+    "many nodes": lambda: sm.Add(*sm.symbols("s:70000"), evaluate=False),
+    "a long text": lambda: "a" * 10_000,
+    "a deep list": lambda: [[[[[[[[1]]]]]]]],
+    "an object": lambda: object(),
+    "a Boolean function": lambda: sm.Symbol("p") & sm.Symbol("q"),
 }
 
 
-@pytest.mark.parametrize('make', BLOWN_UP.values(), ids=BLOWN_UP)
+@pytest.mark.parametrize("make", BLOWN_UP.values(), ids=BLOWN_UP)
 def test_what_no_question_asks_for_is_refused(make):
     with pytest.raises(NotPlain) as refused:
         to_plain(make())
@@ -127,41 +174,74 @@ def test_what_no_question_asks_for_is_refused(make):
 TOWER = sm.Pow(10, sm.Pow(10, 10, evaluate=False), evaluate=False)
 
 
-@pytest.mark.parametrize('expression', [TOWER, sm.Pow(TOWER, TOWER, evaluate=False), sm.exp(sm.exp(sm.exp(100 * x))),
-                                        sm.Pow(x, -TOWER, evaluate=False), sm.sin(10**40 * x), sm.cosh(1000 * x),
-                                        sm.Integer(10)**300 * x, sm.Integral(sm.sin(x**x), (x, 0, 1)), sm.gamma(x)],
-                         ids=range(9))
+@pytest.mark.parametrize(
+    "expression",
+    [
+        TOWER,
+        sm.Pow(TOWER, TOWER, evaluate=False),
+        sm.exp(sm.exp(sm.exp(100 * x))),
+        sm.Pow(x, -TOWER, evaluate=False),
+        sm.sin(10**40 * x),
+        sm.cosh(1000 * x),
+        sm.Integer(10) ** 300 * x,
+        sm.Integral(sm.sin(x**x), (x, 0, 1)),
+        sm.gamma(x),
+    ],
+    ids=range(9),
+)
 def test_values_beyond_bounds_are_refused(expression):
     plain = to_plain(expression)
-    assert isinstance(values(plain['nodes'], POINT)[plain['value'][1]], Exception)
+    assert isinstance(values(plain["nodes"], POINT)[plain["value"][1]], Exception)
 
 
 def test_division_by_zero_is_undefined():
     plain = to_plain(sm.Pow(sm.Add(x, -x, evaluate=False), -1, evaluate=False))
     with pytest.raises(Undefined):
-        number(values(plain['nodes'], POINT)[-1])
+        number(values(plain["nodes"], POINT)[-1])
 
 
 def test_an_imaginary_part_that_cancels_is_rounding():
     cosine = (sm.exp(sm.I * x) + sm.exp(-sm.I * x)) / 2
     plain = to_plain(cosine)
-    assert abs(real(values(plain['nodes'], POINT)[-1]) - MP.cos(POINT['x'])) < MP.mpf(10)**-30
+    assert abs(real(values(plain["nodes"], POINT)[-1]) - MP.cos(POINT["x"])) < MP.mpf(10) ** -30
 
 
 DAMAGED = [
-    [], {}, {'value': ['blank']}, {'value': ['blank'], 'nodes': [], 'more': 1}, {'value': ['expression', 0], 'nodes': []},
-    {'value': ['expression', -1], 'nodes': [['integer', '1']]}, {'value': ['expression', True], 'nodes': [['integer', '1']] * 2},
-    {'value': ['expression', 0], 'nodes': [['Add', 0]]}, {'value': ['expression', 0], 'nodes': [['integer', '__import__']]},
-    {'value': ['expression', 0], 'nodes': [['integer', '9' * 5000]]}, {'value': ['expression', 0], 'nodes': [['rational', '1', '0']]},
-    {'value': ['matrix', 2, 2, [0]], 'nodes': [['integer', '1']]}, {'value': ['matrix', 10**9, 0, []], 'nodes': []},
-    {'value': ['text', 5], 'nodes': []}, {'value': ['text', 'a' * 5000], 'nodes': []}, {'value': ['code', 'x'], 'nodes': []},
-    {'value': ['list', [['list', [['list', [['list', [['list', [['list', [['list', [['list', [['list', [['list', []]]]]]]]]]]]]]]]]]]], 'nodes': []},
-    {'value': ['frame', 'A', {'B': 3}], 'nodes': []}, {'value': ['expression', 0], 'nodes': [['__class__.x', 1]]},
-    {'value': ['expression', 0], 'nodes': [['float', '1' * 500]]},
+    [],
+    {},
+    {"value": ["blank"]},
+    {"value": ["blank"], "nodes": [], "more": 1},
+    {"value": ["expression", 0], "nodes": []},
+    {"value": ["expression", -1], "nodes": [["integer", "1"]]},
+    {"value": ["expression", True], "nodes": [["integer", "1"]] * 2},
+    {"value": ["expression", 0], "nodes": [["Add", 0]]},
+    {"value": ["expression", 0], "nodes": [["integer", "__import__"]]},
+    {"value": ["expression", 0], "nodes": [["integer", "9" * 5000]]},
+    {"value": ["expression", 0], "nodes": [["rational", "1", "0"]]},
+    {"value": ["matrix", 2, 2, [0]], "nodes": [["integer", "1"]]},
+    {"value": ["matrix", 10**9, 0, []], "nodes": []},
+    {"value": ["text", 5], "nodes": []},
+    {"value": ["text", "a" * 5000], "nodes": []},
+    {"value": ["code", "x"], "nodes": []},
+    {
+        "value": [
+            "list",
+            [
+                [
+                    "list",
+                    [["list", [["list", [["list", [["list", [["list", [["list", [["list", [["list", []]]]]]]]]]]]]]]]],
+                ]
+            ],
+        ],
+        "nodes": [],
+    },
+    {"value": ["frame", "A", {"B": 3}], "nodes": []},
+    {"value": ["expression", 0], "nodes": [["__class__.x", 1]]},
+    {"value": ["expression", 0], "nodes": [["float", "1" * 500]]},
 ]
 
 
-@pytest.mark.parametrize('data', DAMAGED, ids=range(len(DAMAGED)))
+@pytest.mark.parametrize("data", DAMAGED, ids=range(len(DAMAGED)))
 def test_damaged_data_is_refused(data):
     with pytest.raises(NotPlain):
         read_plain(data)
@@ -169,19 +249,41 @@ def test_damaged_data_is_refused(data):
 
 def test_random_data_is_refused_or_read_without_any_other_error():
     chance = random.Random(3)
-    pieces = [None, True, 1, -1, 2.5, 'x', 'integer', 'Add', [], {}, ['blank'], ['expression', 0], ['symbol', 'x'],
-              ['Piecewise', 0], ['ExprCondPair', 0, 1], ['And', 0], ['Not', 0], ['log', 0], ['Pow', 0, 0], ['Heaviside', 0]]
+    pieces = [
+        None,
+        True,
+        1,
+        -1,
+        2.5,
+        "x",
+        "integer",
+        "Add",
+        [],
+        {},
+        ["blank"],
+        ["expression", 0],
+        ["symbol", "x"],
+        ["Piecewise", 0],
+        ["ExprCondPair", 0, 1],
+        ["And", 0],
+        ["Not", 0],
+        ["log", 0],
+        ["Pow", 0, 0],
+        ["Heaviside", 0],
+    ]
     for _ in range(3000):
-        data = {'value': chance.choice(pieces), 'nodes': [chance.choice(pieces) for _ in range(chance.randint(0, 6))]}
+        data = {"value": chance.choice(pieces), "nodes": [chance.choice(pieces) for _ in range(chance.randint(0, 6))]}
         try:
             plain = read_plain(data)
         except NotPlain:
             continue
-        values(plain['nodes'], POINT)
+        values(plain["nodes"], POINT)
 
 
 def test_a_student_needs_no_numpy():
-    code = ("import sys; sys.modules['numpy'] = None\n"
-            "import sympy\nfrom coursework import check\nfrom coursework.checking.plain import to_plain\n"
-            "to_plain(sympy.eye(3) * sympy.Symbol('x'))")
-    subprocess.run([sys.executable, '-W', 'error', '-c', code], check=True)
+    code = (
+        "import sys; sys.modules['numpy'] = None\n"
+        "import sympy\nfrom coursework import check\nfrom coursework.checking.plain import to_plain\n"
+        "to_plain(sympy.eye(3) * sympy.Symbol('x'))"
+    )
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)

@@ -4,15 +4,19 @@ import numpy as np
 import pytest
 import sympy as sm
 import sympy.physics.mechanics as me
-from orientations import (
-    COORDINATE_AXES, random_dcms, random_unit_vectors, rotation_error, unit_vectors_after_turn)
+from orientations import COORDINATE_AXES, random_dcms, random_unit_vectors, rotation_error, unit_vectors_after_turn
 from scipy.spatial.transform import Rotation
 
 from orientation import (
-    SymbolsNotPossible, check_dcm, dcm_from_quaternion, multiply_quaternions, quaternion_from_axis_angle,
-    quaternion_from_dcm)
+    SymbolsNotPossible,
+    check_dcm,
+    dcm_from_quaternion,
+    multiply_quaternions,
+    quaternion_from_axis_angle,
+    quaternion_from_dcm,
+)
 
-SYMBOLS = sm.symbols('q_0, q_i, q_j, q_k')
+SYMBOLS = sm.symbols("q_0, q_i, q_j, q_k")
 ONE, I, J, K = np.eye(4)
 
 
@@ -23,8 +27,9 @@ def up_to_sign(quaternions, others):
 
 # --- to a matrix --------------------------------------------------------------------------------------
 
+
 def test_symbols_agree_with_reference_frames():
-    N, A = me.ReferenceFrame('N'), me.ReferenceFrame('A')
+    N, A = me.ReferenceFrame("N"), me.ReferenceFrame("A")
     A.orient_quaternion(N, SYMBOLS)
     assert dcm_from_quaternion(SYMBOLS) == A.dcm(N)
 
@@ -57,7 +62,7 @@ def test_what_is_taken_as_unit_makes_a_matrix_that_is_taken_as_valid():
                 dcm = dcm_from_quaternion(quaternion)
             except ValueError as error:
                 refused += 1
-                assert ' length 1,' not in str(error)
+                assert " length 1," not in str(error)
                 continue
             quaternion_from_dcm(dcm)
     assert 0 < refused < 41 * 50
@@ -73,8 +78,8 @@ def test_there_and_back():
     assert up_to_sign(quaternion_from_dcm(dcm_from_quaternion(quaternions)), quaternions) < 5e-15
 
 
-@pytest.mark.parametrize('place', range(4))
-@pytest.mark.parametrize('value', NEAR_ZERO)
+@pytest.mark.parametrize("place", range(4))
+@pytest.mark.parametrize("value", NEAR_ZERO)
 def test_there_and_back_with_any_component_near_zero(place, value):
     quaternions = random_unit_vectors(500, 6, size=4)
     quaternions[:, place] = value * np.where(np.arange(500) % 2, 1, -1)
@@ -82,7 +87,7 @@ def test_there_and_back_with_any_component_near_zero(place, value):
     assert up_to_sign(quaternion_from_dcm(dcm_from_quaternion(quaternions)), quaternions) < 5e-15
 
 
-@pytest.mark.parametrize('angle', [np.pi - 1e-3, np.pi - 1e-8, np.pi - 1e-15, np.pi, np.pi + 1e-8, 2 * np.pi, 0, 1e-12])
+@pytest.mark.parametrize("angle", [np.pi - 1e-3, np.pi - 1e-8, np.pi - 1e-15, np.pi, np.pi + 1e-8, 2 * np.pi, 0, 1e-12])
 def test_there_and_back_near_half_and_full_turns(angle):
     quaternions = quaternion_from_axis_angle(np.array([*COORDINATE_AXES, *random_unit_vectors(200, 7)]), angle)
     dcms = dcm_from_quaternion(quaternions)
@@ -108,6 +113,7 @@ def test_from_a_noisy_matrix():
 
 # --- the product ------------------------------------------------------------------------------------------
 
+
 def test_hamiltons_rules():
     for unit in (I, J, K):
         assert (multiply_quaternions(unit, unit) == -ONE).all()
@@ -119,15 +125,20 @@ def test_hamiltons_rules():
 
 
 def test_product_of_symbols_agrees_with_sympy():
-    others = sm.symbols('p_0, p_i, p_j, p_k')
+    others = sm.symbols("p_0, p_i, p_j, p_k")
     product = sm.Quaternion(*SYMBOLS) * sm.Quaternion(*others)
     assert (multiply_quaternions(SYMBOLS, others) - sm.Matrix(product.args)).expand() == sm.zeros(4, 1)
 
 
 def test_quaternions_stand_in_the_order_of_the_turns_and_matrices_in_the_other():
     first, second = random_unit_vectors(500, 11, size=4), random_unit_vectors(500, 12, size=4)
-    assert rotation_error(dcm_from_quaternion(multiply_quaternions(first, second)),
-                          dcm_from_quaternion(second) @ dcm_from_quaternion(first)) < 1e-14
+    assert (
+        rotation_error(
+            dcm_from_quaternion(multiply_quaternions(first, second)),
+            dcm_from_quaternion(second) @ dcm_from_quaternion(first),
+        )
+        < 1e-14
+    )
 
 
 def test_product_agrees_with_scipy():
@@ -142,25 +153,30 @@ def test_lengths_multiply_and_are_not_restored():
 
 # --- errors -------------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize('quaternion, said', [
-    ((0, 0, 0, 0), 'has length 0, not 1: the zero quaternion is no orientation'),
-    ((0.7071, 0.7071, 0, 0), 'has length 0.99999.*, not 1: were its components rounded'),
-    ((1, 1, 0, 0), r'has length 1\.41421.*, not 1: is the angle halved'),
-    (np.array([ONE, I, 2 * J]), r'quaternion \(item \[2\]\) has length 2, not 1'),
-    ((sm.Rational(1, 2), sm.Rational(1, 2), 0, 0), 'has length 0.7071'),
-])
+
+@pytest.mark.parametrize(
+    "quaternion, said",
+    [
+        ((0, 0, 0, 0), "has length 0, not 1: the zero quaternion is no orientation"),
+        ((0.7071, 0.7071, 0, 0), "has length 0.99999.*, not 1: were its components rounded"),
+        ((1, 1, 0, 0), r"has length 1\.41421.*, not 1: is the angle halved"),
+        (np.array([ONE, I, 2 * J]), r"quaternion \(item \[2\]\) has length 2, not 1"),
+        ((sm.Rational(1, 2), sm.Rational(1, 2), 0, 0), "has length 0.7071"),
+    ],
+)
 def test_a_quaternion_that_is_not_of_unit_length(quaternion, said):
     with pytest.raises(ValueError, match=said):
         dcm_from_quaternion(quaternion)
 
 
 def test_symbols_cannot_be_taken_back():
-    with pytest.raises(SymbolsNotPossible, match='dcm holds'):
+    with pytest.raises(SymbolsNotPossible, match="dcm holds"):
         quaternion_from_dcm(dcm_from_quaternion(SYMBOLS))
 
 
 def test_exact_numbers_stay_exact():
     dcm = dcm_from_quaternion((sm.Rational(3, 5), 0, 0, sm.Rational(4, 5)))
-    assert dcm == sm.Matrix([[sm.Rational(-7, 25), sm.Rational(24, 25), 0],
-                             [sm.Rational(-24, 25), sm.Rational(-7, 25), 0], [0, 0, 1]])
+    assert dcm == sm.Matrix(
+        [[sm.Rational(-7, 25), sm.Rational(24, 25), 0], [sm.Rational(-24, 25), sm.Rational(-7, 25), 0], [0, 0, 1]]
+    )
     check_dcm(dcm)

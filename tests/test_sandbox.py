@@ -26,11 +26,17 @@ def sandbox():
 
 
 def notebook(*cells, questions=None, **others):
-    cells = [{"source": cell} if isinstance(cell, str) else {"source": cell[1], "execution_count": cell[0]}
-             for cell in (IMPORT, *cells)]
-    return {"id": "n", "cells": cells, "questions": {
-        name: about if isinstance(about, dict) else {"variable": about}
-        for name, about in (questions or {}).items()}} | others
+    cells = [
+        {"source": cell} if isinstance(cell, str) else {"source": cell[1], "execution_count": cell[0]}
+        for cell in (IMPORT, *cells)
+    ]
+    return {
+        "id": "n",
+        "cells": cells,
+        "questions": {
+            name: about if isinstance(about, dict) else {"variable": about} for name, about in (questions or {}).items()
+        },
+    } | others
 
 
 def integer(number):
@@ -42,6 +48,7 @@ def outcomes(result):
 
 
 # ---- which answer is recorded
+
 
 def test_answers_are_recorded_where_they_are_checked(sandbox):
     result = sandbox.run(notebook("a = 3", "check('q', a); a = 4", questions={"q": "a"}))
@@ -57,8 +64,9 @@ def test_without_the_check_the_variable_counts(sandbox):
 
 
 def test_the_last_check_that_can_be_read_counts(sandbox):
-    result = sandbox.run(notebook(
-        "check('q', 1); check('q', 2); check('q', object())", "check('other', 1)", questions={"q": None}))
+    result = sandbox.run(
+        notebook("check('q', 1); check('q', 2); check('q', object())", "check('other', 1)", questions={"q": None})
+    )
     assert result["answers"]["q"]["plain"] == integer(2)
     assert result["unknown questions"] == ["other"]
 
@@ -70,51 +78,68 @@ def test_what_is_not_plain_data_is_named(sandbox):
 
 
 def test_a_check_tells_nothing_and_breaks_nothing(sandbox):
-    result = sandbox.run(notebook(
-        "r = check('q', 1)\nassert 'correct' not in repr(r).lower()", "import coursework\ncoursework.check('s', 2)",
-        "from coursework import check, hint, progress\nhint('q'); progress()\nassert check('q', 1).outcome is None",
-        "from coursework.grading import sandbox", questions={"q": None, "s": None}))
+    result = sandbox.run(
+        notebook(
+            "r = check('q', 1)\nassert 'correct' not in repr(r).lower()",
+            "import coursework\ncoursework.check('s', 2)",
+            "from coursework import check, hint, progress\nhint('q'); progress()\nassert check('q', 1).outcome is None",
+            "from coursework.grading import sandbox",
+            questions={"q": None, "s": None},
+        )
+    )
     assert outcomes(result) == ["done", "done", "done", "error"]
     assert result["answers"]["s"]["plain"] == integer(2)
 
 
 # ---- functions as answers
 
+
 def calls(*arguments, kind="lists"):
     return {"variable": "f", "calls": {"arguments": list(arguments), "as": kind}}
 
 
 def test_a_function_is_called_with_the_given_arguments(sandbox):
-    result = sandbox.run(notebook(
-        "def f(x): return x[0] + x[1]", "check('q', f)", questions={"q": calls([[1, 2]], [[3, 4]], [[]])}))
+    result = sandbox.run(
+        notebook("def f(x): return x[0] + x[1]", "check('q', f)", questions={"q": calls([[1, 2]], [[3, 4]], [[]])})
+    )
     plain = result["answers"]["q"]["plain"]
-    assert plain["value"] == ["function", [["expression", 0], ["expression", 1], [
-        "raised", "IndexError: list index out of range"]]]
+    assert plain["value"] == [
+        "function",
+        [["expression", 0], ["expression", 1], ["raised", "IndexError: list index out of range"]],
+    ]
     assert plain["nodes"] == [["integer", "3"], ["integer", "7"]]
 
 
 def test_a_function_is_given_arrays_where_the_job_says_so(sandbox):
-    result = sandbox.run(notebook("def f(x, n): return (x * n).sum() + x.ndim", questions={
-        "q": calls([[[1, 2], [3, 4]], 10], kind="arrays")}))
+    result = sandbox.run(
+        notebook(
+            "def f(x, n): return (x * n).sum() + x.ndim", questions={"q": calls([[[1, 2], [3, 4]], 10], kind="arrays")}
+        )
+    )
     assert result["answers"]["q"]["plain"]["nodes"] == [["integer", "102"]]
 
 
 def test_a_function_that_changes_its_arguments_meets_them_fresh(sandbox):
-    job = notebook("def f(x): x.append(1); return len(x)", "check('q', f); check('q', f)",
-                   questions={"q": calls([[]])})
+    job = notebook("def f(x): x.append(1); return len(x)", "check('q', f); check('q', f)", questions={"q": calls([[]])})
     assert sandbox.run(job)["answers"]["q"]["plain"]["nodes"] == [["integer", "1"]]
 
 
 def test_a_function_that_never_ends_costs_only_its_own_question(sandbox):
-    result = sandbox.run(notebook(
-        "def f(x):\n    while True: pass", "check('q', f); check('r', 5)", questions={"q": calls([1]), "r": None}))
+    result = sandbox.run(
+        notebook(
+            "def f(x):\n    while True: pass", "check('q', f); check('r', 5)", questions={"q": calls([1]), "r": None}
+        )
+    )
     assert result["answers"]["q"]["outcome"] == "unreadable" and "longer" in result["answers"]["q"]["why"]
     assert result["answers"]["r"]["plain"] == integer(5)
 
 
 def test_a_function_that_ends_the_process_costs_only_its_own_question(sandbox):
-    result = sandbox.run(notebook(
-        "import os\ndef f(x): os._exit(3)", "check('q', f); check('r', 5)", questions={"q": calls([1]), "r": None}))
+    result = sandbox.run(
+        notebook(
+            "import os\ndef f(x): os._exit(3)", "check('q', f); check('r', 5)", questions={"q": calls([1]), "r": None}
+        )
+    )
     assert result["answers"]["q"] == {"outcome": "exited", "error": "The process was left with code 3."}
     assert result["answers"]["r"]["plain"] == integer(5)
     assert outcomes(result) == ["done", "done"] and result["runs"] == 2
@@ -122,21 +147,43 @@ def test_a_function_that_ends_the_process_costs_only_its_own_question(sandbox):
 
 # ---- one cell's end is not the others'
 
+
 def test_errors_are_named_with_their_line(sandbox):
-    result = sandbox.run(notebook(
-        "x = 1\ny = nothing", "if", "raise SystemExit", "def f():\n    return 1 / 0\n\nf()", "open('none')",
-        "object() + 1", "check('q', 1)", questions={"q": None}))
+    result = sandbox.run(
+        notebook(
+            "x = 1\ny = nothing",
+            "if",
+            "raise SystemExit",
+            "def f():\n    return 1 / 0\n\nf()",
+            "open('none')",
+            "object() + 1",
+            "check('q', 1)",
+            questions={"q": None},
+        )
+    )
     errors = [(cell.get("error", "")[:40], cell.get("line")) for cell in result["cells"][1:]]
     assert errors[:4] == [
-        ("NameError: name 'nothing' is not defined"[:40], 2), ("SyntaxError: invalid syntax (<cell 2>, l", 1),
-        ("SystemExit", 1), ("ZeroDivisionError: division by zero", 2)]
+        ("NameError: name 'nothing' is not defined"[:40], 2),
+        ("SyntaxError: invalid syntax (<cell 2>, l", 1),
+        ("SystemExit", 1),
+        ("ZeroDivisionError: division by zero", 2),
+    ]
     assert result["answers"]["q"]["outcome"] == "recorded" and result["runs"] == 1
 
 
 def test_cells_that_end_the_process_are_left_out(sandbox):
-    result = sandbox.run(notebook(
-        "import os\na = 1", "os._exit(7)", "b = a + 1; check('b', b)", "os.abort()", "check('c', b + 1)",
-        "import ctypes; ctypes.string_at(0)", "d = b + 2", questions={"b": None, "c": None, "d": "d"}))
+    result = sandbox.run(
+        notebook(
+            "import os\na = 1",
+            "os._exit(7)",
+            "b = a + 1; check('b', b)",
+            "os.abort()",
+            "check('c', b + 1)",
+            "import ctypes; ctypes.string_at(0)",
+            "d = b + 2",
+            questions={"b": None, "c": None, "d": "d"},
+        )
+    )
     assert outcomes(result) == ["done", "exited", "done", "killed", "done", "killed", "done"]
     assert [result["answers"][name]["plain"] for name in "bcd"] == [integer(n) for n in (2, 3, 4)]
     assert result["cells"][4]["error"] == "The process was ended by SIGABRT."
@@ -154,33 +201,51 @@ def test_the_number_of_runs_is_bounded(sandbox):
 
 def test_a_thread_is_blamed_on_the_cell_that_left_it(sandbox):
     wait = "time.sleep(0.5)"
-    result = sandbox.run(notebook(
-        "import os, threading, time", "threading.Thread(target=lambda: (time.sleep(0.3), os._exit(0))).start()",
-        wait, wait, wait, wait, "check('q', 1)", questions={"q": None}) | {"id": "threads"})
+    result = sandbox.run(
+        notebook(
+            "import os, threading, time",
+            "threading.Thread(target=lambda: (time.sleep(0.3), os._exit(0))).start()",
+            wait,
+            wait,
+            wait,
+            wait,
+            "check('q', 1)",
+            questions={"q": None},
+        )
+        | {"id": "threads"}
+    )
     assert result["answers"]["q"]["plain"] == integer(1)
     assert outcomes(result)[1] == "exited"
 
 
 def test_an_answer_stands_though_a_later_cell_never_ends(sandbox):
-    result = sandbox.run(notebook("check('q', 1)", "while True: pass", "check('r', 2)", questions={"q": None, "r": None}))
+    result = sandbox.run(
+        notebook("check('q', 1)", "while True: pass", "check('r', 2)", questions={"q": None, "r": None})
+    )
     assert outcomes(result) == ["done", "timeout", "done"]
     assert [result["answers"][name]["plain"] for name in "qr"] == [integer(1), integer(2)]
 
 
 def test_an_earlier_cells_damage_is_undone(sandbox):
-    result = sandbox.run(notebook(
-        "import signal, sys\nsys.setrecursionlimit(50)\nsignal.signal(signal.SIGPROF, signal.SIG_IGN)",
-        "import sympy\ncheck('q', sympy.trigsimp(sympy.sin(sympy.Symbol('x'))**2 + sympy.cos(sympy.Symbol('x'))**2))",
-        "while True: pass", questions={"q": None}))
+    result = sandbox.run(
+        notebook(
+            "import signal, sys\nsys.setrecursionlimit(50)\nsignal.signal(signal.SIGPROF, signal.SIG_IGN)",
+            "import sympy\ncheck('q', sympy.trigsimp(sympy.sin(sympy.Symbol('x'))**2 + sympy.cos(sympy.Symbol('x'))**2))",
+            "while True: pass",
+            questions={"q": None},
+        )
+    )
     assert outcomes(result) == ["done", "done", "timeout"]
     assert result["answers"]["q"]["plain"] == integer(1)
 
 
 # ---- the order of the cells
 
+
 def test_a_notebook_that_works_only_out_of_order_is_told_so(sandbox):
-    job = notebook((3, "check('q', later + 1)"), (2, "later = 1"), (None, "check('r', later)"),
-                   questions={"q": None, "r": None})
+    job = notebook(
+        (3, "check('q', later + 1)"), (2, "later = 1"), (None, "check('r', later)"), questions={"q": None, "r": None}
+    )
     result = sandbox.run(job)
     assert result["answers"]["q"]["plain"] == integer(2)
     assert result["answers"]["r"]["plain"] == integer(1)
@@ -200,31 +265,35 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
 
 # ---- what honest notebooks do
 
-@pytest.mark.parametrize("source", [
-    "%matplotlib inline\n!pip install nothing\nfiles = !ls\nassert files == []\ndisplay(1)\nget_ipython().magic('x')",
-    "%%time\nx = 1",
-    "%time x = 1",
-    "%%capture output\nx = 1",
-    "import matplotlib.pyplot as plt\nplt.plot([1, 2]); plt.title('$x^2$'); plt.savefig('f.png'); plt.show()",
-    "import warnings\nwarnings.warn('careful'); import numpy as np; np.array([1.0]) / 0",
-    "import sympy as sm\nsm.init_printing(use_latex='mathjax')\nsm.Symbol('x')\n"
-    "import sympy.physics.mechanics as me\nme.init_vprinting()\n"
-    "a, b = me.dynamicsymbols('a, b')\nN, A = me.ReferenceFrame('N'), me.ReferenceFrame('A')\n"
-    "A.orient_body_fixed(N, (a, b, 0), 'zxz'); A.ang_vel_in(N); sm.simplify(A.dcm(N).T * A.dcm(N))",
-    "import orientation\norientation.dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy')",
-    "import numpy as np\nnp.linalg.eig(np.random.rand(50, 50)); np.save('a', np.eye(3)); np.load('a.npy')",
-    "import sympy as sm, numpy as np\nx = sm.Symbol('x')\nassert sm.lambdify(x, sm.sin(x), 'numpy')(np.zeros(2)).size == 2",
-    "from concurrent.futures import ThreadPoolExecutor\nassert list(ThreadPoolExecutor(4).map(abs, [-1])) == [1]",
-    "import tempfile\nwith tempfile.TemporaryDirectory() as d: open(d + '/x', 'w').write('x')",
-    "import pathlib, shutil\npathlib.Path('a').write_text('x'); shutil.copyfile('a', 'b'); pathlib.Path('b').unlink()",
-    "from IPython.display import display, HTML, Latex, Math\ndisplay(Math('x'), HTML('<b>'))",
-    "from ipywidgets import interact, FloatSlider\n@interact(x=FloatSlider())\ndef f(x=1.0): return x",
-    "import dataclasses, enum, pickle, copy\n@dataclasses.dataclass\nclass P: x: int = 1\n"
-    "assert pickle.loads(pickle.dumps(P())) == copy.deepcopy(P())",
-    "from scipy.spatial.transform import Rotation\nRotation.from_euler('ZXY', [1, 2, 3]).as_matrix()",
-    "import urllib.request, asyncio, multiprocessing, sqlite3, decimal, fractions, zoneinfo, ctypes, unittest",
-    "print('x' * 10_000_000)",
-])
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "%matplotlib inline\n!pip install nothing\nfiles = !ls\nassert files == []\ndisplay(1)\nget_ipython().magic('x')",
+        "%%time\nx = 1",
+        "%time x = 1",
+        "%%capture output\nx = 1",
+        "import matplotlib.pyplot as plt\nplt.plot([1, 2]); plt.title('$x^2$'); plt.savefig('f.png'); plt.show()",
+        "import warnings\nwarnings.warn('careful'); import numpy as np; np.array([1.0]) / 0",
+        "import sympy as sm\nsm.init_printing(use_latex='mathjax')\nsm.Symbol('x')\n"
+        "import sympy.physics.mechanics as me\nme.init_vprinting()\n"
+        "a, b = me.dynamicsymbols('a, b')\nN, A = me.ReferenceFrame('N'), me.ReferenceFrame('A')\n"
+        "A.orient_body_fixed(N, (a, b, 0), 'zxz'); A.ang_vel_in(N); sm.simplify(A.dcm(N).T * A.dcm(N))",
+        "import orientation\norientation.dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy')",
+        "import numpy as np\nnp.linalg.eig(np.random.rand(50, 50)); np.save('a', np.eye(3)); np.load('a.npy')",
+        "import sympy as sm, numpy as np\nx = sm.Symbol('x')\nassert sm.lambdify(x, sm.sin(x), 'numpy')(np.zeros(2)).size == 2",
+        "from concurrent.futures import ThreadPoolExecutor\nassert list(ThreadPoolExecutor(4).map(abs, [-1])) == [1]",
+        "import tempfile\nwith tempfile.TemporaryDirectory() as d: open(d + '/x', 'w').write('x')",
+        "import pathlib, shutil\npathlib.Path('a').write_text('x'); shutil.copyfile('a', 'b'); pathlib.Path('b').unlink()",
+        "from IPython.display import display, HTML, Latex, Math\ndisplay(Math('x'), HTML('<b>'))",
+        "from ipywidgets import interact, FloatSlider\n@interact(x=FloatSlider())\ndef f(x=1.0): return x",
+        "import dataclasses, enum, pickle, copy\n@dataclasses.dataclass\nclass P: x: int = 1\n"
+        "assert pickle.loads(pickle.dumps(P())) == copy.deepcopy(P())",
+        "from scipy.spatial.transform import Rotation\nRotation.from_euler('ZXY', [1, 2, 3]).as_matrix()",
+        "import urllib.request, asyncio, multiprocessing, sqlite3, decimal, fractions, zoneinfo, ctypes, unittest",
+        "print('x' * 10_000_000)",
+    ],
+)
 def test_honest_cells_run(sandbox, source):
     if "scipy" in source:
         pytest.importorskip("scipy")
@@ -240,6 +309,7 @@ def test_a_cell_of_text_only_for_the_shell_does_nothing(sandbox):
 
 # ---- the same results everywhere
 
+
 def class_of_notebooks():
     sources = [
         "import random, numpy\ncheck('q', random.random()); check('r', float(numpy.random.rand()))",
@@ -250,8 +320,10 @@ def class_of_notebooks():
         "open(os.path.abspath('none'))",
         "import os\ncheck('r', os.getcwd() != ''); open(os.path.abspath('none'))",
     ]
-    return [notebook(source, "check('s', 1)", questions={"q": None, "r": None, "s": None}) | {"id": f"{number}"}
-            for number, source in enumerate(sources * 3)]
+    return [
+        notebook(source, "check('s', 1)", questions={"q": None, "r": None, "s": None}) | {"id": f"{number}"}
+        for number, source in enumerate(sources * 3)
+    ]
 
 
 def bytes_of(results):
@@ -312,8 +384,12 @@ for result in run_notebooks(json.loads(sys.argv[1]), workers=2, **options):
 @pytest.mark.parametrize("without", [[], ["namespaces"]], ids=["in memory", "on disk"])
 def test_a_grader_that_is_killed_leaves_nothing_running(tmp_path, without):
     jobs = [notebook("1"), *[notebook("import time; time.sleep(600)")] * 2]
-    grader = subprocess.Popen([sys.executable, "-c", KILLED, json.dumps(jobs), json.dumps(without)], stdout=subprocess.PIPE, text=True,
-                              env=os.environ | {"TMPDIR": str(tmp_path)})
+    grader = subprocess.Popen(
+        [sys.executable, "-c", KILLED, json.dumps(jobs), json.dumps(without)],
+        stdout=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+    )
     assert grader.stdout.readline() == "n\n"
     below = psutil.Process(grader.pid).children(recursive=True)
     assert len(below) >= 2
@@ -350,26 +426,51 @@ def test_records_may_come_in_any_pieces():
     data = (json.dumps(RECORD) + "\n\n" + json.dumps({"done": True}) + "\n").encode()
     for size in (1, 2, 7, 1000):
         reader = records.Records(1)
-        found = [record for start in range(0, len(data), size) for record in reader.feed(data[start:start + size])]
+        found = [record for start in range(0, len(data), size) for record in reader.feed(data[start : start + size])]
         assert found == [RECORD, {"done": True}] and reader.damaged == 0
 
 
-@pytest.mark.parametrize("changed", [
-    {"answer": 1}, {"answer": "q" * 201}, {"from": "grader"}, {"cell": 3}, {"cell": -1}, {"cell": True},
-    {"cell": 0.0}, {"plain": None}, {"plain": {"value": ["expression", 1], "nodes": [["integer", "1"]]}},
-    {"plain": {"value": ["expression", 0], "nodes": [["integer", "1; import os"]]}}, {"mark": 1},
-    {"answer": "\ud800"}, {"unreadable": "both"},
-])
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"answer": 1},
+        {"answer": "q" * 201},
+        {"from": "grader"},
+        {"cell": 3},
+        {"cell": -1},
+        {"cell": True},
+        {"cell": 0.0},
+        {"plain": None},
+        {"plain": {"value": ["expression", 1], "nodes": [["integer", "1"]]}},
+        {"plain": {"value": ["expression", 0], "nodes": [["integer", "1; import os"]]}},
+        {"mark": 1},
+        {"answer": "\ud800"},
+        {"unreadable": "both"},
+    ],
+)
 def test_a_record_of_another_form_is_dropped_and_counted(changed):
     found, reader = read(json.dumps(RECORD | changed).encode(), json.dumps(RECORD).encode())
     assert found == [RECORD] and reader.damaged == 1
 
 
-@pytest.mark.parametrize("line", [
-    b"null", b"[]", b"{", b'{"done": 1}', b"\xff", b"[" * 100_000, b'{"done": true, "done2": NaN}', b"1" * 10_000,
-    b'{"begin": ["cell", 9]}', b'{"begin": ["marks", 1]}', b'{"end": ["cell", 1], "outcome": "correct"}',
-    b'{"end": ["cell", 1], "outcome": "done", "line": 1e400}', b'{"end": ["cell", 1], "outcome": ["done"]}',
-])
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"null",
+        b"[]",
+        b"{",
+        b'{"done": 1}',
+        b"\xff",
+        b"[" * 100_000,
+        b'{"done": true, "done2": NaN}',
+        b"1" * 10_000,
+        b'{"begin": ["cell", 9]}',
+        b'{"begin": ["marks", 1]}',
+        b'{"end": ["cell", 1], "outcome": "correct"}',
+        b'{"end": ["cell", 1], "outcome": "done", "line": 1e400}',
+        b'{"end": ["cell", 1], "outcome": ["done"]}',
+    ],
+)
 def test_what_is_no_record_is_dropped_and_counted(line):
     found, reader = read(line)
     assert found == [] and reader.damaged == 1

@@ -5,31 +5,34 @@ import pytest
 from coursework.authoring import release
 from coursework.authoring.selftest import leaks, released_texts, selftest, try_question, write_page
 
-SOURCES = {path.stem: path for path in sorted(release.SOURCES.glob('*.ipynb'))}
+SOURCES = {path.stem: path for path in sorted(release.SOURCES.glob("*.ipynb"))}
 
 
-@pytest.mark.parametrize('name', SOURCES)
+@pytest.mark.parametrize("name", SOURCES)
 def test_every_question_passes_and_names_its_mistakes(name):
     source = release.read_source(SOURCES[name])
     findings = [try_question(question) for question in source.questions.values()]
     assert [fault for finding in findings for fault in finding.faults] == []
-    assert '<h1>' in write_page(findings, [])
+    assert "<h1>" in write_page(findings, [])
     if name != release.CHAPTERS:
         assert len(findings) >= 4
-        assert leaks([source], released_texts(archive='none')) == []
+        assert leaks([source], released_texts(archive="none")) == []
 
 
 def test_nothing_leaks_into_the_archive(tmp_path):
-    archive = release.archive(tmp_path / 'exercises.zip')
+    archive = release.archive(tmp_path / "exercises.zip")
     sources = [release.read_source(path) for path in SOURCES.values()]
     assert leaks(sources, released_texts(archive=archive)) == []
 
 
 def test_a_question_with_a_fault_is_found(tmp_path):
     from test_release import CELLS, write_source
-    cells = [(kind, text.replace("worth=2,", "worth=2, mistakes={'A wrong remark.': A_C_N},"), *tags)
-             for kind, text, *tags in CELLS]
+
+    cells = [
+        (kind, text.replace("worth=2,", "worth=2, mistakes={'A wrong remark.': A_C_N},"), *tags)
+        for kind, text, *tags in CELLS
+    ]
     write_source(tmp_path, *cells)
-    faults = selftest(tmp_path, tmp_path / 'page.html')
-    assert any('gives the right answer' in fault for fault in faults)
-    assert 'gives the right answer' in (tmp_path / 'page.html').read_text('utf8')
+    faults = selftest(tmp_path, tmp_path / "page.html")
+    assert any("gives the right answer" in fault for fault in faults)
+    assert "gives the right answer" in (tmp_path / "page.html").read_text("utf8")

@@ -13,11 +13,21 @@ from orientations import composed, rotation_error
 from scipy.spatial.transform import Rotation
 
 from orientation import (
-    Frames, axis_angle_from_dcm, body_fixed_from_dcm, check_dcm, dcm_from_axis_angle, dcm_from_body_fixed,
-    dcm_from_quaternion, dcm_from_space_fixed, diagnose, same_orientation, simple_dcm)
+    Frames,
+    axis_angle_from_dcm,
+    body_fixed_from_dcm,
+    check_dcm,
+    dcm_from_axis_angle,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    dcm_from_space_fixed,
+    diagnose,
+    same_orientation,
+    simple_dcm,
+)
 
-psi, theta, phi = sm.symbols('psi, theta, varphi')
-alpha, beta = sm.symbols('alpha, beta')
+psi, theta, phi = sm.symbols("psi, theta, varphi")
+alpha, beta = sm.symbols("alpha, beta")
 
 
 def frames_of_sympy(names):
@@ -26,93 +36,94 @@ def frames_of_sympy(names):
 
 # --- SymPy -------------------------------------------------------------------------------------------------
 
+
 def test_reference_frames_keep_the_old_matrix_when_a_cell_is_run_again():
-    N, A, B = frames_of_sympy('NAB')
+    N, A, B = frames_of_sympy("NAB")
     A.orient_axis(N, N.z, alpha)
     B.orient_axis(A, A.z, beta)
     B_C_A, B_C_N = B.dcm(A), B.dcm(N)
     A.orient_axis(N, N.x, alpha)  # the cell is corrected and run again
-    assert A.dcm(N) == simple_dcm('x', alpha)
+    assert A.dcm(N) == simple_dcm("x", alpha)
     assert B.dcm(N) == B_C_N != B_C_A * A.dcm(N)
     # Had nobody asked for B's matrix before, it would now be lost with the link between A and B.
-    with pytest.raises(ValueError, match='No connecting orientation path found between B and A'):
+    with pytest.raises(ValueError, match="No connecting orientation path found between B and A"):
         B.dcm(A)
 
-    frames = Frames().orient_axis('A', 'N', 'z', alpha)
-    with pytest.raises(ValueError, match='already connected'):
-        frames.orient_axis('A', 'N', 'x', alpha)
+    frames = Frames().orient_axis("A", "N", "z", alpha)
+    with pytest.raises(ValueError, match="already connected"):
+        frames.orient_axis("A", "N", "x", alpha)
 
 
 def test_reference_frames_let_two_paths_contradict_each_other():
-    N, A, B = frames_of_sympy('NAB')
+    N, A, B = frames_of_sympy("NAB")
     A.orient_axis(N, N.z, alpha)
     B.orient_axis(A, A.z, alpha)
-    with pytest.warns(UserWarning, match='Loops are defined'):
+    with pytest.warns(UserWarning, match="Loops are defined"):
         N.orient_axis(B, B.x, beta)
     assert not same_orientation(N.dcm(B), (B.dcm(A) * A.dcm(N)).T)
 
 
 def test_orient_dcm_takes_a_reflection():
-    N, A = frames_of_sympy('NA')
+    N, A = frames_of_sympy("NA")
     A.orient_dcm(N, sm.diag(1, 1, -1))
     assert A.dcm(N).det() == -1
-    with pytest.raises(ValueError, match='left-handed'):
+    with pytest.raises(ValueError, match="left-handed"):
         check_dcm(A.dcm(N))
 
 
 def test_orient_dcm_takes_any_nine_numbers():
-    N, A = frames_of_sympy('NA')
+    N, A = frames_of_sympy("NA")
     A.orient_dcm(N, sm.ones(3))
     assert A.dcm(N) == sm.ones(3)
 
 
 def test_a_quaternion_that_is_not_of_unit_length_gives_no_direction_cosines():
-    N, A = frames_of_sympy('NA')
+    N, A = frames_of_sympy("NA")
     A.orient_quaternion(N, (1, 1, 0, 0))
     assert A.dcm(N) * A.dcm(N).T == 4 * sm.eye(3)
-    quaternion = sm.symbols('q_0, q_i, q_j, q_k')
+    quaternion = sm.symbols("q_0, q_i, q_j, q_k")
     A.orient_quaternion(N, quaternion)
     A_C_N = sm.Matrix(A.dcm(N))
     length = sm.sqrt(sum(entry**2 for entry in quaternion))
     assert (A_C_N * A_C_N.T - length**4 * sm.eye(3)).expand() == sm.zeros(3)
-    with pytest.raises(ValueError, match='length 1.414'):
+    with pytest.raises(ValueError, match="length 1.414"):
         dcm_from_quaternion((1, 1, 0, 0))
 
 
 def test_orient_axis_sorts_its_arguments_by_type():
-    N, A, B = frames_of_sympy('NAB')
+    N, A, B = frames_of_sympy("NAB")
     A.orient_axis(N, N.z, theta)
     B.orient_axis(N, theta, N.z)  # the other way round, without a word
     assert A.dcm(N) == B.dcm(N)
 
 
 def test_which_matrix_orient_explicit_and_orient_dcm_want():
-    A_C_N = simple_dcm('z', theta)
-    N, A = frames_of_sympy('NA')
+    A_C_N = simple_dcm("z", theta)
+    N, A = frames_of_sympy("NA")
     N.orient_explicit(A, A_C_N)
     assert A.dcm(N) == A_C_N
-    N, A = frames_of_sympy('NA')
+    N, A = frames_of_sympy("NA")
     A.orient_explicit(N, A_C_N)  # reads like the others, and means the transpose
     assert A.dcm(N) == A_C_N.T
-    N, A = frames_of_sympy('NA')
+    N, A = frames_of_sympy("NA")
     A.orient_dcm(N, A_C_N)
     assert A.dcm(N) == A_C_N
 
 
 def test_sympy_multiplies_turns_about_one_axis_out():
-    angles = sm.symbols('a:6')
-    chain, joined = [me.ReferenceFrame('F0')], Frames()
+    angles = sm.symbols("a:6")
+    chain, joined = [me.ReferenceFrame("F0")], Frames()
     for k, angle in enumerate(angles):
-        chain.append(me.ReferenceFrame(f'F{k + 1}'))
+        chain.append(me.ReferenceFrame(f"F{k + 1}"))
         chain[-1].orient_axis(chain[-2], chain[-2].z, angle)
-        joined = joined.orient_axis(f'F{k + 1}', f'F{k}', 'z', angle)
-    theirs, ours = chain[-1].dcm(chain[0]), joined.dcm('F6', 'F0')
+        joined = joined.orient_axis(f"F{k + 1}", f"F{k}", "z", angle)
+    theirs, ours = chain[-1].dcm(chain[0]), joined.dcm("F6", "F0")
     assert sm.count_ops(theirs) > 20 * sm.count_ops(ours)
     assert same_orientation(theirs, ours)
 
 
 def test_simplify_does_not_see_that_two_forms_are_equal():
-    ours = dcm_from_body_fixed((psi, theta, phi), 'zxz')
+    ours = dcm_from_body_fixed((psi, theta, phi), "zxz")
     other = ours.applyfunc(lambda entry: entry.rewrite(sm.exp))
     difference = other[0, 2] - ours[0, 2]
     assert sm.simplify(difference) != 0
@@ -126,22 +137,22 @@ ANGLES = (0.1, 0.2, 0.3)
 
 
 def test_scipy_reads_letter_case_as_meaning():
-    body, space = (Rotation.from_euler(letters, ANGLES).as_matrix() for letters in ('ZXY', 'zxy'))
+    body, space = (Rotation.from_euler(letters, ANGLES).as_matrix() for letters in ("ZXY", "zxy"))
     assert rotation_error(body, space) > 0.01
-    assert rotation_error(body.T, dcm_from_body_fixed(ANGLES, 'zxy')) < 1e-15
-    assert rotation_error(space.T, dcm_from_space_fixed(ANGLES, 'zxy')) < 1e-15
-    with pytest.raises(ValueError, match='sequences are lower case and body fixed'):
-        dcm_from_body_fixed(ANGLES, 'ZXY')
+    assert rotation_error(body.T, dcm_from_body_fixed(ANGLES, "zxy")) < 1e-15
+    assert rotation_error(space.T, dcm_from_space_fixed(ANGLES, "zxy")) < 1e-15
+    with pytest.raises(ValueError, match="sequences are lower case and body fixed"):
+        dcm_from_body_fixed(ANGLES, "ZXY")
 
 
 def test_scipy_returns_the_transpose():
-    D, A = frames_of_sympy('DA')
-    D.orient_body_fixed(A, ANGLES, 'zxy')
+    D, A = frames_of_sympy("DA")
+    D.orient_body_fixed(A, ANGLES, "zxy")
     D_C_A = np.array(D.dcm(A), dtype=float)
-    rotation = Rotation.from_euler('ZXY', ANGLES)
+    rotation = Rotation.from_euler("ZXY", ANGLES)
     assert rotation_error(rotation.as_matrix().T, D_C_A) < 1e-15
     assert rotation_error(rotation.as_matrix(), D_C_A) > 0.1
-    assert diagnose(rotation.as_matrix(), D_C_A).causes == ('it is the transpose, the orientation the other way round',)
+    assert diagnose(rotation.as_matrix(), D_C_A).causes == ("it is the transpose, the orientation the other way round",)
 
 
 def test_scipy_has_the_scalar_last():
@@ -153,38 +164,39 @@ def test_scipy_has_the_scalar_last():
 
 def test_scipy_1_17_wants_one_angle_for_each_axis_in_the_last_dimension():
     # Before 1.17 the first gave a stack of one rotation and the second a stack of two.
-    assert Rotation.from_euler('z', [0.3]).as_matrix().shape == (3, 3)
-    with pytest.raises(ValueError, match='last dimension of `angles`'):
-        Rotation.from_euler('z', [0.3, 0.4])
-    assert simple_dcm('z', [0.3]).shape == (1, 3, 3) and simple_dcm('z', [0.3, 0.4]).shape == (2, 3, 3)
+    assert Rotation.from_euler("z", [0.3]).as_matrix().shape == (3, 3)
+    with pytest.raises(ValueError, match="last dimension of `angles`"):
+        Rotation.from_euler("z", [0.3, 0.4])
+    assert simple_dcm("z", [0.3]).shape == (1, 3, 3) and simple_dcm("z", [0.3, 0.4]).shape == (2, 3, 3)
 
 
 def test_scipy_repairs_without_a_word():
-    skewed = composed(ANGLES, 'zxy') + [[0, 0.1, 0], [0, 0, 0], [0, 0, 0]]
+    skewed = composed(ANGLES, "zxy") + [[0, 0.1, 0], [0, 0, 0], [0, 0, 0]]
     repaired = Rotation.from_matrix(skewed).as_matrix()
     assert abs(repaired - skewed).max() > 0.01
     assert Rotation.from_quat((0, 0, 0, 2)).as_quat().tolist() == [0, 0, 0, 1]
-    with pytest.raises(ValueError, match='not orthogonal: row'):
+    with pytest.raises(ValueError, match="not orthogonal: row"):
         check_dcm(skewed)
-    with pytest.raises(ValueError, match='length 2'):
+    with pytest.raises(ValueError, match="length 2"):
         dcm_from_quaternion((2, 0, 0, 0))
 
 
-@pytest.mark.parametrize('sequence, lock', [('zxy', np.pi / 2), ('zxz', 0.0)])
+@pytest.mark.parametrize("sequence, lock", [("zxy", np.pi / 2), ("zxz", 0.0)])
 def test_scipy_snaps_to_gimbal_lock_near_it(sequence, lock):
     dcm = composed((0.3, lock + 9e-8, 0.7), sequence)
-    with pytest.warns(UserWarning, match='Gimbal lock detected'):
+    with pytest.warns(UserWarning, match="Gimbal lock detected"):
         theirs = Rotation.from_matrix(dcm.T).as_euler(sequence.upper())
     assert rotation_error(composed(theirs, sequence), dcm) > 1e-8
     with warnings.catch_warnings():
-        warnings.simplefilter('error')
+        warnings.simplefilter("error")
         ours = body_fixed_from_dcm(dcm, sequence)
     assert rotation_error(composed(ours, sequence), dcm) < 1e-14
 
 
 # --- formulas -------------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize('angle', [1e-7, np.pi - 1e-7])
+
+@pytest.mark.parametrize("angle", [1e-7, np.pi - 1e-7])
 def test_the_inverse_cosine_of_the_trace_loses_half_of_the_digits(angle):
     dcm = dcm_from_axis_angle((1, 2, 3), angle)
     by_trace = np.arccos(np.clip((np.trace(dcm) - 1) / 2, -1, 1))
@@ -195,7 +207,7 @@ def test_the_inverse_cosine_of_the_trace_loses_half_of_the_digits(angle):
 def test_division_by_the_scalar_part_loses_the_axis_near_half_a_turn():
     dcm = dcm_from_axis_angle((1, 2, 3), np.pi - 1e-9)
     scalar = np.sqrt(max(1 + np.trace(dcm), 0)) / 2
-    with np.errstate(all='ignore'):
+    with np.errstate(all="ignore"):
         by_scalar = (dcm[1, 2] - dcm[2, 1]) / (4 * scalar)
     exact = 1 / np.sqrt(14)
     assert not abs(by_scalar - exact) < 1e-3
@@ -204,9 +216,10 @@ def test_division_by_the_scalar_part_loses_the_axis_near_half_a_turn():
 
 # --- the two slips of the source chapter ---------------------------------------------------------------------------
 
+
 def test_third_line_of_the_dot_product_block_is_about_a_z():
-    N, A = frames_of_sympy('NA')
-    A.orient_body_fixed(N, (psi, theta, phi), 'zxy')
+    N, A = frames_of_sympy("NA")
+    A.orient_body_fixed(N, (psi, theta, phi), "zxy")
     third_line = sum((A.z.dot(n) * n for n in (N.x, N.y, N.z)), me.Vector(0))
     # Printed there with a_x on its left; it holds for a_z.
     for left, holds in ((A.z, True), (A.x, False)):
@@ -217,19 +230,21 @@ def test_third_line_of_the_dot_product_block_is_about_a_z():
 
 def test_answer_of_the_exercise_on_orient_explicit_is_the_transpose_of_what_is_asked():
     # Asked: orient D with respect to F about y through beta, that is, D_C_F.
-    D, F = frames_of_sympy('DF')
+    D, F = frames_of_sympy("DF")
     D.orient_axis(F, F.y, beta)
     asked = D.dcm(F)
     # Shown: a matrix called F_C_D, and F.orient_explicit(D, F_C_D.transpose()), then F.dcm(D).
     shown = sm.Matrix([[sm.cos(beta), 0, -sm.sin(beta)], [0, 1, 0], [sm.sin(beta), 0, sm.cos(beta)]])
-    D, F = frames_of_sympy('DF')
+    D, F = frames_of_sympy("DF")
     F.orient_explicit(D, shown.transpose())
     assert F.dcm(D) == shown
     assert D.dcm(F) == asked.T != asked
     assert diagnose(D.dcm(F), asked).causes == (
-        'it is the transpose, the orientation the other way round', 'beta has the wrong sign')
+        "it is the transpose, the orientation the other way round",
+        "beta has the wrong sign",
+    )
     # Right:
-    D, F = frames_of_sympy('DF')
+    D, F = frames_of_sympy("DF")
     D_C_F = shown
     F.orient_explicit(D, D_C_F)
-    assert D.dcm(F) == asked == simple_dcm('y', beta)
+    assert D.dcm(F) == asked == simple_dcm("y", beta)

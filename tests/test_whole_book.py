@@ -309,7 +309,9 @@ def test_pages_open_from_disk(from_disk, unpacked):
         from_disk.goto((unpacked / f"{name}.html").as_uri())
         settled(from_disk)
         assert from_disk.evaluate("document.fonts.check('1em \"Source Serif 4\"') && document.fonts.status") == "loaded"
-        assert from_disk.evaluate("getComputedStyle(document.querySelector('article')).fontFamily").startswith('"Source Serif')
+        assert from_disk.evaluate("getComputedStyle(document.querySelector('article')).fontFamily").startswith(
+            '"Source Serif'
+        )
         assert from_disk.evaluate(SIDEWAYS) <= 0
 
 

@@ -5,4 +5,4 @@ A student needs ``from coursework import check`` and no more.
 
 from .checking.check import check, hint, progress
 
-__all__ = ['check', 'hint', 'progress']
+__all__ = ["check", "hint", "progress"]

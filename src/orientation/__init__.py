@@ -5,25 +5,55 @@ in radians, quaternions have their scalar part first, and sequences are body fix
 """
 
 from ._numbers_and_symbols import SymbolsNotPossible
+from .angular_velocity import angular_velocity_matrix, dcm_rate, quaternion_rate
 from .axis_angle import axis_angle_from_dcm, dcm_from_axis_angle, quaternion_from_axis_angle
 from .comparison import Diagnosis, diagnose, same_orientation
 from .direction_cosines import NearestDCM, check_dcm, nearest_dcm, simple_dcm
 from .euler_angles import (
-    PROPER_EULER, SEQUENCES, TAIT_BRYAN, body_fixed_from_dcm, dcm_from_body_fixed, dcm_from_space_fixed,
-    gimbal_lock_margin, space_fixed_from_dcm)
+    PROPER_EULER,
+    SEQUENCES,
+    TAIT_BRYAN,
+    body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_space_fixed,
+    gimbal_lock_margin,
+    space_fixed_from_dcm,
+)
 from .frames import Frames
-from .angular_velocity import angular_velocity_matrix, dcm_rate, quaternion_rate
-from .quaternions import (
-    dcm_from_quaternion, interpolate_quaternions, multiply_quaternions, quaternion_from_dcm)
+from .quaternions import dcm_from_quaternion, interpolate_quaternions, multiply_quaternions, quaternion_from_dcm
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 from .scipy_border import dcm_from_scipy_rotation, scipy_rotation_from_dcm
 
 __all__ = [
-    'Diagnosis', 'Frames', 'NearestDCM', 'PROPER_EULER', 'SEQUENCES', 'SymbolsNotPossible',
-    'TAIT_BRYAN', 'angular_velocity_matrix', 'axis_angle_from_dcm', 'body_fixed_from_dcm', 'check_dcm',
-    'dcm_from_axis_angle', 'dcm_from_body_fixed', 'dcm_from_quaternion', 'dcm_from_rotation_vector',
-    'dcm_from_scipy_rotation', 'dcm_from_space_fixed', 'dcm_rate', 'diagnose', 'gimbal_lock_margin',
-    'interpolate_quaternions', 'multiply_quaternions', 'nearest_dcm', 'quaternion_from_axis_angle',
-    'quaternion_from_dcm', 'quaternion_rate', 'rotation_vector_from_dcm', 'same_orientation',
-    'scipy_rotation_from_dcm', 'simple_dcm', 'space_fixed_from_dcm',
+    "Diagnosis",
+    "Frames",
+    "NearestDCM",
+    "PROPER_EULER",
+    "SEQUENCES",
+    "SymbolsNotPossible",
+    "TAIT_BRYAN",
+    "angular_velocity_matrix",
+    "axis_angle_from_dcm",
+    "body_fixed_from_dcm",
+    "check_dcm",
+    "dcm_from_axis_angle",
+    "dcm_from_body_fixed",
+    "dcm_from_quaternion",
+    "dcm_from_rotation_vector",
+    "dcm_from_scipy_rotation",
+    "dcm_from_space_fixed",
+    "dcm_rate",
+    "diagnose",
+    "gimbal_lock_margin",
+    "interpolate_quaternions",
+    "multiply_quaternions",
+    "nearest_dcm",
+    "quaternion_from_axis_angle",
+    "quaternion_from_dcm",
+    "quaternion_rate",
+    "rotation_vector_from_dcm",
+    "same_orientation",
+    "scipy_rotation_from_dcm",
+    "simple_dcm",
+    "space_fixed_from_dcm",
 ]

@@ -34,9 +34,9 @@ def is_symbolic(value):
     """Tell whether a value is a SymPy object, or a sequence or object array that holds one."""
     if isinstance(value, (list, tuple)):
         return any(is_symbolic(entry) for entry in value)
-    if getattr(value, 'dtype', None) == object:
+    if getattr(value, "dtype", None) == object:
         return is_symbolic(value.tolist())
-    return hasattr(value, 'free_symbols')
+    return hasattr(value, "free_symbols")
 
 
 def evaluate(formula, shape, *arguments, guard=None, symbols=True):
@@ -66,8 +66,8 @@ def evaluate(formula, shape, *arguments, guard=None, symbols=True):
 
 def _evaluate_symbols(formula, shape, arguments, guard):
     import sympy
-    components = [entry for name, value, item in arguments
-                  for entry in symbol_components(value, item, name)]
+
+    components = [entry for name, value, item in arguments for entry in symbol_components(value, item, name)]
     if guard:
         _guard_exact_numbers(components, guard)
     result = [sympy.sympify(entry) for entry in formula(_symbol_functions(), *components)]
@@ -83,16 +83,17 @@ def _guard_exact_numbers(components, guard):
     except TypeError:
         return  # symbols: whether they are valid depends on what will be put in for them
     if not excess(NUMBERS, *numbers) <= TOLERANCE:
-        explain(numbers, '')
+        explain(numbers, "")
 
 
 def _evaluate_numbers(formula, shape, arrays, guard):
     import numpy
+
     components = [entry for array in arrays for entry in array.ravel().tolist()]
     if guard:
         count, excess, explain = guard
         if not excess(NUMBERS, *components[:count]) <= TOLERANCE:
-            explain(components[:count], '')
+            explain(components[:count], "")
     result = formula(NUMBERS, *components)
     # Adding zero turns -0 into 0, which would look like a wrong sign.
     return numpy.array([entry + 0.0 for entry in result]).reshape(shape) if shape else result[0]
@@ -100,31 +101,32 @@ def _evaluate_numbers(formula, shape, arrays, guard):
 
 def _evaluate_batch(formula, shape, arrays, arguments, guard):
     import numpy
-    shapes = [array.shape[:array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)]
+
+    shapes = [array.shape[: array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)]
     try:
         batch = numpy.broadcast_shapes(*shapes)
     except ValueError:
-        described = ' and '.join(f'{name} {array.shape}'
-                                 for array, (name, _, _) in zip(arrays, arguments))
-        raise ValueError(f'the batches do not fit each other: {described}') from None
-    flat = [numpy.broadcast_to(array, batch + item).reshape(math.prod(batch), math.prod(item))
-            for array, (_, _, item) in zip(arrays, arguments)]
+        described = " and ".join(f"{name} {array.shape}" for array, (name, _, _) in zip(arrays, arguments))
+        raise ValueError(f"the batches do not fit each other: {described}") from None
+    flat = [
+        numpy.broadcast_to(array, batch + item).reshape(math.prod(batch), math.prod(item))
+        for array, (_, _, item) in zip(arrays, arguments)
+    ]
     result = numpy.empty((math.prod(batch), math.prod(shape)))
     functions = _array_functions()
     for start in range(0, len(result), BLOCK):
-        components = [column for array in flat
-                      for column in numpy.ascontiguousarray(array[start:start + BLOCK].T)]
+        components = [column for array in flat for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)]
         if guard:
             count, excess, explain = guard
-            with numpy.errstate(over='ignore', invalid='ignore'):  # told below, as an error
+            with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
                 size = excess(functions, *components[:count])
             if not numpy.all(size <= TOLERANCE):
                 worst = int(numpy.argmax(size))
                 index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
-                explain([float(column[worst]) for column in components[:count]], f' (item {index})')
+                explain([float(column[worst]) for column in components[:count]], f" (item {index})")
         for column, values in enumerate(formula(functions, *components)):
-            result[start:start + BLOCK, column] = values
-        result[start:start + BLOCK] += 0.0
+            result[start : start + BLOCK, column] = values
+        result[start : start + BLOCK] += 0.0
     return result.reshape(batch + shape)
 
 
@@ -135,25 +137,33 @@ def number_array(value, item, name):
     :class:`SymbolsNotPossible`.
     """
     import numpy
+
     if is_symbolic(value):
         value = _floats(_listed(value), name)
-    elif (len(item) == 1 and isinstance(value, (list, tuple)) and len(value) == item[0]
-            and all(getattr(entry, 'ndim', 0) for entry in value)):
-        raise ValueError(f'{name} is a sequence of {len(value)} arrays, which can be read in two ways: '
-                         f'join separate components with numpy.stack(..., axis=-1), '
-                         f'or a list of items with numpy.stack(...)')
+    elif (
+        len(item) == 1
+        and isinstance(value, (list, tuple))
+        and len(value) == item[0]
+        and all(getattr(entry, "ndim", 0) for entry in value)
+    ):
+        raise ValueError(
+            f"{name} is a sequence of {len(value)} arrays, which can be read in two ways: "
+            f"join separate components with numpy.stack(..., axis=-1), "
+            f"or a list of items with numpy.stack(...)"
+        )
     value = _unmasked(value)
     try:
         array = numpy.asarray(value)
-        if array.dtype == object and all(isinstance(entry, numbers.Real) and not isinstance(entry, bool)
-                                         for entry in array.flat):
+        if array.dtype == object and all(
+            isinstance(entry, numbers.Real) and not isinstance(entry, bool) for entry in array.flat
+        ):
             array = array.astype(float)  # fractions, integers of any size
-        if array.dtype.kind not in 'iuf':
+        if array.dtype.kind not in "iuf":
             raise ValueError
     except (ValueError, OverflowError):
         raise _not_numbers(name, value) from None
     array = array.astype(float, copy=False)
-    if array.ndim < len(item) or array.shape[array.ndim - len(item):] != item:
+    if array.ndim < len(item) or array.shape[array.ndim - len(item) :] != item:
         raise WrongShape(_shape_message(name, array.shape, item))
     finite = numpy.isfinite(array)
     if not finite.all():
@@ -172,15 +182,15 @@ def number_tuples(value, shape, name):
     if found is None:
         raise _not_numbers(name, value)
     if found != shape:
-        raise WrongShape(f'{name} has shape {found}, where {shape or "one number"} was expected')
+        raise WrongShape(f"{name} has shape {found}, where {shape or 'one number'} was expected")
     _demand_finite(result, name)
     return result
 
 
 def _tuples(value, name, whole):
-    if hasattr(value, 'free_symbols'):
+    if hasattr(value, "free_symbols"):
         value = _floats(_listed(value), name)
-    elif hasattr(value, 'tolist'):  # an array, or a number of NumPy
+    elif hasattr(value, "tolist"):  # an array, or a number of NumPy
         value = _unmasked(value).tolist()
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return tuple(_tuples(entry, name, whole) for entry in value)
@@ -212,16 +222,16 @@ def _demand_finite(value, name, index=()):
 
 def _unmasked(value):
     # A masked array: what is masked is missing.
-    return value.astype(float).filled(math.nan) if hasattr(value, 'filled') else value
+    return value.astype(float).filled(math.nan) if hasattr(value, "filled") else value
 
 
 def _not_numbers(name, value):
-    return TypeError(f'{name} must hold real numbers or SymPy expressions in a regular shape, not {value!r}')
+    return TypeError(f"{name} must hold real numbers or SymPy expressions in a regular shape, not {value!r}")
 
 
 def _not_finite(name, index, value):
-    where = f'[{", ".join(map(str, index))}]' if index else ''
-    return ValueError(f'{name}{where} is {value}: a number is missing or a division by zero happened before')
+    where = f"[{', '.join(map(str, index))}]" if index else ""
+    return ValueError(f"{name}{where} is {value}: a number is missing or a division by zero happened before")
 
 
 def _floats(value, name):
@@ -232,19 +242,20 @@ def _floats(value, name):
         return float(value)
     except TypeError:
         raise SymbolsNotPossible(
-            f'{name} holds {value}, and this conversion needs numbers: which branch it takes depends '
-            f'on their sizes and signs. Put numbers in first, with .subs(...)') from None
+            f"{name} holds {value}, and this conversion needs numbers: which branch it takes depends "
+            f"on their sizes and signs. Put numbers in first, with .subs(...)"
+        ) from None
 
 
 def _listed(value):
     """Nested lists of the entries, whatever holds them; a column or a row becomes one list."""
-    if hasattr(value, 'tolist'):
-        shape = getattr(value, 'shape', ())
+    if hasattr(value, "tolist"):
+        shape = getattr(value, "shape", ())
         flat = len(shape) == 2 and 1 in shape
         value = value.tolist()
         if flat:
             value = [entry for row in value for entry in row]
-    if isinstance(value, (list, tuple)) or type(value).__name__ == 'Tuple':
+    if isinstance(value, (list, tuple)) or type(value).__name__ == "Tuple":
         return [_listed(entry) for entry in value]
     return value
 
@@ -252,9 +263,11 @@ def _listed(value):
 def symbol_components(value, item, name):
     """Return the SymPy components of one item of the given shape."""
     import sympy
-    if hasattr(value, 'to_matrix'):
-        raise TypeError(f'{name} is the vector {value}: give its components along one frame, which its '
-                        f'method to_matrix finds')
+
+    if hasattr(value, "to_matrix"):
+        raise TypeError(
+            f"{name} is the vector {value}: give its components along one frame, which its method to_matrix finds"
+        )
     nested = _listed(value)
     if isinstance(nested, list):
         lengths = {len(row) if isinstance(row, list) else 0 for row in nested}
@@ -263,36 +276,41 @@ def symbol_components(value, item, name):
     else:
         shape, value = (), [nested]
     if shape != item:
-        raise WrongShape(_shape_message(name, shape, item)
-                         + ' (SymPy expressions come one item at a time)')
+        raise WrongShape(_shape_message(name, shape, item) + " (SymPy expressions come one item at a time)")
     try:
         components = [sympy.sympify(entry, strict=True) for entry in value]
     except sympy.SympifyError as error:
-        raise TypeError(f'{name} holds {error.expr!r}, which is neither a number nor a SymPy '
-                        f'expression') from None
+        raise TypeError(f"{name} holds {error.expr!r}, which is neither a number nor a SymPy expression") from None
     for position, entry in enumerate(components):
         if not isinstance(entry, sympy.Expr):
-            raise TypeError(f'{name} holds {entry}, which is neither a number nor a SymPy expression')
+            raise TypeError(f"{name} holds {entry}, which is neither a number nor a SymPy expression")
         if entry.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
-            raise ValueError(f'{name} holds {entry} (entry {position}): a division by zero happened before')
+            raise ValueError(f"{name} holds {entry} (entry {position}): a division by zero happened before")
     return components
 
 
 def _shape_message(name, shape, item):
     if item == ():
-        return f'{name} has shape {shape}, where one number was expected'
-    return (f'{name} has shape {shape}, where {item} or (..., {", ".join(map(str, item))}) was expected')
+        return f"{name} has shape {shape}, where one number was expected"
+    return f"{name} has shape {shape}, where {item} or (..., {', '.join(map(str, item))}) was expected"
 
 
 # --- the functions that a formula may use, for each kind ----------------------------------------
+
 
 def _pick_number(scores, rows):
     return rows[scores.index(max(scores))]
 
 
 NUMBERS = SimpleNamespace(
-    sin=math.sin, cos=math.cos, atan2=math.atan2, norm=math.hypot, pick=_pick_number,
-    where=lambda condition, yes, no: yes if condition else no, largest=max)
+    sin=math.sin,
+    cos=math.cos,
+    atan2=math.atan2,
+    norm=math.hypot,
+    pick=_pick_number,
+    where=lambda condition, yes, no: yes if condition else no,
+    largest=max,
+)
 
 
 @functools.cache
@@ -304,16 +322,24 @@ def _array_functions():
         return [numpy.choose(best, entries) for entries in zip(*rows)]
 
     return SimpleNamespace(
-        sin=numpy.sin, cos=numpy.cos, atan2=numpy.arctan2, pick=pick, where=numpy.where,
+        sin=numpy.sin,
+        cos=numpy.cos,
+        atan2=numpy.arctan2,
+        pick=pick,
+        where=numpy.where,
         norm=lambda *components: numpy.sqrt(sum(entry * entry for entry in components)),
-        largest=lambda *sizes: functools.reduce(numpy.maximum, sizes))
+        largest=lambda *sizes: functools.reduce(numpy.maximum, sizes),
+    )
 
 
 @functools.cache
 def _symbol_functions():
     import sympy
+
     return SimpleNamespace(
-        sin=sympy.sin, cos=sympy.cos,
+        sin=sympy.sin,
+        cos=sympy.cos,
         # Symbols take the general branch; an exact number may decide for the special one.
         where=lambda condition, yes, no: no if condition == False else yes,  # noqa: E712
-        norm=lambda *components: sympy.sqrt(sum(entry**2 for entry in components)))
+        norm=lambda *components: sympy.sqrt(sum(entry**2 for entry in components)),
+    )

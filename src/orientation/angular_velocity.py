@@ -65,7 +65,7 @@ def angular_velocity_matrix(angles, sequence):
             entries[3 * i + 1], entries[3 * j + 1] = s3, c3
         return entries
 
-    return evaluate(formula, (3, 3), ('angles', angles, (3,)))
+    return evaluate(formula, (3, 3), ("angles", angles, (3,)))
 
 
 def dcm_rate(dcm, angular_velocity):
@@ -96,13 +96,21 @@ def dcm_rate(dcm, angular_velocity):
     -----
     Source: Hughes (1986).
     """
-    def formula(f, xx, xy, xz, yx, yy, yz, zx, zy, zz, x, y, z):
-        return (z * yx - y * zx, z * yy - y * zy, z * yz - y * zz,
-                x * zx - z * xx, x * zy - z * xy, x * zz - z * xz,
-                y * xx - x * yx, y * xy - x * yy, y * xz - x * yz)
 
-    return evaluate(formula, (3, 3), ('dcm', dcm, (3, 3)),
-                    ('angular_velocity', angular_velocity, (3,)))
+    def formula(f, xx, xy, xz, yx, yy, yz, zx, zy, zz, x, y, z):
+        return (
+            z * yx - y * zx,
+            z * yy - y * zy,
+            z * yz - y * zz,
+            x * zx - z * xx,
+            x * zy - z * xy,
+            x * zz - z * xz,
+            y * xx - x * yx,
+            y * xy - x * yy,
+            y * xz - x * yz,
+        )
+
+    return evaluate(formula, (3, 3), ("dcm", dcm, (3, 3)), ("angular_velocity", angular_velocity, (3,)))
 
 
 def quaternion_rate(quaternion, angular_velocity):
@@ -133,9 +141,13 @@ def quaternion_rate(quaternion, angular_velocity):
     -----
     Source: Shuster (1993).
     """
-    def formula(f, a, b, c, d, x, y, z):
-        return ((-b * x - c * y - d * z) / 2, (a * x + c * z - d * y) / 2,
-                (a * y + d * x - b * z) / 2, (a * z + b * y - c * x) / 2)
 
-    return evaluate(formula, (4,), ('quaternion', quaternion, (4,)),
-                    ('angular_velocity', angular_velocity, (3,)))
+    def formula(f, a, b, c, d, x, y, z):
+        return (
+            (-b * x - c * y - d * z) / 2,
+            (a * x + c * z - d * y) / 2,
+            (a * y + d * x - b * z) / 2,
+            (a * z + b * y - c * x) / 2,
+        )
+
+    return evaluate(formula, (4,), ("quaternion", quaternion, (4,)), ("angular_velocity", angular_velocity, (3,)))

@@ -4,7 +4,6 @@ from ._numbers_and_symbols import evaluate
 from .direction_cosines import DCM_GUARD
 from .quaternions import quaternion_components_from_dcm
 
-
 #: Shortest axis whose direction can be computed; the longest is its inverse.
 SHORTEST = 1e-150
 
@@ -19,10 +18,14 @@ def _length_missing(f, x, y, z):
 def _explain_zero(components, where):
     largest = max(map(abs, components))
     if largest:
-        raise ValueError(f'axis{where} is {tuple(components)}: too {"long" if largest > 1 else "short"} to '
-                         f'compute with; divide it by its largest component')
-    raise ValueError(f'axis{where} is {tuple(components)}: a zero vector points nowhere, so there is '
-                     f'nothing to turn about. Was a difference of equal vectors taken?')
+        raise ValueError(
+            f"axis{where} is {tuple(components)}: too {'long' if largest > 1 else 'short'} to "
+            f"compute with; divide it by its largest component"
+        )
+    raise ValueError(
+        f"axis{where} is {tuple(components)}: a zero vector points nowhere, so there is "
+        f"nothing to turn about. Was a difference of equal vectors taken?"
+    )
 
 
 AXIS_GUARD = (3, _length_missing, _explain_zero)
@@ -65,7 +68,7 @@ def dcm_from_axis_angle(axis, angle):
     -----
     Source: Rodrigues' formula Rodrigues (1840), transposed to act on components.
     """
-    return evaluate(axis_angle_formula, (3, 3), ('axis', axis, (3,)), ('angle', angle, ()), guard=AXIS_GUARD)
+    return evaluate(axis_angle_formula, (3, 3), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD)
 
 
 def axis_angle_formula(f, x, y, z, angle):
@@ -75,9 +78,17 @@ def axis_angle_formula(f, x, y, z, angle):
     rest = (1 - cosine) / length**2
     sx, sy, sz, rx, ry = sine * x, sine * y, sine * z, rest * x, rest * y
     xy, xz, yz = rx * y, rx * z, ry * z
-    return (cosine + rx * x, xy + sz, xz - sy,
-            xy - sz, cosine + ry * y, yz + sx,
-            xz + sy, yz - sx, cosine + rest * z * z)
+    return (
+        cosine + rx * x,
+        xy + sz,
+        xz - sy,
+        xy - sz,
+        cosine + ry * y,
+        yz + sx,
+        xz + sy,
+        yz - sx,
+        cosine + rest * z * z,
+    )
 
 
 def quaternion_from_axis_angle(axis, angle):
@@ -106,11 +117,12 @@ def quaternion_from_axis_angle(axis, angle):
     -----
     Source: Moore (2022), section "Alternatives for representing orientation"; Shuster (1993).
     """
+
     def formula(f, x, y, z, angle):
         share = f.sin(angle / 2) / f.norm(x, y, z)
         return f.cos(angle / 2), share * x, share * y, share * z
 
-    return evaluate(formula, (4,), ('axis', axis, (3,)), ('angle', angle, ()), guard=AXIS_GUARD)
+    return evaluate(formula, (4,), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD)
 
 
 def _axis_angle_components(f, scalar, x, y, z):
@@ -154,9 +166,10 @@ def axis_angle_from_dcm(dcm):
     >>> axis.tolist(), round(angle, 12)
     ([0.0, 0.0, -1.0], 0.5)
     """
+
     def formula(f, *entries):
         return _axis_angle_components(f, *quaternion_components_from_dcm(f, *entries))
 
-    combined = evaluate(formula, (4,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    combined = evaluate(formula, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
     angle = combined[..., 3]
     return combined[..., :3], angle if angle.ndim else float(angle)

@@ -30,18 +30,18 @@ def _read(value, name):
             array = number_array(value, item, name)
         except WrongShape:
             continue
-        flat = array.reshape(*array.shape[:array.ndim - len(item)], math.prod(item))
+        flat = array.reshape(*array.shape[: array.ndim - len(item)], math.prod(item))
         return flat.tolist() if flat.ndim == 1 else [flat[..., k] for k in range(math.prod(item))]
-    raise ValueError(f'{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of '
-                     f'shape (4,)')
+    raise ValueError(f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of shape (4,)")
 
 
 def _read_both(first, second, *names):
     first, second = _read(first, names[0]), _read(second, names[1])
     if len(first) != len(second):
-        kinds = {9: 'a direction cosine matrix', 4: 'a quaternion'}
-        raise ValueError(f'{names[0]} is {kinds[len(first)]} and {names[1]} is {kinds[len(second)]}: '
-                         f'convert one of them')
+        kinds = {9: "a direction cosine matrix", 4: "a quaternion"}
+        raise ValueError(
+            f"{names[0]} is {kinds[len(first)]} and {names[1]} is {kinds[len(second)]}: convert one of them"
+        )
     return first, second
 
 
@@ -51,11 +51,12 @@ def _unknowns(components):
     for expression in filter(is_symbolic, components):
         import sympy
         from sympy.core.function import AppliedUndef
+
         functions = expression.atoms(AppliedUndef)
         # The time inside theta(t) is no unknown of its own, unless it stands outside as well.
-        rest = expression.xreplace({function: sympy.Dummy('function') for function in functions})
+        rest = expression.xreplace({function: sympy.Dummy("function") for function in functions})
         for atom in functions | (rest.free_symbols & expression.free_symbols):
-            names.setdefault(getattr(atom, 'name', None) or atom.func.__name__, set()).add(atom)
+            names.setdefault(getattr(atom, "name", None) or atom.func.__name__, set()).add(atom)
     return dict(sorted(names.items()))
 
 
@@ -76,6 +77,7 @@ def _put_in(components, names, point):
     if not any(map(is_symbolic, components)):
         return components
     import sympy
+
     values = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
     return [complex(entry.xreplace(values).evalf()) if is_symbolic(entry) else entry for entry in components]
 
@@ -126,10 +128,10 @@ def same_orientation(first, second, tolerance=TOLERANCE):
     >>> same_orientation(simple_dcm('z', a) * simple_dcm('z', b), simple_dcm('z', a + b))
     True
     """
-    first, second = _read_both(first, second, 'first', 'second')
-    shapes = [getattr(entries[0], 'shape', ()) for entries in (first, second)]
+    first, second = _read_both(first, second, "first", "second")
+    shapes = [getattr(entries[0], "shape", ()) for entries in (first, second)]
     if () not in shapes and shapes[0] != shapes[1]:
-        raise ValueError(f'batches of shapes {shapes[0]} and {shapes[1]} cannot be compared')
+        raise ValueError(f"batches of shapes {shapes[0]} and {shapes[1]} cannot be compared")
     return all(_match(*values, tolerance) for values in at_random_points(first, second))
 
 
@@ -141,13 +143,16 @@ class Diagnosis(NamedTuple):
 
     def __str__(self):
         if self.same:
-            return 'The same orientation.'
+            return "The same orientation."
         if not self.causes:
-            return 'Not the same orientation, and none of the usual mix-ups.'
+            return "Not the same orientation, and none of the usual mix-ups."
         if len(self.causes) == 1:
-            return f'Not the same orientation: {self.causes[0]}.'
-        return ('Not the same orientation. These mix-ups are mathematically the same here: '
-                + '; or '.join(self.causes) + '.')
+            return f"Not the same orientation: {self.causes[0]}."
+        return (
+            "Not the same orientation. These mix-ups are mathematically the same here: "
+            + "; or ".join(self.causes)
+            + "."
+        )
 
 
 def diagnose(given, expected, angles=None, sequence=None):
@@ -186,14 +191,17 @@ def diagnose(given, expected, angles=None, sequence=None):
     >>> diagnose(dcm_from_space_fixed(angles, 'zxy'), expected).causes
     ('the matrices are multiplied in the other order, which is space fixed',)
     """
-    given, expected = _read_both(given, expected, 'given', 'expected')
-    if any(getattr(entry, 'ndim', 0) for entry in given + expected):
-        raise ValueError('diagnose looks at one answer at a time, not at a batch')
+    given, expected = _read_both(given, expected, "given", "expected")
+    if any(getattr(entry, "ndim", 0) for entry in given + expected):
+        raise ValueError("diagnose looks at one answer at a time, not at a batch")
     if (angles is None) != (sequence is None):
-        raise ValueError('angles and sequence belong together: give both, or neither')
+        raise ValueError("angles and sequence belong together: give both, or neither")
     if angles is not None:
-        angles = (symbol_components(angles, (3,), 'angles') if is_symbolic(angles)
-                  else number_array(angles, (3,), 'angles').tolist())
+        angles = (
+            symbol_components(angles, (3,), "angles")
+            if is_symbolic(angles)
+            else number_array(angles, (3,), "angles").tolist()
+        )
     names = _unknowns(given + expected + (angles or []))
     points = _draw(names)
     answers, truths = ([_put_in(entries, names, point) for point in points] for entries in (given, expected))
@@ -208,7 +216,8 @@ def diagnose(given, expected, angles=None, sequence=None):
     mixups = itertools.chain(
         _transpositions(truths) if len(given) == 9 else _quaternion_mixups(truths),
         _substitutions(expected, names, points),
-        _sequence_mixups(*turns, given=angles is not None, symbols=bool(names)))
+        _sequence_mixups(*turns, given=angles is not None, symbols=bool(names)),
+    )
     causes = [cause for cause, values in mixups if all(map(_match, answers, values))]
     return Diagnosis(False, tuple(dict.fromkeys(causes)))
 
@@ -218,17 +227,19 @@ def _fault(values):
     for entries in values:
         try:
             if len(entries) == 9:
-                demand_dcm(entries, name='it')
+                demand_dcm(entries, name="it")
             else:
-                demand_unit_length(entries, name='it')
+                demand_unit_length(entries, name="it")
         except ValueError as error:
             return str(error)
     return None
 
 
 def _transpositions(truths):
-    yield ('it is the transpose, the orientation the other way round',
-           [[entries[3 * column + row] for row in range(3) for column in range(3)] for entries in truths])
+    yield (
+        "it is the transpose, the orientation the other way round",
+        [[entries[3 * column + row] for row in range(3) for column in range(3)] for entries in truths],
+    )
 
 
 def _substitutions(expected, names, points):
@@ -239,16 +250,22 @@ def _substitutions(expected, names, points):
         return (_put_in(expected, names, {**point, **change(point)}) for point in points)
 
     for name in own:
-        yield f'{name} has the wrong sign', with_changes(lambda p: {name: -p[name]})
+        yield f"{name} has the wrong sign", with_changes(lambda p: {name: -p[name]})
     for first, second in itertools.combinations(own, 2):
-        yield (f'{first} and {second} have changed places',
-               with_changes(lambda p: {first: p[second], second: p[first]}))
+        yield (
+            f"{first} and {second} have changed places",
+            with_changes(lambda p: {first: p[second], second: p[first]}),
+        )
     for group in dict.fromkeys([tuple(own), *((name,) for name in own)] if own else []):
-        those = f'{", ".join(group)} {"was" if len(group) == 1 else "were"}'
-        yield (f'{those} given in degrees where radians are expected',
-               with_changes(lambda p: {name: math.degrees(p[name]) for name in group}))
-        yield (f'{those} turned from degrees to radians once too often',
-               with_changes(lambda p: {name: math.radians(p[name]) for name in group}))
+        those = f"{', '.join(group)} {'was' if len(group) == 1 else 'were'}"
+        yield (
+            f"{those} given in degrees where radians are expected",
+            with_changes(lambda p: {name: math.degrees(p[name]) for name in group}),
+        )
+        yield (
+            f"{those} turned from degrees to radians once too often",
+            with_changes(lambda p: {name: math.radians(p[name]) for name in group}),
+        )
 
 
 def _turns(expected, truths, names, points, angles, sequence):
@@ -257,7 +274,7 @@ def _turns(expected, truths, names, points, angles, sequence):
         return _recognise(truths, list(_unknowns(expected)), points) if len(expected) == 9 else (None, None)
     values = [[entry.real for entry in _put_in(angles, names, point)] for point in points]
     if not all(_match(truth, entries) for truth, entries in zip(truths, _body_fixed(values, sequence))):
-        raise ValueError(f'expected is not the body fixed orientation {sequence} of these angles')
+        raise ValueError(f"expected is not the body fixed orientation {sequence} of these angles")
     return values, sequence
 
 
@@ -271,22 +288,27 @@ def _sequence_mixups(values, sequence, given, symbols):
     if sequence is None:
         return
     back = [angles[::-1] for angles in values]
-    yield ('the matrices are multiplied in the other order, which is space fixed',
-           _body_fixed(back, sequence[::-1]))
+    yield ("the matrices are multiplied in the other order, which is space fixed", _body_fixed(back, sequence[::-1]))
     if not given and 0 in values[0]:
         return  # two turns are recognised as part of several sequences
-    yield 'the angles are in reverse order', _body_fixed(back, sequence)
+    yield "the angles are in reverse order", _body_fixed(back, sequence)
     for other in SEQUENCES:
         if other != sequence:
-            yield f'it is the sequence {other}, not {sequence}', _body_fixed(values, other)
+            yield f"it is the sequence {other}, not {sequence}", _body_fixed(values, other)
     if not symbols:
-        for which, signs in (('first', (-1, 1, 1)), ('second', (1, -1, 1)), ('third', (1, 1, -1))):
-            yield (f'the angle of the {which} turn has the wrong sign',
-                   _body_fixed([[a * b for a, b in zip(angles, signs)] for angles in values], sequence))
-        yield ('the angles were given in degrees where radians are expected',
-               _body_fixed([list(map(math.degrees, angles)) for angles in values], sequence))
-        yield ('the angles were turned from degrees to radians once too often',
-               _body_fixed([list(map(math.radians, angles)) for angles in values], sequence))
+        for which, signs in (("first", (-1, 1, 1)), ("second", (1, -1, 1)), ("third", (1, 1, -1))):
+            yield (
+                f"the angle of the {which} turn has the wrong sign",
+                _body_fixed([[a * b for a, b in zip(angles, signs)] for angles in values], sequence),
+            )
+        yield (
+            "the angles were given in degrees where radians are expected",
+            _body_fixed([list(map(math.degrees, angles)) for angles in values], sequence),
+        )
+        yield (
+            "the angles were turned from degrees to radians once too often",
+            _body_fixed([list(map(math.radians, angles)) for angles in values], sequence),
+        )
 
 
 def _recognise(truths, names, points):
@@ -307,11 +329,13 @@ def _quaternion_mixups(truths):
     def rearranged(rule):
         return [rule(*entries) for entries in truths]
 
-    yield ('the scalar part stands last; in this book it stands first',
-           rearranged(lambda a, b, c, d: [b, c, d, a]))
-    yield ('it is the conjugate, the orientation the other way round',
-           rearranged(lambda a, b, c, d: [a, -b, -c, -d]))
-    yield ('it is the conjugate, and the scalar part stands last; in this book it stands first',
-           rearranged(lambda a, b, c, d: [-b, -c, -d, a]))
-    yield ('the angle was not halved: a quaternion holds the cosine and sine of half the angle',
-           rearranged(lambda *q: product_components(NUMBERS, *q, *q)))
+    yield ("the scalar part stands last; in this book it stands first", rearranged(lambda a, b, c, d: [b, c, d, a]))
+    yield ("it is the conjugate, the orientation the other way round", rearranged(lambda a, b, c, d: [a, -b, -c, -d]))
+    yield (
+        "it is the conjugate, and the scalar part stands last; in this book it stands first",
+        rearranged(lambda a, b, c, d: [-b, -c, -d, a]),
+    )
+    yield (
+        "the angle was not halved: a quaternion holds the cosine and sine of half the angle",
+        rearranged(lambda *q: product_components(NUMBERS, *q, *q)),
+    )

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
 
-AXES = ('x', 'y', 'z')
+AXES = ("x", "y", "z")
 
 
 def simple_dcm(axis, angle):
@@ -52,8 +52,10 @@ def simple_dcm(axis, angle):
     Source: Moore (2022), section "Simple orientations".
     """
     if not isinstance(axis, str) or axis not in AXES:
-        raise ValueError(f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction "
-                         f"use dcm_from_axis_angle, and for -y turn about y through the negative angle")
+        raise ValueError(
+            f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction "
+            f"use dcm_from_axis_angle, and for -y turn about y through the negative angle"
+        )
     first = AXES.index(axis)
     second, third = (first + 1) % 3, (first + 2) % 3
 
@@ -65,7 +67,7 @@ def simple_dcm(axis, angle):
         entries[3 * second + third], entries[3 * third + second] = sine, -sine
         return entries
 
-    return evaluate(formula, (3, 3), ('angle', angle, ()))
+    return evaluate(formula, (3, 3), ("angle", angle, ()))
 
 
 def check_dcm(dcm):
@@ -97,19 +99,20 @@ def check_dcm(dcm):
     """
     if is_symbolic(dcm):
         from .comparison import at_random_points
-        entries = symbol_components(dcm, (3, 3), 'dcm')
+
+        entries = symbol_components(dcm, (3, 3), "dcm")
         unknown = any(entry.free_symbols for entry in entries)
-        for values, in at_random_points(entries):
-            demand_dcm(values, ' at random values of its symbols' if unknown else '')
+        for (values,) in at_random_points(entries):
+            demand_dcm(values, " at random values of its symbols" if unknown else "")
     else:
-        evaluate(lambda f, *entries: entries, (3, 3), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+        evaluate(lambda f, *entries: entries, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
-def demand_dcm(entries, where='', name='dcm'):
+def demand_dcm(entries, where="", name="dcm"):
     """Raise the error of :func:`check_dcm` for nine numbers, with the caller's words for them."""
     imaginary = max(abs(entry.imag) for entry in entries)
     if imaginary > TOLERANCE:
-        raise ValueError(f'{name}{where} is not real: an entry has an imaginary part of {imaginary:.3g}')
+        raise ValueError(f"{name}{where} is not real: an entry has an imaginary part of {imaginary:.3g}")
     entries = [entry.real for entry in entries]
     if not _excess(NUMBERS, *entries) <= TOLERANCE:
         _explain(entries, where, name)
@@ -123,40 +126,47 @@ def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
         abs(xx * yx + xy * yy + xz * yz),
         abs(xy * yz - xz * yy - zx),
         abs(xz * yx - xx * yz - zy),
-        abs(xx * yy - xy * yx - zz))
+        abs(xx * yy - xy * yx - zz),
+    )
 
 
-def _explain(entries, where, name='dcm'):
-    rows = {'x': entries[0:3], 'y': entries[3:6], 'z': entries[6:9]}
+def _explain(entries, where, name="dcm"):
+    rows = {"x": entries[0:3], "y": entries[3:6], "z": entries[6:9]}
     names = list(rows)
-    products = {(p, q): sum(a * b for a, b in zip(rows[p], rows[q]))
-                for k, p in enumerate(names) for q in names[k:]}
+    products = {(p, q): sum(a * b for a, b in zip(rows[p], rows[q])) for k, p in enumerate(names) for q in names[k:]}
     faults = {pair: value - (pair[0] == pair[1]) for pair, value in products.items()}
     (p, q), worst = max(faults.items(), key=lambda item: abs(item[1]))
     (a, b, c), (d, e, g), (h, k, m) = rows.values()
     determinant = a * (e * m - g * k) - b * (d * m - g * h) + c * (d * k - e * h)
     if abs(worst) <= 2 * TOLERANCE and determinant < 0:
-        raise ValueError(f'{name}{where} is orthogonal but left-handed: its determinant is '
-                         f'{determinant:.6g}, not +1. One row or column has the wrong sign, or two '
-                         f'have changed places')
+        raise ValueError(
+            f"{name}{where} is orthogonal but left-handed: its determinant is "
+            f"{determinant:.6g}, not +1. One row or column has the wrong sign, or two "
+            f"have changed places"
+        )
     if p == q:
-        fault = f'row {p} has length {products[p, q] ** 0.5:.12g}, not 1'
+        fault = f"row {p} has length {products[p, q] ** 0.5:.12g}, not 1"
     else:
-        fault = f'rows {p} and {q} have dot product {products[p, q]:.6g}, not 0'
+        fault = f"rows {p} and {q} have dot product {products[p, q]:.6g}, not 0"
     squares = [products[name, name] for name in names]
     # A scale closer to 1 than that cannot be told from rounding.
-    scaled = abs(worst) > 1e-5 and max(squares) - min(squares) <= 1e-6 * max(squares) and all(
-        abs(value) <= 1e-6 * max(squares) for (p, q), value in products.items() if p != q)
+    scaled = (
+        abs(worst) > 1e-5
+        and max(squares) - min(squares) <= 1e-6 * max(squares)
+        and all(abs(value) <= 1e-6 * max(squares) for (p, q), value in products.items() if p != q)
+    )
     if max(map(abs, entries)) == 0:
-        cause = 'Every entry is zero'
+        cause = "Every entry is zero"
     elif scaled:
-        cause = (f'The whole matrix is {squares[0] ** 0.5:.8g} times an orthogonal one, as from a '
-                 f'quaternion that is not of unit length')
+        cause = (
+            f"The whole matrix is {squares[0] ** 0.5:.8g} times an orthogonal one, as from a "
+            f"quaternion that is not of unit length"
+        )
     elif abs(worst) < 0.1:
-        cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix'
+        cause = "Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix"
     else:
-        cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad'
-    raise ValueError(f'{name}{where} is not orthogonal: {fault}. {cause}')
+        cause = "An entry or a sign is wrong, or the rows are not unit vectors of one triad"
+    raise ValueError(f"{name}{where} is not orthogonal: {fault}. {cause}")
 
 
 #: What every conversion from a direction cosine matrix asks of it first.
@@ -206,23 +216,25 @@ def nearest_dcm(matrix):
     Source: Kabsch (1978), Umeyama (1991).
     """
     import numpy
-    array = number_array(matrix, (3, 3), 'matrix')
+
+    array = number_array(matrix, (3, 3), "matrix")
     left, scales, right = numpy.linalg.svd(array)
     handedness = numpy.sign(numpy.linalg.det(left @ right))
     gap = scales[..., 1] + handedness * scales[..., 2]
     excess = gap - TOLERANCE * scales[..., 0]
     if numpy.any(excess <= 0):
         worst = numpy.unravel_index(numpy.argmin(excess), gap.shape)
-        where = f' (item {[int(k) for k in worst]})' if worst else ''
+        where = f" (item {[int(k) for k in worst]})" if worst else ""
         raise ValueError(
-            f'several direction cosine matrices are equally near to matrix{where}: its singular values are '
-            f'{", ".join(map(_six_decimals, scales[worst]))} and its determinant is '
-            f'{_six_decimals(numpy.linalg.det(array[worst]))}. It is a mirror image, or its rows all lie '
-            f'along one line')
+            f"several direction cosine matrices are equally near to matrix{where}: its singular values are "
+            f"{', '.join(map(_six_decimals, scales[worst]))} and its determinant is "
+            f"{_six_decimals(numpy.linalg.det(array[worst]))}. It is a mirror image, or its rows all lie "
+            f"along one line"
+        )
     left[..., :, 2] *= handedness[..., None]
     dcm = left @ right
     return NearestDCM(dcm, numpy.linalg.norm(dcm - array, axis=(-2, -1)))
 
 
 def _six_decimals(number):
-    return f'{round(float(number), 6) + 0.0:.6f}'  # adding zero turns -0 into 0
+    return f"{round(float(number), 6) + 0.0:.6f}"  # adding zero turns -0 into 0

@@ -4,10 +4,10 @@ from ._numbers_and_symbols import evaluate, is_symbolic, number_array, symbol_co
 from .direction_cosines import AXES, DCM_GUARD
 
 #: Sequences whose first and last axes are the same.
-PROPER_EULER = ('zxz', 'xyx', 'yzy', 'zyz', 'xzx', 'yxy')
+PROPER_EULER = ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy")
 
 #: Sequences about three different axes.
-TAIT_BRYAN = ('xyz', 'yzx', 'zxy', 'xzy', 'zyx', 'yxz')
+TAIT_BRYAN = ("xyz", "yzx", "zxy", "xzy", "zyx", "yxz")
 
 #: The twelve sequences of axes that reach every orientation.
 SEQUENCES = PROPER_EULER + TAIT_BRYAN
@@ -28,14 +28,15 @@ def layout_of(sequence):
     except (KeyError, TypeError):
         pass
     if isinstance(sequence, str) and sequence.lower() in _LAYOUTS:
-        cause = (f'write {sequence.lower()!r}: sequences are lower case and body fixed; for turns about '
-                 f'the axes of the frame that stays, there are functions named space_fixed')
+        cause = (
+            f"write {sequence.lower()!r}: sequences are lower case and body fixed; for turns about "
+            f"the axes of the frame that stays, there are functions named space_fixed"
+        )
     elif isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set(AXES):
-        cause = ('two turns in a row about one axis are one turn, so such a sequence does not reach '
-                 'every orientation')
+        cause = "two turns in a row about one axis are one turn, so such a sequence does not reach every orientation"
     else:
-        cause = f'the twelve are {", ".join(SEQUENCES)}'
-    raise ValueError(f'{sequence!r} is not a sequence of Euler angles: {cause}')
+        cause = f"the twelve are {', '.join(SEQUENCES)}"
+    raise ValueError(f"{sequence!r} is not a sequence of Euler angles: {cause}")
 
 
 def dcm_from_body_fixed(angles, sequence):
@@ -79,7 +80,7 @@ def dcm_from_body_fixed(angles, sequence):
     The three turns are multiplied out once, for axes in cyclic order; the other order only changes
     the sign of the angles. Source: Shuster (1993), Diebel (2006).
     """
-    return evaluate(body_fixed_formula(sequence), (3, 3), ('angles', angles, (3,)))
+    return evaluate(body_fixed_formula(sequence), (3, 3), ("angles", angles, (3,)))
 
 
 def body_fixed_formula(sequence):
@@ -152,6 +153,7 @@ def body_fixed_from_dcm(dcm, sequence):
     def formula(f, *entries):
         def c(row, column):
             return entries[3 * row + column]
+
         # Adding zero turns -0 into 0: atan2(0, -0) would be pi.
         if proper:
             psi = f.atan2(sign * c(i, j) + 0.0, 0.0 - sign * c(i, k))
@@ -169,7 +171,7 @@ def body_fixed_from_dcm(dcm, sequence):
             phi = f.atan2(c(i, j) * cosine + c(i, k) * sine, jj)
         return sign * psi, sign * theta, sign * phi
 
-    return evaluate(formula, (3,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
 def dcm_from_space_fixed(angles, sequence):
@@ -233,7 +235,7 @@ def gimbal_lock_margin(angles, sequence):
     >>> gimbal_lock_margin((0.3, math.pi / 2 - 0.01, 0.1), 'zxy').__round__(12)
     0.01
     """
-    return evaluate(lock_margin_formula(sequence), (), ('angles', angles, (3,)), symbols=False)
+    return evaluate(lock_margin_formula(sequence), (), ("angles", angles, (3,)), symbols=False)
 
 
 def lock_margin_formula(sequence):
@@ -252,5 +254,5 @@ def lock_margin_formula(sequence):
 
 def _reversed(angles):
     if is_symbolic(angles):
-        return symbol_components(angles, (3,), 'angles')[::-1]
-    return number_array(angles, (3,), 'angles')[..., ::-1]
+        return symbol_components(angles, (3,), "angles")[::-1]
+    return number_array(angles, (3,), "angles")[..., ::-1]

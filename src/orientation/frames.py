@@ -29,12 +29,12 @@ class _Turn(NamedTuple):
         """Shape of the batch that this turn is, () for a single one."""
         if self.is_symbolic():
             return ()
-        return getattr(self.angle, 'shape', ()) if self.axis else self.matrix.shape[:-2]
+        return getattr(self.angle, "shape", ()) if self.axis else self.matrix.shape[:-2]
 
     def back(self):
         if self.axis:
             return self._replace(angle=-self.angle)
-        return self._replace(matrix=_transposed(self.matrix), words=self.words + r',\ \text{back}')
+        return self._replace(matrix=_transposed(self.matrix), words=self.words + r",\ \text{back}")
 
 
 class _Edge(NamedTuple):
@@ -92,12 +92,12 @@ class Frames:
             If the two frames are connected already and not by this same orientation.
         """
         symbolic = is_symbolic((axis, angle))
-        angle = _own(angle, (), 'angle', symbolic)
+        angle = _own(angle, (), "angle", symbolic)
         if isinstance(axis, str):
             simple_dcm(axis, angle)  # refuses what is not valid, before it is stored
-            return self._with(frame, reference, _Turn(axis, angle, None, ''))
-        axis = _own(axis, (3,), 'axis', symbolic)
-        words = rf'\text{{axis }}({", ".join(map(_latex, axis))}),\ {_latex(angle)}'
+            return self._with(frame, reference, _Turn(axis, angle, None, ""))
+        axis = _own(axis, (3,), "axis", symbolic)
+        words = rf"\text{{axis }}({', '.join(map(_latex, axis))}),\ {_latex(angle)}"
         return self._with(frame, reference, _Turn(None, None, dcm_from_axis_angle(axis, angle), words))
 
     def orient_body_fixed(self, frame, reference, angles, sequence):
@@ -106,11 +106,10 @@ class Frames:
         Parameters are those of :func:`orientation.dcm_from_body_fixed`.
         """
         dcm_from_body_fixed(angles, sequence)  # refuses what is not valid, before it is stored
-        angles = _own(angles, (3,), 'angles', is_symbolic(angles))
+        angles = _own(angles, (3,), "angles", is_symbolic(angles))
         if not is_symbolic(angles):
             angles = [angles[..., k] for k in range(3)]
-        return self._with(frame, reference,
-                          *(_Turn(axis, angle, None, '') for axis, angle in zip(sequence, angles)))
+        return self._with(frame, reference, *(_Turn(axis, angle, None, "") for axis, angle in zip(sequence, angles)))
 
     def orient_dcm(self, frame, reference, dcm):
         r"""Return frames with ``dcm`` as the matrix of ``frame`` with respect to ``reference``.
@@ -119,23 +118,23 @@ class Frames:
         """
         check_dcm(dcm)
         symbolic = is_symbolic(dcm)
-        dcm = _own(dcm, (3, 3), 'dcm', symbolic)
+        dcm = _own(dcm, (3, 3), "dcm", symbolic)
         if symbolic:
             import sympy
+
             dcm = sympy.Matrix(3, 3, dcm)
-        return self._with(frame, reference, _Turn(None, None, dcm, r'\text{matrix}'))
+        return self._with(frame, reference, _Turn(None, None, dcm, r"\text{matrix}"))
 
     def orient_quaternion(self, frame, reference, quaternion):
         """Return frames with ``frame`` turned in ``reference`` by a unit quaternion, scalar first."""
-        return self._with(frame, reference,
-                          _Turn(None, None, dcm_from_quaternion(quaternion), r'\text{quaternion}'))
+        return self._with(frame, reference, _Turn(None, None, dcm_from_quaternion(quaternion), r"\text{quaternion}"))
 
     def _with(self, frame, reference, *turns):
         for name in (frame, reference):
             if not isinstance(name, str) or not name.isidentifier():
                 raise ValueError(f"a frame is named by a string such as 'A', not {name!r}")
         if frame == reference:
-            raise ValueError(f'{frame} cannot be oriented with respect to itself')
+            raise ValueError(f"{frame} cannot be oriented with respect to itself")
         edge = _Edge(frame, reference, turns)
         edges = self._walk(frame, reference)
         if edges is None:
@@ -145,8 +144,9 @@ class Frames:
         if len(edges) == 1 and _same(edge.turns, edges[0].turns):
             return self
         raise ValueError(
-            f'{frame} and {reference} are already connected, by {self.path(frame, reference)}: a second '
-            f'path could contradict the first. To change an orientation, build the frames anew')
+            f"{frame} and {reference} are already connected, by {self.path(frame, reference)}: a second "
+            f"path could contradict the first. To change an orientation, build the frames anew"
+        )
 
     def _walk(self, target, source):
         """Edges from the source to the target, each turned the way it is walked; None if there are none."""
@@ -164,15 +164,15 @@ class Frames:
         known = {name for edge in self._edges for name in (edge.frame, edge.reference)}
         for name in (target, source):
             if name not in known:
-                raise ValueError(f'there is no frame {name!r} here; there are {", ".join(sorted(known)) or "none"}')
+                raise ValueError(f"there is no frame {name!r} here; there are {', '.join(sorted(known)) or 'none'}")
         edges = self._walk(target, source)
         if edges is None:
-            raise ValueError(f'no path of orientations connects {target} and {source}')
+            raise ValueError(f"no path of orientations connects {target} and {source}")
         return edges
 
     def path(self, target, source):
         """Return the frames from ``target`` to ``source`` as text, in the order of the matrices."""
-        return ' - '.join([*(edge.frame for edge in reversed(self._edges_between(target, source))), source])
+        return " - ".join([*(edge.frame for edge in reversed(self._edges_between(target, source))), source])
 
     def dcm(self, target, source):
         r"""Direction cosine matrix of ``target`` with respect to ``source``, over the path between them.
@@ -187,7 +187,7 @@ class Frames:
             shapes, or a batch and symbols.
         """
         turns = [turn for edge in self._edges_between(target, source) for turn in edge.turns]
-        return _product(turns or [_Turn('x', self._zero(), None, '')])
+        return _product(turns or [_Turn("x", self._zero(), None, "")])
 
     def _zero(self):
         """The angle of a frame in itself: of the kind that these frames hold."""
@@ -195,18 +195,22 @@ class Frames:
         if not symbols:
             return 0.0
         import sympy
+
         return sympy.Integer(0)
 
     def equation(self, target, source):
         r"""Return :math:`{}^D\mathbf{C}^A` as the product over the path, each factor with its turns."""
         edges = self._edges_between(target, source)
-        factors = [rf'\underbrace{{{_symbol(edge.frame, edge.reference)}}}_{{{_description(edge)}}}'
-                   for edge in reversed(edges)]
-        return Equation(f'{_symbol(target, source)} = ' + r'\; '.join(factors or [r'\mathbf{I}']))
+        factors = [
+            rf"\underbrace{{{_symbol(edge.frame, edge.reference)}}}_{{{_description(edge)}}}"
+            for edge in reversed(edges)
+        ]
+        return Equation(f"{_symbol(target, source)} = " + r"\; ".join(factors or [r"\mathbf{I}"]))
 
     def reference_frames(self):
         """Return a dictionary of new SymPy ``ReferenceFrame`` objects, oriented like these frames."""
         import sympy.physics.mechanics as me
+
         names = list(dict.fromkeys(name for edge in self._edges for name in (edge.reference, edge.frame)))
         frames = {name: me.ReferenceFrame(name) for name in names}
         done = set()
@@ -224,7 +228,7 @@ class Frames:
         return frames
 
     def __repr__(self):
-        return f'Frames({", ".join(f"{edge.frame} in {edge.reference}" for edge in self._edges)})'
+        return f"Frames({', '.join(f'{edge.frame} in {edge.reference}' for edge in self._edges)})"
 
 
 class Equation:
@@ -234,7 +238,7 @@ class Equation:
         self.tex = tex
 
     def _repr_latex_(self):
-        return rf'$\displaystyle {self.tex}$'
+        return rf"$\displaystyle {self.tex}$"
 
     def __repr__(self):
         return self.tex
@@ -243,13 +247,15 @@ class Equation:
 def _orient(frame, reference, edge):
     shapes = [turn.batch() for turn in edge.turns if turn.batch()]
     if shapes:
-        raise ValueError(f'{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}; a '
-                         f'ReferenceFrame holds one orientation')
+        raise ValueError(
+            f"{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}; a ReferenceFrame holds one orientation"
+        )
     if len(edge.turns) == 1 and edge.turns[0].axis:
-        turn, = edge.turns
+        (turn,) = edge.turns
         frame.orient_axis(reference, getattr(reference, turn.axis), turn.angle)
         return
     import sympy
+
     frame.orient_dcm(reference, sympy.Matrix(_product(edge.turns)))
 
 
@@ -273,15 +279,19 @@ def _transposed(matrix):
 def _product(turns):
     shapes = dict.fromkeys(turn.batch() for turn in turns if turn.batch())
     if shapes and any(turn.is_symbolic() for turn in turns):
-        raise ValueError('this path holds symbols and a batch of numbers: put numbers in for the symbols '
-                         'first, or one item for the batch')
+        raise ValueError(
+            "this path holds symbols and a batch of numbers: put numbers in for the symbols "
+            "first, or one item for the batch"
+        )
     if len(shapes) > 1:
         import numpy
+
         try:
             numpy.broadcast_shapes(*shapes)
         except ValueError:
-            raise ValueError(f'the batches along this path do not fit each other: their shapes are '
-                             f'{" and ".join(map(str, shapes))}') from None
+            raise ValueError(
+                f"the batches along this path do not fit each other: their shapes are {' and '.join(map(str, shapes))}"
+            ) from None
     joined = []
     for turn in turns:
         if joined and turn.axis and turn.axis == joined[-1].axis:
@@ -290,6 +300,7 @@ def _product(turns):
     matrices = [turn.dcm() for turn in joined]
     if any(map(is_symbolic, matrices)):
         import sympy
+
         matrices = [sympy.Matrix(matrix) for matrix in matrices]
     result = matrices[0]
     for matrix in matrices[1:]:
@@ -300,15 +311,15 @@ def _product(turns):
 def _latex(value):
     if is_symbolic(value):
         import sympy
+
         return sympy.latex(value)
-    return f'{value:.6g}' if not getattr(value, 'ndim', 0) else r'\text{batch}'
+    return f"{value:.6g}" if not getattr(value, "ndim", 0) else r"\text{batch}"
 
 
 def _symbol(target, source):
-    target, source = (name.replace('_', r'\_') for name in (target, source))
-    return rf'{{}}^{{{target}}}\mathbf{{C}}^{{{source}}}'
+    target, source = (name.replace("_", r"\_") for name in (target, source))
+    return rf"{{}}^{{{target}}}\mathbf{{C}}^{{{source}}}"
 
 
 def _description(edge):
-    return r';\ '.join(rf'{turn.axis},\ {_latex(turn.angle)}' if turn.axis else turn.words
-                       for turn in edge.turns)
+    return r";\ ".join(rf"{turn.axis},\ {_latex(turn.angle)}" if turn.axis else turn.words for turn in edge.turns)

@@ -10,23 +10,25 @@ def _length_excess(f, scalar, x, y, z):
     return abs(square * square - 1)
 
 
-def _explain_length(components, where, name='quaternion'):
+def _explain_length(components, where, name="quaternion"):
     length = sum(entry * entry for entry in components) ** 0.5
     if length == 0:
-        cause = 'the zero quaternion is no orientation'
+        cause = "the zero quaternion is no orientation"
     elif abs(length - 1) < 0.05:
-        cause = 'were its components rounded, or integrated without restoring the length? Divide by it'
+        cause = "were its components rounded, or integrated without restoring the length? Divide by it"
     else:
-        cause = ('is the angle halved in the cosine and in the sine, and the axis a unit vector? '
-                 'Divide by the length only if you know where it comes from')
-    raise ValueError(f'{name}{where} has length {length:.12g}, not 1: {cause}')
+        cause = (
+            "is the angle halved in the cosine and in the sine, and the axis a unit vector? "
+            "Divide by the length only if you know where it comes from"
+        )
+    raise ValueError(f"{name}{where} has length {length:.12g}, not 1: {cause}")
 
 
-def demand_unit_length(entries, name='quaternion'):
+def demand_unit_length(entries, name="quaternion"):
     """Raise the error of a quaternion that is not of unit length, for four numbers."""
     entries = [entry.real for entry in entries]
     if not _length_excess(NUMBERS, *entries) <= TOLERANCE:
-        _explain_length(entries, '', name)
+        _explain_length(entries, "", name)
 
 
 QUATERNION_GUARD = (4, _length_excess, _explain_length)
@@ -68,13 +70,22 @@ def dcm_from_quaternion(quaternion):
     -----
     Source: Shuster (1993), Moore (2022).
     """
+
     def formula(f, scalar, x, y, z):
         ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
-        return (ss + xx - yy - zz, 2 * (x * y + scalar * z), 2 * (x * z - scalar * y),
-                2 * (x * y - scalar * z), ss - xx + yy - zz, 2 * (y * z + scalar * x),
-                2 * (x * z + scalar * y), 2 * (y * z - scalar * x), ss - xx - yy + zz)
+        return (
+            ss + xx - yy - zz,
+            2 * (x * y + scalar * z),
+            2 * (x * z - scalar * y),
+            2 * (x * y - scalar * z),
+            ss - xx + yy - zz,
+            2 * (y * z + scalar * x),
+            2 * (x * z + scalar * y),
+            2 * (y * z - scalar * x),
+            ss - xx - yy + zz,
+        )
 
-    return evaluate(formula, (3, 3), ('quaternion', quaternion, (4,)), guard=QUATERNION_GUARD)
+    return evaluate(formula, (3, 3), ("quaternion", quaternion, (4,)), guard=QUATERNION_GUARD)
 
 
 def quaternion_components_from_dcm(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
@@ -82,8 +93,9 @@ def quaternion_components_from_dcm(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
     # Each row is the quaternion times four of its own components; the longest loses no digits.
     scores = [1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz]
     si, sj, sk, ij, ik, jk = yz - zy, zx - xz, xy - yx, xy + yx, xz + zx, yz + zy
-    scalar, x, y, z = f.pick(scores, [(scores[0], si, sj, sk), (si, scores[1], ij, ik),
-                                      (sj, ij, scores[2], jk), (sk, ik, jk, scores[3])])
+    scalar, x, y, z = f.pick(
+        scores, [(scores[0], si, sj, sk), (si, scores[1], ij, ik), (sj, ij, scores[2], jk), (sk, ik, jk, scores[3])]
+    )
     share = f.where(scalar < 0, -1.0, 1.0) / f.norm(scalar, x, y, z)
     return share * scalar + 0.0, share * x + 0.0, share * y + 0.0, share * z + 0.0
 
@@ -122,8 +134,7 @@ def quaternion_from_dcm(dcm):
     -----
     Source: Shepperd (1978), Markley (2008).
     """
-    return evaluate(quaternion_components_from_dcm, (4,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD,
-                    symbols=False)
+    return evaluate(quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
 def multiply_quaternions(first, second):
@@ -153,13 +164,17 @@ def multiply_quaternions(first, second):
     -----
     Source: Hamilton (1844).
     """
-    return evaluate(product_components, (4,), ('first', first, (4,)), ('second', second, (4,)))
+    return evaluate(product_components, (4,), ("first", first, (4,)), ("second", second, (4,)))
 
 
 def product_components(f, a, b, c, d, e, g, h, k):
     """Formula of :func:`multiply_quaternions`."""
-    return (a * e - b * g - c * h - d * k, a * g + b * e + c * k - d * h,
-            a * h - b * k + c * e + d * g, a * k + b * h - c * g + d * e)
+    return (
+        a * e - b * g - c * h - d * k,
+        a * g + b * e + c * k - d * h,
+        a * h - b * k + c * e + d * g,
+        a * k + b * h - c * g + d * e,
+    )
 
 
 def interpolate_quaternions(first, second, share):
@@ -201,16 +216,22 @@ def interpolate_quaternions(first, second, share):
     -----
     Source: Shoemake (1985).
     """
+
     def excess(f, *components):
-        return f.largest(_length_excess(f, *components[:4]), _length_excess(f, *components[4:8]),
-                         f.where(abs(_dot(components[:4], components[4:8])) > 1e-12, 0, 1))
+        return f.largest(
+            _length_excess(f, *components[:4]),
+            _length_excess(f, *components[4:8]),
+            f.where(abs(_dot(components[:4], components[4:8])) > 1e-12, 0, 1),
+        )
 
     def explain(components, where):
-        for name, part in (('first', components[:4]), ('second', components[4:8])):
+        for name, part in (("first", components[:4]), ("second", components[4:8])):
             if _length_excess(None, *part) > TOLERANCE:
                 _explain_length(part, where, name)
-        raise ValueError(f'the orientations{where} are half a turn apart: both ways round are equally '
-                         f'long, so there is no shorter one to follow. Go by way of a third orientation')
+        raise ValueError(
+            f"the orientations{where} are half a turn apart: both ways round are equally "
+            f"long, so there is no shorter one to follow. Go by way of a third orientation"
+        )
 
     def formula(f, a, b, c, d, e, g, h, k, share):
         dot = _dot((a, b, c, d), (e, g, h, k))
@@ -225,8 +246,15 @@ def interpolate_quaternions(first, second, share):
         far = f.where(small, share, f.sin(share * angle) / safe)
         return near * a + far * e, near * b + far * g, near * c + far * h, near * d + far * k
 
-    return evaluate(formula, (4,), ('first', first, (4,)), ('second', second, (4,)), ('share', share, ()),
-                    guard=(8, excess, explain), symbols=False)
+    return evaluate(
+        formula,
+        (4,),
+        ("first", first, (4,)),
+        ("second", second, (4,)),
+        ("share", share, ()),
+        guard=(8, excess, explain),
+        symbols=False,
+    )
 
 
 def _dot(first, second):

@@ -41,6 +41,7 @@ def dcm_from_rotation_vector(vector):
     -----
     Source: Shuster (1993).
     """
+
     def formula(f, x, y, z):
         angle = f.norm(x, y, z)
         turning = angle > 0
@@ -52,11 +53,19 @@ def dcm_from_rotation_vector(vector):
         second = (1 - cosine) / length / length
         sx, sy, sz, rx, ry = first * x, first * y, first * z, second * x, second * y
         xy, xz, yz = rx * y, rx * z, ry * z
-        return (cosine + rx * x, xy + sz, xz - sy,
-                xy - sz, cosine + ry * y, yz + sx,
-                xz + sy, yz - sx, cosine + second * z * z)
+        return (
+            cosine + rx * x,
+            xy + sz,
+            xz - sy,
+            xy - sz,
+            cosine + ry * y,
+            yz + sx,
+            xz + sy,
+            yz - sx,
+            cosine + second * z * z,
+        )
 
-    return evaluate(formula, (3, 3), ('vector', vector, (3,)))
+    return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 
 
 def rotation_vector_from_dcm(dcm):
@@ -85,6 +94,7 @@ def rotation_vector_from_dcm(dcm):
     >>> rotation_vector_from_dcm(simple_dcm('z', -0.3)).round(12).tolist()
     [0.0, 0.0, -0.3]
     """
+
     def formula(f, *entries):
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         sine = f.norm(x, y, z)
@@ -92,4 +102,4 @@ def rotation_vector_from_dcm(dcm):
         share = f.where(sine > 0, 2 * f.atan2(sine, scalar) / f.where(sine > 0, sine, 1.0), 2.0)
         return share * x, share * y, share * z
 
-    return evaluate(formula, (3,), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)

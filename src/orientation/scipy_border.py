@@ -39,8 +39,7 @@ def scipy_rotation_from_dcm(dcm):
     def transposed(f, *entries):
         return [entries[3 * column + row] for row in range(3) for column in range(3)]
 
-    return Rotation.from_matrix(
-        evaluate(transposed, (3, 3), ('dcm', dcm, (3, 3)), guard=DCM_GUARD, symbols=False))
+    return Rotation.from_matrix(evaluate(transposed, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False))
 
 
 def dcm_from_scipy_rotation(rotation):
@@ -68,6 +67,6 @@ def dcm_from_scipy_rotation(rotation):
     >>> same_orientation(dcm_from_scipy_rotation(rotation), dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'))
     True
     """
-    if not hasattr(rotation, 'as_matrix'):
-        raise TypeError(f'rotation must be a SciPy Rotation, not {type(rotation).__name__}')
+    if not hasattr(rotation, "as_matrix"):
+        raise TypeError(f"rotation must be a SciPy Rotation, not {type(rotation).__name__}")
     return rotation.as_matrix().swapaxes(-1, -2)

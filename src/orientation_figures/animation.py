@@ -1,4 +1,5 @@
 """Drawings that move: key frames computed with the module, played by the browser, never unasked."""
+
 import hashlib
 import json
 from html import escape
@@ -10,7 +11,7 @@ from .style import STYLE
 
 # Without this script the figure is a still. It shows the controls, and lets the browser's own animation
 # clock (SMIL) be set by the slider or run by the button.
-SCRIPT = '''
+SCRIPT = """
 document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure => {
   const svg = figure.querySelector('svg'), [button, slider] = figure.querySelectorAll('button, input');
   const said = figure.querySelector('output'), [steps, texts] = JSON.parse(figure.dataset.texts);
@@ -49,7 +50,7 @@ document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure
   };
   show();
 });
-'''
+"""
 
 
 def one_after_another(angles, progress):
@@ -99,8 +100,10 @@ class Animation:
         shapes = [[(kind, shape) for kind, shape, _, _ in drawing.marks] for drawing in self.drawings]
         for moment, shape in zip(self.moments, shapes):
             if shape != shapes[0]:
-                raise ValueError(f'the drawing at {moment:.2f} does not consist of the same marks as the one at 0; '
-                                 'an arrow may point straight at the reader there: choose another view')
+                raise ValueError(
+                    f"the drawing at {moment:.2f} does not consist of the same marks as the one at 0; "
+                    "an arrow may point straight at the reader there: choose another view"
+                )
 
     def texts(self):
         """Return, for each key frame, the number of its step (from 0) and what a screen reader adds."""
@@ -109,7 +112,7 @@ class Animation:
             step = max(int(np.ceil(moment)) - 1, 0)
             more = self.steps[step][1]
             if not isinstance(more, str):
-                more = f', {np.degrees((moment - step) * more):.0f} degrees'
+                more = f", {np.degrees((moment - step) * more):.0f} degrees"
             texts.append((step, more))
         return texts
 
@@ -121,36 +124,39 @@ class Animation:
     def _repr_html_(self):
         motions = [_motion(marks) for marks in zip(*(drawing.marks for drawing in self.drawings))]
         svg = self.drawings[self.still].svg(motions, self.bounds(), decimals=1)
-        words = [f'Step {step} of {len(self.steps)}: {words}' for step, (words, _) in enumerate(self.steps, start=1)]
-        texts = escape(json.dumps([words, self.texts()], separators=(',', ':')), quote=False).replace("'", '&#39;')
+        words = [f"Step {step} of {len(self.steps)}: {words}" for step, (words, _) in enumerate(self.steps, start=1)]
+        texts = escape(json.dumps([words, self.texts()], separators=(",", ":")), quote=False).replace("'", "&#39;")
         name = hashlib.sha256(svg.encode()).hexdigest()[:10]
-        return (f'<figure class="orientation-figure" data-moving="{name}" data-texts=\'{texts}\'>'
-                f'<style>{STYLE}</style>{svg}<div hidden><button type="button">Play</button> '
-                f'<input type="range" min="0" max="{len(self.moments) - 1}" value="{self.still}" '
-                'aria-label="Moment of the animation"><output aria-live="polite"></output></div>'
-                f'<script>{SCRIPT % (name, f"{self.seconds:g}")}</script></figure>')
+        return (
+            f'<figure class="orientation-figure" data-moving="{name}" data-texts=\'{texts}\'>'
+            f'<style>{STYLE}</style>{svg}<div hidden><button type="button">Play</button> '
+            f'<input type="range" min="0" max="{len(self.moments) - 1}" value="{self.still}" '
+            'aria-label="Moment of the animation"><output aria-live="polite"></output></div>'
+            f"<script>{SCRIPT % (name, f'{self.seconds:g}')}</script></figure>"
+        )
 
     def __repr__(self):
-        return f'Animation: {self.drawings[self.still].alt}'
+        return f"Animation: {self.drawings[self.still].alt}"
 
 
 def _motion(marks):
     """Return what goes inside the element of a mark, given the mark at every key frame."""
     if all(collapsed(mark) for mark in marks):
-        return ''
+        return ""
     shape = marks[0][1]
     if isinstance(shape, str):
         return _animate('animate attributeName="d"', [path_data(shape, place, 1) for _, _, place, _ in marks])
-    places, opacities = [pair(place, 1) for _, _, place, _ in marks], [f'{opacity:.2g}' for *_, opacity in marks]
-    return (_animate('animateTransform attributeName="transform" type="translate"', places)
-            + _animate('animate attributeName="opacity"', opacities))
+    places, opacities = [pair(place, 1) for _, _, place, _ in marks], [f"{opacity:.2g}" for *_, opacity in marks]
+    return _animate('animateTransform attributeName="transform" type="translate"', places) + _animate(
+        'animate attributeName="opacity"', opacities
+    )
 
 
 def _animate(tag, values):
     last = len(values) - 1
     if len(set(values)) == 1:
-        return ''
+        return ""
     # A value equal to both its neighbours says nothing new.
     keys = [i for i in range(last + 1) if i in (0, last) or not values[i - 1] == values[i] == values[i + 1]]
-    times = ';'.join(f'{i / last:.4g}'.removeprefix('0') or '0' for i in keys)
+    times = ";".join(f"{i / last:.4g}".removeprefix("0") or "0" for i in keys)
     return f'<{tag} begin="indefinite" keyTimes="{times}" values="{";".join(values[i] for i in keys)}"/>'

@@ -7,6 +7,7 @@ points are given by their components along :math:`N` and reach the sheet through
 it scales with the page, follows the light or dark theme, and carries the text that stands for it
 for readers who do not see it.
 """
+
 import hashlib
 from functools import lru_cache
 from html import escape
@@ -15,15 +16,16 @@ import numpy as np
 
 from orientation.axis_angle import dcm_from_axis_angle
 from orientation.direction_cosines import simple_dcm
+
 from .style import LIGHT, STYLE
 
 # Heads of arrows, by points (along, across) from the tip: frames differ in them, and in their strokes, without colour.
 BARB = ((0, 0), (-13, 4.6), (-7.5, 0), (-13, -4.6))
 TRIANGLE = ((0, 0), (-14, 5.6), (-14, 0), (-14, -5.6))
 DIAMOND = ((0, 0), (-8, 5.4), (-16, 0), (-8, -5.4))
-HEADS = {'A': TRIANGLE, 'B': TRIANGLE, 'C': DIAMOND, 'D': TRIANGLE, 'E': TRIANGLE, 'F': DIAMOND, 'Z': TRIANGLE}
+HEADS = {"A": TRIANGLE, "B": TRIANGLE, "C": DIAMOND, "D": TRIANGLE, "E": TRIANGLE, "F": DIAMOND, "Z": TRIANGLE}
 
-ROUND = 0.5523   # a cubic with its inner points this far along the tangents is a quarter of a circle
+ROUND = 0.5523  # a cubic with its inner points this far along the tangents is a quarter of a circle
 
 
 def looking_down(axis):
@@ -48,7 +50,7 @@ def looking_down(axis):
            [1., 0., 0.],
            [0., 1., 0.]])
     """
-    toward = 'xyz'.index(axis)
+    toward = "xyz".index(axis)
     return np.eye(3)[[(toward + 1) % 3, (toward + 2) % 3, toward]]
 
 
@@ -73,7 +75,7 @@ def view_from(azimuth, elevation):
     array([1., 0., 0.])
     """
     # A frame turned so has its x unit vector towards the camera, y to the right and z up.
-    return (simple_dcm('y', -float(elevation)) @ simple_dcm('z', float(azimuth)))[[1, 2, 0]]
+    return (simple_dcm("y", -float(elevation)) @ simple_dcm("z", float(azimuth)))[[1, 2, 0]]
 
 
 IN_SPACE = view_from(np.radians(32), np.radians(24))
@@ -114,11 +116,13 @@ class Drawing:
 
     def __init__(self, alt, view=IN_SPACE, scale=120):
         if len(alt.strip()) < 40:
-            raise ValueError(f'alt has {len(alt.strip())} characters; a text that can stand for the '
-                             'picture needs at least 40: name the arrows, the angles and what they show')
+            raise ValueError(
+                f"alt has {len(alt.strip())} characters; a text that can stand for the "
+                "picture needs at least 40: name the arrows, the angles and what they show"
+            )
         self.view = np.asarray(view, dtype=float)
         if self.view.shape != (3, 3):
-            raise ValueError(f'view has shape {self.view.shape}; it must be a (3, 3) direction cosine matrix')
+            raise ValueError(f"view has shape {self.view.shape}; it must be a (3, 3) direction cosine matrix")
         self.alt, self.scale, self.marks = alt.strip(), scale, []
 
     def on_sheet(self, points):
@@ -131,38 +135,38 @@ class Drawing:
         return self
 
     def _write(self, text, place, colour, size=20, opacity=1.0):
-        self.marks.append((f'text {colour}', (text, size), np.asarray(place, dtype=float), opacity))
+        self.marks.append((f"text {colour}", (text, size), np.asarray(place, dtype=float), opacity))
         return self
 
     # Lines, areas and words.
 
-    def line(self, points, colour='ink', kind=''):
+    def line(self, points, colour="ink", kind=""):
         """Draw a line through points; ``kind`` is '', 'guide' (dashed), 'faint', 'thick' or 'tube'."""
-        for layer in ((kind, 'tube core') if kind == 'tube' else (kind,)):
-            self.path('M' + 'L' * (len(points) - 1), self.on_sheet(points), f'{layer} {colour}')
+        for layer in (kind, "tube core") if kind == "tube" else (kind,):
+            self.path("M" + "L" * (len(points) - 1), self.on_sheet(points), f"{layer} {colour}")
         return self
 
-    def area(self, points, colour='ink', fill=16, edge=True):
+    def area(self, points, colour="ink", fill=16, edge=True):
         """Fill the polygon with these corners; ``fill`` is 8, 16, 26 or 38 per cent of the colour."""
-        kind = f'fill-{fill} ' + ('' if edge else 'bare ')
-        return self.path('M' + 'L' * (len(points) - 1) + 'Z', self.on_sheet(points), kind + colour)
+        kind = f"fill-{fill} " + ("" if edge else "bare ")
+        return self.path("M" + "L" * (len(points) - 1) + "Z", self.on_sheet(points), kind + colour)
 
-    def dot(self, point, colour='ink', radius=4):
+    def dot(self, point, colour="ink", radius=4):
         """Draw a dot with a radius in pixels."""
-        return self.path(*_ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f'head {colour}')
+        return self.path(*_ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"head {colour}")
 
-    def label(self, point, text, colour='ink', shift=(0, 0), size=20):
+    def label(self, point, text, colour="ink", shift=(0, 0), size=20):
         """Write ``text``, its middle on a point."""
         return self._write(text, self.on_sheet(point) + shift, colour, size)
 
-    def note(self, text, colour='ink', size=18):
+    def note(self, text, colour="ink", size=18):
         """Write a line of ``text`` under all that has been drawn so far."""
         left, _, right, bottom = self.bounds()
         return self._write(text, ((left + right) / 2, bottom + 1.4 * size), colour, size)
 
     # Arrows and frames.
 
-    def arrow(self, end, start=(0, 0, 0), colour='ink', label='', shift=None, bow=0):
+    def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, bow=0):
         """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from the tip.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
@@ -173,29 +177,29 @@ class Drawing:
         tail, tip = self.on_sheet([start, end])
         along, length = _direction(tip - tail)
         if length < 0.05 * self.scale * np.linalg.norm(reach):
-            self.path(*_ellipse(tip, (9, 0), (0, 9)), f'paper {colour}')
+            self.path(*_ellipse(tip, (9, 0), (0, 9)), f"paper {colour}")
             if self.view[2] @ reach > 0:
-                self.path(*_ellipse(tip, (3, 0), (0, 3)), f'head {colour}')
+                self.path(*_ellipse(tip, (3, 0), (0, 3)), f"head {colour}")
             else:
-                self.path('MLML', tip + 6.4 * np.array([(-1, -1), (1, 1), (-1, 1), (1, -1)]), colour)
+                self.path("MLML", tip + 6.4 * np.array([(-1, -1), (1, 1), (-1, 1), (1, -1)]), colour)
             outward = np.array((15, 15))
         elif bow:
             left = np.array((along[1], -along[0]))
             first, second = (tail + part * (tip - tail) + 4 / 3 * bow * left for part in (0.25, 0.75))
             along = _direction(tip - second)[0]
-            self.path('MC', [tail, first, second, tip - 9 * along], f'axis {colour}')
+            self.path("MC", [tail, first, second, tip - 9 * along], f"axis {colour}")
             self._head(tip, along, 1, colour)
             outward, tip = np.sign(bow) * 15 * left, (tail + tip) / 2 + bow * left
         else:
             size = min(1, 0.5 * length / 14)
-            self.path('ML', [tail, tip - 10 * size * along], f'axis {colour}')
+            self.path("ML", [tail, tip - 10 * size * along], f"axis {colour}")
             self._head(tip, along, size, colour)
             outward = 17 * along
         return self._write(label, tip + (outward if shift is None else shift), colour) if label else self
 
     def _head(self, tip, along, size, colour):
         corners = size * np.array(HEADS.get(colour, BARB)) @ [along, (-along[1], along[0])]
-        self.path('MLLLZ', tip + corners, f'head {colour}')
+        self.path("MLLLZ", tip + corners, f"head {colour}")
 
     def triad(self, letter, dcm, origin=(0, 0, 0), length=1.0, labels=None, shifts=(None, None, None)):
         """Draw the unit vectors of the frame ``letter``.
@@ -205,7 +209,7 @@ class Drawing:
         an empty string leaves that arrow without a label, and None leaves that arrow out.
         """
         if labels is None:
-            labels = [rf'$\hat{{{letter.lower()}}}_{axis}$' for axis in 'xyz']
+            labels = [rf"$\hat{{{letter.lower()}}}_{axis}$" for axis in "xyz"]
         for row, label, shift in zip(np.asarray(dcm, dtype=float), labels, shifts, strict=True):
             if label is not None:
                 self.arrow(origin + length * row, origin, letter, label, shift)
@@ -213,13 +217,14 @@ class Drawing:
 
     def node(self, point, letter):
         """Draw a circle that stands for the frame ``letter`` in a diagram of connected frames."""
-        self.path(*_ellipse(self.on_sheet(point), (19, 0), (0, 19)), f'fill-8 axis {letter}')
-        return self.label(point, f'${letter}$', letter)
+        self.path(*_ellipse(self.on_sheet(point), (19, 0), (0, 19)), f"fill-8 axis {letter}")
+        return self.label(point, f"${letter}$", letter)
 
     # Angles and circles.
 
-    def turn(self, axis, angle, start, radius=0.5, label='', origin=(0, 0, 0), colour='ink', shift=(0, 0),
-             kind='', head=True):
+    def turn(
+        self, axis, angle, start, radius=0.5, label="", origin=(0, 0, 0), colour="ink", shift=(0, 0), kind="", head=True
+    ):
         """Draw the arc swept by the direction ``start``, turned through ``angle`` (radians) about ``axis``."""
         axis, angle, pieces = _direction(axis)[0], float(angle), 4
         arm = radius * _direction(start)[0]
@@ -236,7 +241,7 @@ class Drawing:
         for k in range(pieces):
             near, far = turned(last * k / pieces), turned(last * (k + 1) / pieces)
             points += [near + reach * np.cross(axis, near), far - reach * np.cross(axis, far), far]
-        self.path('M' + 'C' * pieces, self.on_sheet(np.add(origin, points)), f'{kind} {colour}')
+        self.path("M" + "C" * pieces, self.on_sheet(np.add(origin, points)), f"{kind} {colour}")
         tip, before, middle, centre = self.on_sheet(np.add(origin, [turned(1), turned(last), turned(0.5), 0 * arm]))
         if head:
             self._head(tip, _direction(tip - before)[0], size, colour)
@@ -245,28 +250,27 @@ class Drawing:
             self._write(label, place, colour, opacity=min(1.0, abs(angle) / 0.2))
         return self
 
-    def arc(self, start, end, radius=0.5, label='', origin=(0, 0, 0), colour='ink', shift=(0, 0),
-            kind='', head=True):
+    def arc(self, start, end, radius=0.5, label="", origin=(0, 0, 0), colour="ink", shift=(0, 0), kind="", head=True):
         """Draw the angle from the direction ``start`` to the direction ``end``, the short way round."""
         axis, sine = _direction(np.cross(start, end))
         angle = np.arctan2(sine, np.dot(start, end))
         return self.turn(axis, angle, start, radius, label, origin, colour, shift, kind, head)
 
-    def right_angle(self, first, second, origin=(0, 0, 0), size=0.12, colour='muted'):
+    def right_angle(self, first, second, origin=(0, 0, 0), size=0.12, colour="muted"):
         """Mark the right angle between two directions at ``origin``."""
         first, second = (size * _direction(direction)[0] for direction in (first, second))
         return self.line(np.add(origin, [first, first + second, second]), colour)
 
-    def circle(self, normal, radius=1.0, origin=(0, 0, 0), colour='muted', kind='guide'):
+    def circle(self, normal, radius=1.0, origin=(0, 0, 0), colour="muted", kind="guide"):
         """Draw the circle about ``normal``; ``kind`` as in ``line``, or 'fill-8', 'fill-16', ..."""
         normal = _direction(normal)[0]
         first = radius * _direction(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))]))[0]
-        return self.path(*_ellipse(*self.on_sheet([origin, first, np.cross(normal, first)])), f'{kind} {colour}')
+        return self.path(*_ellipse(*self.on_sheet([origin, first, np.cross(normal, first)])), f"{kind} {colour}")
 
     # Solid bodies. Draw what lies farther from the reader first. Faces turned away shrink to nothing
     # instead of being left out, so that an Animation finds the same marks at every moment.
 
-    def box(self, dcm, size, origin=(0, 0, 0), colour='ink'):
+    def box(self, dcm, size, origin=(0, 0, 0), colour="ink"):
         """Draw a box with edges ``size`` along the rows of ``dcm``, its middle at ``origin``."""
         half = np.asarray(dcm, dtype=float) * np.reshape(size, (3, 1)) / 2
         for i, fill in enumerate((26, 16, 8)):
@@ -276,18 +280,28 @@ class Drawing:
                 self.area(origin + outward + seen * np.array([u + v, v - u, -u - v, u - v]), colour, fill)
         return self
 
-    def cylinder(self, start, end, radius, colour='ink', fill=26):
+    def cylinder(self, start, end, radius, colour="ink", fill=26):
         """Draw a cylinder between the middles of its two round ends."""
         facing, radius = _direction(np.subtract(end, start))[0] @ self.view[2], radius * self.scale
         ends = self.on_sheet([start, end])
         along = _direction(ends[1] - ends[0])[0] if abs(facing) < 0.9999 else np.array((1.0, 0.0))
         bulge, side = radius * abs(facing) * along, radius * np.array((-along[1], along[0]))
-        body = [place + part for place, out, across in ((ends[1], bulge, side), (ends[0], -bulge, -side))
-                for part in (across, across + ROUND * out, ROUND * across + out, out,
-                             out - ROUND * across, ROUND * out - across, -across)]
-        self.path('MCCLCCZ', body, f'fill-{fill} {colour}')
+        body = [
+            place + part
+            for place, out, across in ((ends[1], bulge, side), (ends[0], -bulge, -side))
+            for part in (
+                across,
+                across + ROUND * out,
+                ROUND * across + out,
+                out,
+                out - ROUND * across,
+                ROUND * out - across,
+                -across,
+            )
+        ]
+        self.path("MCCLCCZ", body, f"fill-{fill} {colour}")
         for place, seen in zip(ends, (facing < 0, facing > 0)):
-            self.path(*_ellipse(place, seen * bulge, seen * side), f'fill-8 {colour}')
+            self.path(*_ellipse(place, seen * bulge, seen * side), f"fill-8 {colour}")
         return self
 
     # SVG.
@@ -296,7 +310,7 @@ class Drawing:
         return f'<figure class="orientation-figure"><style>{STYLE}</style>{self.svg()}</figure>'
 
     def __repr__(self):
-        return f'Drawing: {self.alt}'
+        return f"Drawing: {self.alt}"
 
     def bounds(self):
         """Return left, top, right and bottom of what has been drawn, in pixels from the origin."""
@@ -311,15 +325,19 @@ class Drawing:
         bounds = self.bounds() if bounds is None else bounds
         left, top, right, bottom = np.rint(np.add(bounds, (-8.01, -8.01, 8.01, 8.01))).astype(int)
         outlines = {}
-        marks = ''.join(_element(mark, motion, outlines, decimals)
-                        for mark, motion in zip(self.marks, motions or [''] * len(self.marks), strict=True)
-                        if motion or not collapsed(mark))
-        glyphs = ''.join(f'<path id="@{number}" d="{outline}"/>' for outline, number in outlines.items())
+        marks = "".join(
+            _element(mark, motion, outlines, decimals)
+            for mark, motion in zip(self.marks, motions or [""] * len(self.marks), strict=True)
+            if motion or not collapsed(mark)
+        )
+        glyphs = "".join(f'<path id="@{number}" d="{outline}"/>' for outline, number in outlines.items())
         # Ids come from the content: two figures on one page cannot clash, and no run differs from the last.
-        name = 'g' + hashlib.sha256((self.alt + glyphs + marks).encode()).hexdigest()[:10]
-        inside = (f'<defs>{glyphs}</defs>' if glyphs else '') + marks
-        return (f'<svg viewBox="{left} {top} {right - left} {bottom - top}" style="max-width:{right - left}px" '
-                f'role="img" aria-label="{escape(self.alt)}">{inside.replace("@", name + "-")}</svg>')
+        name = "g" + hashlib.sha256((self.alt + glyphs + marks).encode()).hexdigest()[:10]
+        inside = (f"<defs>{glyphs}</defs>" if glyphs else "") + marks
+        return (
+            f'<svg viewBox="{left} {top} {right - left} {bottom - top}" style="max-width:{right - left}px" '
+            f'role="img" aria-label="{escape(self.alt)}">{inside.replace("@", name + "-")}</svg>'
+        )
 
 
 def collapsed(mark):
@@ -331,14 +349,16 @@ def _element(mark, motion, outlines, decimals):
     kind, shape, place, opacity = mark
     if isinstance(shape, str):
         start = f'<path class="{kind}" d="{path_data(shape, place, decimals)}"'
-        return start + (f'>{motion}</path>' if motion else '/>')
+        return start + (f">{motion}</path>" if motion else "/>")
     text, size = shape
-    uses = ''
+    uses = ""
     for outline, corner, glyph_size in typeset(text)[0]:
         number = outlines.setdefault(outline, len(outlines))
-        uses += (f'<use href="#@{number}" transform="translate({pair(size / 1000 * corner, 2)}) '
-                 f'scale({_number(size * glyph_size / 1000, 5)})"/>')
-    fade = f' opacity="{_number(opacity, 2)}"' if opacity < 1 else ''
+        uses += (
+            f'<use href="#@{number}" transform="translate({pair(size / 1000 * corner, 2)}) '
+            f'scale({_number(size * glyph_size / 1000, 5)})"/>'
+        )
+    fade = f' opacity="{_number(opacity, 2)}"' if opacity < 1 else ""
     return f'<g class="{kind}"{fade} transform="translate({pair(place, 2)})">{motion}{uses}</g>'
 
 
@@ -351,7 +371,7 @@ def typeset(text):
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
 
-    font = FontProperties(family='cmr10', math_fontfamily='cm')
+    font = FontProperties(family="cmr10", math_fontfamily="cm")
     placed, shapes, rules = text_to_path.get_glyphs_mathtext(font, text)
     found = [(*shapes[name], (x, y), size) for name, x, y, size in placed] + [(*rule, (0, 0), 1) for rule in rules]
     unit = 1000 / text_to_path.FONT_SCALE * np.array((1, -1))
@@ -362,7 +382,7 @@ def typeset(text):
             glyphs.append((_outline(vertices, codes), corner, size))
             ink.append(corner + size * vertices[codes != 79])
     if not ink:
-        raise ValueError(f'the text {text!r} has nothing to draw')
+        raise ValueError(f"the text {text!r} has nothing to draw")
     ink = np.concatenate(ink)
     corners = np.array([ink.min(axis=0), ink.max(axis=0)])
     middle = np.array((corners[:, 0].mean(), -220))
@@ -371,36 +391,36 @@ def typeset(text):
 
 def _outline(vertices, codes):
     """Return a glyph's path data in whole numbers relative to the point before, which is short."""
-    data, last, k = '', np.zeros(2, dtype=int), 0
+    data, last, k = "", np.zeros(2, dtype=int), 0
     while k < len(codes):
-        letter, count = {1: ('m', 1), 2: ('l', 1), 3: ('q', 2), 4: ('c', 3), 79: ('z', 1)}[int(codes[k])]
+        letter, count = {1: ("m", 1), 2: ("l", 1), 3: ("q", 2), 4: ("c", 3), 79: ("z", 1)}[int(codes[k])]
         data += letter
-        if letter == 'z':
+        if letter == "z":
             last = beginning
         else:
-            corners = np.rint(vertices[k:k + count]).astype(int)
-            data += ''.join(f'{number:+d}' for number in (corners - last).ravel()).replace('+', ' ').strip()
+            corners = np.rint(vertices[k : k + count]).astype(int)
+            data += "".join(f"{number:+d}" for number in (corners - last).ravel()).replace("+", " ").strip()
             last = corners[-1]
-            beginning = last if letter == 'm' else beginning
+            beginning = last if letter == "m" else beginning
         k += count
     return data
 
 
 def _number(value, decimals):
     # The small shift keeps exact halves, which could be rounded either way, away from the rounding.
-    return f'{round(float(value) + 3.1e-6, decimals) + 0.0:g}'
+    return f"{round(float(value) + 3.1e-6, decimals) + 0.0:g}"
 
 
 def pair(point, decimals):
-    return ' '.join(_number(value, decimals) for value in point)
+    return " ".join(_number(value, decimals) for value in point)
 
 
 def path_data(commands, points, decimals=2):
     """Return SVG path data: each command takes its own number of ``points``."""
-    data, k = '', 0
+    data, k = "", 0
     for letter in commands:
-        count = {'M': 1, 'L': 1, 'C': 3, 'Q': 2, 'Z': 0}[letter]
-        data += letter + ' '.join(pair(point, decimals) for point in points[k:k + count])
+        count = {"M": 1, "L": 1, "C": 3, "Q": 2, "Z": 0}[letter]
+        data += letter + " ".join(pair(point, decimals) for point in points[k : k + count])
         k += count
     return data
 
@@ -418,4 +438,4 @@ def _ellipse(middle, u, v):
     points = [u]
     for near, far in ((u, v), (v, -u), (-u, -v), (-v, u)):
         points += [near + ROUND * far, far + ROUND * near, far]
-    return 'MCCCCZ', middle + points
+    return "MCCCCZ", middle + points

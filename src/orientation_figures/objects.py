@@ -1,34 +1,37 @@
 """Figures and things that the book draws more than once: plane figures, an eye, a book, a camera gimbal."""
+
 import numpy as np
 
 from orientation.direction_cosines import simple_dcm
-from .drawing import Drawing, looking_down, view_from
+
 from .animation import Animation, one_after_another
+from .drawing import Drawing, looking_down, view_from
 
 
-def draw_eye(drawing, point, size=40, colour='ink'):
+def draw_eye(drawing, point, size=40, colour="ink"):
     """Draw an eye, ``size`` pixels wide, that looks to the right."""
+
     def place(points):
         return drawing.on_sheet(point) + size * np.array(points)
 
-    drawing.path('MQQ', place([(-0.5, 0), (0, -0.62), (0.5, 0.05), (0, 0.45), (-0.5, 0)]), f'paper {colour}')
+    drawing.path("MQQ", place([(-0.5, 0), (0, -0.62), (0.5, 0.05), (0, 0.45), (-0.5, 0)]), f"paper {colour}")
     for x, y, outward in ((-0.3, -0.22, -0.12), (-0.05, -0.31, -0.02), (0.2, -0.24, 0.1)):
-        drawing.path('ML', place([(x, y), (x + outward, y - 0.15)]), colour)
-    return drawing.dot(point, 'muted', 0.19 * size).dot(point, colour, 0.09 * size)
+        drawing.path("ML", place([(x, y), (x + outward, y - 0.15)]), colour)
+    return drawing.dot(point, "muted", 0.19 * size).dot(point, colour, 0.09 * size)
 
 
-def draw_book(drawing, dcm, origin=(0, 0, 0), colour='A', size=(0.8, 1.1, 0.22)):
+def draw_book(drawing, dcm, origin=(0, 0, 0), colour="A", size=(0.8, 1.1, 0.22)):
     """Draw a closed book: the rows of ``dcm`` point across the cover, up the cover, and out of the cover."""
     rows, (width, height, depth) = np.asarray(dcm, dtype=float), size
     drawing.box(rows, size, origin, colour)
     if rows[2] @ drawing.view[2] > 0:
         for y, half in ((0.28, 0.28), (0.14, 0.2)):
             ends = np.array([(-half * width, y * height, depth / 2), (half * width, y * height, depth / 2)])
-            drawing.line(origin + ends @ rows, colour, 'thick')
+            drawing.line(origin + ends @ rows, colour, "thick")
     return drawing
 
 
-def plane_drawing(axis, angle, first='N', second='A', name='theta', components=False, scale=185):
+def plane_drawing(axis, angle, first="N", second="A", name="theta", components=False, scale=185):
     """Return a drawing of two frames that share an axis, seen down that axis.
 
     Parameters
@@ -48,46 +51,60 @@ def plane_drawing(axis, angle, first='N', second='A', name='theta', components=F
     -------
     Drawing
     """
-    shared, away = axis[-1], axis.startswith('-')
+    shared, away = axis[-1], axis.startswith("-")
     view, turn = looking_down(shared), simple_dcm(shared, -float(angle) if away else float(angle))
     if away:
         view = view[[1, 0, 2]] * [[1], [1], [-1]]
-    right, up = ('xyz'[np.argmax(row)] for row in view[:2])
+    right, up = ("xyz"[np.argmax(row)] for row in view[:2])
     old, new = first.lower(), second.lower()
-    alt = (f'Looking down the {axis} direction that the frames {first} and {second} share; {old} {shared} and '
-           f'{new} {shared} point '
-           + ('away from the reader, a circle with a cross. ' if away else 'at the reader, a circle with a dot. ')
-           + f'{old} {right} points to the right and {old} {up} up. {new} {right} is turned counterclockwise from '
-           f'{old} {right} through {name}, and {new} {up} from {old} {up} through the same angle.')
+    alt = (
+        f"Looking down the {axis} direction that the frames {first} and {second} share; {old} {shared} and "
+        f"{new} {shared} point "
+        + ("away from the reader, a circle with a cross. " if away else "at the reader, a circle with a dot. ")
+        + f"{old} {right} points to the right and {old} {up} up. {new} {right} is turned counterclockwise from "
+        f"{old} {right} through {name}, and {new} {up} from {old} {up} through the same angle."
+    )
     if components:
-        alt += (f' Dropped onto the arrows of {first}, the tip of {new} {right} has its feet at cosine {name} along '
-                f'{old} {right} and sine {name} along {old} {up}; the tip of {new} {up} at minus sine {name} along '
-                f'{old} {right} and cosine {name} along {old} {up}.')
+        alt += (
+            f" Dropped onto the arrows of {first}, the tip of {new} {right} has its feet at cosine {name} along "
+            f"{old} {right} and sine {name} along {old} {up}; the tip of {new} {up} at minus sine {name} along "
+            f"{old} {right} and cosine {name} along {old} {up}."
+        )
     drawing = Drawing(alt, view, scale)
-    symbol = r'\varphi' if name == 'phi' else '\\' + name
+    symbol = r"\varphi" if name == "phi" else "\\" + name
     # Row k of the second frame's matrix is its k-th unit vector.
     (x, y), (tip, top) = view[:2], view[:2] @ turn
     if components:
         for end in (tip, top):
-            drawing.line([end @ x * x, end, end @ y * y], 'muted', 'guide')
-        drawing.line([(0, 0, 0), top @ x * x], 'muted')
-        for end, along, words, shift in ((tip, x, r'\cos', (-6, 18)), (tip, y, r'\sin', (32, 16)),
-                                         (top, y, r'\cos', (36, 3)), (top, x, r'-\sin', (-4, 18))):
+            drawing.line([end @ x * x, end, end @ y * y], "muted", "guide")
+        drawing.line([(0, 0, 0), top @ x * x], "muted")
+        for end, along, words, shift in (
+            (tip, x, r"\cos", (-6, 18)),
+            (tip, y, r"\sin", (32, 16)),
+            (top, y, r"\cos", (36, 3)),
+            (top, x, r"-\sin", (-4, 18)),
+        ):
             foot = end @ along * along
-            drawing.dot(foot, 'muted', 3).label(foot, f'${words}{symbol}$', 'muted', shift, 18)
+            drawing.dot(foot, "muted", 3).label(foot, f"${words}{symbol}$", "muted", shift, 18)
     for letter, dcm in ((first, np.eye(3)), (second, turn)):
-        drawing.triad(letter, dcm, labels=[None if other == shared else rf'$\hat{{{letter.lower()}}}_{other}$'
-                                           for other in 'xyz'])
-    drawing.arc(x, tip, 0.44, f'${symbol}$').arc(y, top, 0.44, f'${symbol}$')
-    return drawing.arrow(np.eye(3)['xyz'.index(shared)], colour=second, shift=(-40, 32),
-                         label=rf'$\hat{{{old}}}_{shared} = \hat{{{new}}}_{shared}$')
+        drawing.triad(
+            letter, dcm, labels=[None if other == shared else rf"$\hat{{{letter.lower()}}}_{other}$" for other in "xyz"]
+        )
+    drawing.arc(x, tip, 0.44, f"${symbol}$").arc(y, top, 0.44, f"${symbol}$")
+    return drawing.arrow(
+        np.eye(3)["xyz".index(shared)],
+        colour=second,
+        shift=(-40, 32),
+        label=rf"$\hat{{{old}}}_{shared} = \hat{{{new}}}_{shared}$",
+    )
 
 
 GIMBAL_ALT = (
-    'A hand-held camera gimbal. The upright handgrip is frame A. On its top a motor turns link B about the '
-    'upright z axis through psi. At the back end of link B a motor turns link C about the lengthwise x axis '
-    'through theta. At the end of link C a motor turns the camera D about the crosswise y axis through phi. The '
-    'three axes meet in the camera. Beside the gimbal stand the triads of the four frames.')
+    "A hand-held camera gimbal. The upright handgrip is frame A. On its top a motor turns link B about the "
+    "upright z axis through psi. At the back end of link B a motor turns link C about the lengthwise x axis "
+    "through theta. At the end of link C a motor turns the camera D about the crosswise y axis through phi. The "
+    "three axes meet in the camera. Beside the gimbal stand the triads of the four frames."
+)
 
 
 def gimbal_drawing(angles, alt=GIMBAL_ALT):
@@ -110,57 +127,62 @@ def gimbal_drawing(angles, alt=GIMBAL_ALT):
     """
     psi, theta, phi = (float(angle) for angle in angles)
     A = np.eye(3)
-    B = simple_dcm('z', psi) @ A
-    C = simple_dcm('x', theta) @ B
-    D = simple_dcm('y', phi) @ C
+    B = simple_dcm("z", psi) @ A
+    C = simple_dcm("x", theta) @ B
+    D = simple_dcm("y", phi) @ C
     drawing = Drawing(alt, view_from(np.radians(92), np.radians(24)), 112)
 
     def place(frame, *points):
         return np.array(points) @ frame
 
     def tube(frame, colour, *points):
-        drawing.line(place(frame, *points), colour, 'tube')
+        drawing.line(place(frame, *points), colour, "tube")
 
     def motor(frame, colour, start, end, radius=0.19):
         drawing.cylinder(*place(frame, start, end), radius, colour)
 
     def joint(frame, axis, start, centre, name, sweep=3.6):
         axis, start, centre = place(frame, axis, start, centre)
-        drawing.turn(axis, sweep, start, 0.38, rf'$\{name}$', centre)
+        drawing.turn(axis, sweep, start, 0.38, rf"$\{name}$", centre)
 
     # From the farthest part to the nearest; this order holds for turns of up to about half a right angle.
-    motor(A, 'A', (0, 0, -2.1), (0, 0, -1.12), 0.15)
-    motor(A, 'A', (0, 0, -1.12), (0, 0, -0.93), 0.24)
-    drawing.line(place(A, (0, 0, -0.9), (0, 0, 0.75)), 'muted', 'guide')
-    tube(B, 'B', (0, 0, -0.86), (-1.45, 0, -0.86), (-1.45, 0, -0.12))
-    motor(B, 'B', (-1.58, 0, 0), (-1.3, 0, 0))
-    joint(B, (1, 0, 0), (0, 0.97, 0.24), (-1.45, 0, 0), 'theta', 2.6)
-    drawing.line(place(B, (-1.3, 0, 0), (0.9, 0, 0)), 'muted', 'guide')
-    tube(C, 'C', (-1.24, 0, 0), (-1.1, 0, 0), (-1.1, 0.58, 0), (0, 0.58, 0))
-    drawing.box(D, (0.76, 0.5, 0.54), colour='D')
-    drawing.cylinder(*place(D, (0.38, 0, 0), (0.62, 0, 0)), 0.2, 'D')
-    drawing.circle(D[0], 0.12 * (D[0] @ drawing.view[2] > 0), 0.62 * D[0], 'D', 'fill-38')
-    motor(C, 'C', (0, 0.28, 0), (0, 0.6, 0))
-    drawing.line(place(C, (0, 0.6, 0), (0, 1.1, 0)), 'muted', 'guide')
-    joint(C, (0, 1, 0), (0.5, 0, -0.86), (0, 0.8, 0), 'varphi')
-    joint(A, (0, 0, 1), (0.94, 0.34, 0), (0, 0, -1.03), 'psi')
-    for letter, frame, point, shift in (('A', A, (0, 0, -1.65), (0, 0)), ('B', B, (-0.8, 0, -0.86), (0, 20)),
-                                        ('C', C, (-0.9, 0.58, 0), (4, 22)), ('D', D, (0, 0, 0.27), (0, -18))):
-        drawing.label(place(frame, point)[0], f'${letter}$', letter, shift, 22)
-    for row, (letter, frame) in enumerate(zip('DCBA', (D, C, B, A))):
+    motor(A, "A", (0, 0, -2.1), (0, 0, -1.12), 0.15)
+    motor(A, "A", (0, 0, -1.12), (0, 0, -0.93), 0.24)
+    drawing.line(place(A, (0, 0, -0.9), (0, 0, 0.75)), "muted", "guide")
+    tube(B, "B", (0, 0, -0.86), (-1.45, 0, -0.86), (-1.45, 0, -0.12))
+    motor(B, "B", (-1.58, 0, 0), (-1.3, 0, 0))
+    joint(B, (1, 0, 0), (0, 0.97, 0.24), (-1.45, 0, 0), "theta", 2.6)
+    drawing.line(place(B, (-1.3, 0, 0), (0.9, 0, 0)), "muted", "guide")
+    tube(C, "C", (-1.24, 0, 0), (-1.1, 0, 0), (-1.1, 0.58, 0), (0, 0.58, 0))
+    drawing.box(D, (0.76, 0.5, 0.54), colour="D")
+    drawing.cylinder(*place(D, (0.38, 0, 0), (0.62, 0, 0)), 0.2, "D")
+    drawing.circle(D[0], 0.12 * (D[0] @ drawing.view[2] > 0), 0.62 * D[0], "D", "fill-38")
+    motor(C, "C", (0, 0.28, 0), (0, 0.6, 0))
+    drawing.line(place(C, (0, 0.6, 0), (0, 1.1, 0)), "muted", "guide")
+    joint(C, (0, 1, 0), (0.5, 0, -0.86), (0, 0.8, 0), "varphi")
+    joint(A, (0, 0, 1), (0.94, 0.34, 0), (0, 0, -1.03), "psi")
+    for letter, frame, point, shift in (
+        ("A", A, (0, 0, -1.65), (0, 0)),
+        ("B", B, (-0.8, 0, -0.86), (0, 20)),
+        ("C", C, (-0.9, 0.58, 0), (4, 22)),
+        ("D", D, (0, 0, 0.27), (0, -18)),
+    ):
+        drawing.label(place(frame, point)[0], f"${letter}$", letter, shift, 22)
+    for row, (letter, frame) in enumerate(zip("DCBA", (D, C, B, A))):
         drawing.triad(letter, frame, 2.55 * drawing.view[0] + (1 - 1.2 * row) * drawing.view[1], 0.46)
     return drawing
 
 
 TURNING_FRAMES_ALT = (
-    'Four frames, each drawn at its own place: A yellow with solid arrows, B red with dashed arrows, C green with '
-    'dash-dotted arrows, D blue with dotted arrows. At first they are aligned, x towards the reader and to the '
-    'left, y to the right, z up. First B, C and D turn together through 50 degrees; the arrows marked z of B, C '
-    'and D stay where they are. Then C and D turn together through 45 degrees; the arrows marked x of C and D '
-    'stay where they are. Last, D turns alone through 40 degrees; the arrow marked z of D stays where it is, no '
-    'longer upright. Seen from the tip of the arrow that stays, each turn is counterclockwise. The still picture '
-    'is the end: with each frame a thin grey triad shows the frame before it in the order A, B, C, D, and curved '
-    'arrows lead from the grey arrows to the turned ones.')
+    "Four frames, each drawn at its own place: A yellow with solid arrows, B red with dashed arrows, C green with "
+    "dash-dotted arrows, D blue with dotted arrows. At first they are aligned, x towards the reader and to the "
+    "left, y to the right, z up. First B, C and D turn together through 50 degrees; the arrows marked z of B, C "
+    "and D stay where they are. Then C and D turn together through 45 degrees; the arrows marked x of C and D "
+    "stay where they are. Last, D turns alone through 40 degrees; the arrow marked z of D stays where it is, no "
+    "longer upright. Seen from the tip of the arrow that stays, each turn is counterclockwise. The still picture "
+    "is the end: with each frame a thin grey triad shows the frame before it in the order A, B, C, D, and curved "
+    "arrows lead from the grey arrows to the turned ones."
+)
 
 
 def turning_frames_animation():
@@ -172,23 +194,28 @@ def turning_frames_animation():
     -------
     Animation
     """
-    angles, sequence = np.radians((50, 45, 40)), 'zxz'
+    angles, sequence = np.radians((50, 45, 40)), "zxz"
 
     def draw(progress):
         drawing = Drawing(TURNING_FRAMES_ALT, scale=92)
         dcm = np.eye(3)
-        for number, letter in enumerate('ABCD'):
+        for number, letter in enumerate("ABCD"):
             place = 2.75 * (number % 2) * drawing.view[0] - 2.45 * (number // 2) * drawing.view[1]
             if number:
                 axis, angle = sequence[number - 1], one_after_another(angles, progress)[number - 1]
                 before, dcm = dcm, simple_dcm(axis, angle) @ dcm
-                for row, name in zip(before, 'xyz'):
-                    drawing.line([place, place + row], 'muted')
+                for row, name in zip(before, "xyz"):
+                    drawing.line([place, place + row], "muted")
                     if name != axis:
-                        drawing.turn(before['xyz'.index(axis)], angle, row, 0.8, origin=place, colour='muted')
+                        drawing.turn(before["xyz".index(axis)], angle, row, 0.8, origin=place, colour="muted")
             drawing.triad(letter, dcm, place)
         return drawing
 
-    return Animation(draw, [('B, C and D turn together', '; the z arrows of B, C and D stay where they are'),
-                            ('C and D turn together', '; the x arrows of C and D stay where they are'),
-                            ('D turns alone', '; the z arrow of D stays where it is')])
+    return Animation(
+        draw,
+        [
+            ("B, C and D turn together", "; the z arrows of B, C and D stay where they are"),
+            ("C and D turn together", "; the x arrows of C and D stay where they are"),
+            ("D turns alone", "; the z arrow of D stays where it is"),
+        ],
+    )

@@ -8,13 +8,30 @@ from html import escape
 from .style import LIGHT, STYLE
 
 SETTINGS = {
-    'svg.fonttype': 'path', 'mathtext.fontset': 'cm', 'font.family': 'serif', 'font.serif': ['cmr10'],
-    'axes.formatter.use_mathtext': True, 'axes.unicode_minus': False, 'font.size': 13,
-    'axes.spines.top': False, 'axes.spines.right': False, 'axes.grid': True, 'grid.linewidth': 0.6,
-    'text.color': LIGHT['ink'], 'axes.labelcolor': LIGHT['ink'], 'axes.edgecolor': LIGHT['muted'],
-    'xtick.color': LIGHT['muted'], 'ytick.color': LIGHT['muted'], 'grid.color': LIGHT['muted'],
-    'grid.alpha': 0.25, 'lines.linewidth': 2.2, 'legend.frameon': False, 'axes.facecolor': 'none',
-    'figure.facecolor': 'none', 'savefig.facecolor': 'none'}
+    "svg.fonttype": "path",
+    "mathtext.fontset": "cm",
+    "font.family": "serif",
+    "font.serif": ["cmr10"],
+    "axes.formatter.use_mathtext": True,
+    "axes.unicode_minus": False,
+    "font.size": 13,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.linewidth": 0.6,
+    "text.color": LIGHT["ink"],
+    "axes.labelcolor": LIGHT["ink"],
+    "axes.edgecolor": LIGHT["muted"],
+    "xtick.color": LIGHT["muted"],
+    "ytick.color": LIGHT["muted"],
+    "grid.color": LIGHT["muted"],
+    "grid.alpha": 0.25,
+    "lines.linewidth": 2.2,
+    "legend.frameon": False,
+    "axes.facecolor": "none",
+    "figure.facecolor": "none",
+    "savefig.facecolor": "none",
+}
 
 
 class Plot:
@@ -46,17 +63,21 @@ class Plot:
     def __init__(self, alt, width=560, height=330, rows=1):
         import matplotlib
         from matplotlib.figure import Figure
+
         if len(alt.strip()) < 40:
-            raise ValueError(f'alt has {len(alt.strip())} characters; a text that can stand for the '
-                             'picture needs at least 40: name the axes, the curves and what they show')
+            raise ValueError(
+                f"alt has {len(alt.strip())} characters; a text that can stand for the "
+                "picture needs at least 40: name the axes, the curves and what they show"
+            )
         self.alt, self.colours, self.width = alt.strip(), LIGHT, width
         with matplotlib.rc_context(SETTINGS):
             # A pixel of the page is a point of Matplotlib's, so that sizes in text agree.
-            self.figure = Figure(figsize=(width / 72, height / 72), layout='constrained')
+            self.figure = Figure(figsize=(width / 72, height / 72), layout="constrained")
             self.axes = self.figure.subplots(rows, sharex=True)
 
     def __enter__(self):
         import matplotlib
+
         self._settings = matplotlib.rc_context(SETTINGS)
         self._settings.__enter__()
         return self
@@ -66,22 +87,28 @@ class Plot:
 
     def _repr_html_(self):
         import matplotlib
+
         buffer = io.StringIO()
-        with matplotlib.rc_context({**SETTINGS, 'svg.hashsalt': self.alt}):
-            self.figure.savefig(buffer, format='svg', metadata={'Date': None, 'Creator': None})
-        svg = buffer.getvalue().replace('xlink:href', 'href')  # in a page the prefix has no meaning
-        svg = re.sub(r'<metadata>.*?</metadata>', '', svg[svg.index('<svg'):], flags=re.DOTALL)
+        with matplotlib.rc_context({**SETTINGS, "svg.hashsalt": self.alt}):
+            self.figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+        svg = buffer.getvalue().replace("xlink:href", "href")  # in a page the prefix has no meaning
+        svg = re.sub(r"<metadata>.*?</metadata>", "", svg[svg.index("<svg") :], flags=re.DOTALL)
         # Matplotlib's style is for every element of a page: it would take the round ends of lines from all drawings.
-        svg = re.sub(r' <defs>\s*<style[^>]*>[^<]*</style>\s*</defs>\n', '', svg)
+        svg = re.sub(r" <defs>\s*<style[^>]*>[^<]*</style>\s*</defs>\n", "", svg)
         for name, colour in LIGHT.items():
-            svg = svg.replace(colour, f'var(--{name})')
+            svg = svg.replace(colour, f"var(--{name})")
         # Every id carries a name of its own: two plots on one page cannot clash.
-        name = 'p' + hashlib.sha256(self.alt.encode()).hexdigest()[:8]
-        svg = re.sub(r'(id="|href="#|url\(#)', rf'\g<1>{name}-', svg)
-        svg = re.sub(r'<svg .*?viewBox="([^"]*)"[^>]*>',
-                     rf'<svg viewBox="\1" role="img" aria-label="{escape(self.alt)}" '
-                     rf'style="max-width:{self.width}px;stroke:none;stroke-linecap:butt">', svg, count=1, flags=re.DOTALL)
+        name = "p" + hashlib.sha256(self.alt.encode()).hexdigest()[:8]
+        svg = re.sub(r'(id="|href="#|url\(#)', rf"\g<1>{name}-", svg)
+        svg = re.sub(
+            r'<svg .*?viewBox="([^"]*)"[^>]*>',
+            rf'<svg viewBox="\1" role="img" aria-label="{escape(self.alt)}" '
+            rf'style="max-width:{self.width}px;stroke:none;stroke-linecap:butt">',
+            svg,
+            count=1,
+            flags=re.DOTALL,
+        )
         return f'<figure class="orientation-figure"><style>{STYLE}</style>{svg}</figure>'
 
     def __repr__(self):
-        return f'Plot: {self.alt}'
+        return f"Plot: {self.alt}"

@@ -2,49 +2,86 @@
 
 Moving figures need it where there is no NumPy to draw with.
 """
+
 # Each colour is kept at 4.5 : 1 or more on its page: LIGHT on white, DARK on #121212.
-LIGHT = {'N': '#3a3f45', 'A': '#946200', 'B': '#b3261e', 'C': '#1a7431', 'D': '#1f5fbf', 'E': '#7b3fa0',
-         'F': '#a0306e', 'Z': '#5a6300', 'ink': '#1d2125', 'muted': '#646b73', 'accent': '#00696f'}
-DARK = {'N': '#d0d4da', 'A': '#f2c14e', 'B': '#ff8a80', 'C': '#6fdc8c', 'D': '#8ab4ff', 'E': '#cfa3f0',
-        'F': '#f39ac7', 'Z': '#c3d35b', 'ink': '#eceff2', 'muted': '#a2a9b1', 'accent': '#5fd3da'}
+LIGHT = {
+    "N": "#3a3f45",
+    "A": "#946200",
+    "B": "#b3261e",
+    "C": "#1a7431",
+    "D": "#1f5fbf",
+    "E": "#7b3fa0",
+    "F": "#a0306e",
+    "Z": "#5a6300",
+    "ink": "#1d2125",
+    "muted": "#646b73",
+    "accent": "#00696f",
+}
+DARK = {
+    "N": "#d0d4da",
+    "A": "#f2c14e",
+    "B": "#ff8a80",
+    "C": "#6fdc8c",
+    "D": "#8ab4ff",
+    "E": "#cfa3f0",
+    "F": "#f39ac7",
+    "Z": "#c3d35b",
+    "ink": "#eceff2",
+    "muted": "#a2a9b1",
+    "accent": "#5fd3da",
+}
 
 # Without colour, frames differ in the stroke of their arrows (width, dashes) and in the shape of the head.
-STROKES = {'N': (1.7, 'none'), 'A': (3.4, 'none'), 'B': (2.6, '9 4.5'), 'C': (2.6, '11 4.5 0.1 4.5'),
-           'D': (3.2, '0.1 5.2'), 'E': (2, '16 4'), 'F': (4.6, 'none'), 'Z': (2, '5 4'),
-           'ink': (2.4, 'none'), 'muted': (1.7, 'none'), 'accent': (2.4, 'none')}
+STROKES = {
+    "N": (1.7, "none"),
+    "A": (3.4, "none"),
+    "B": (2.6, "9 4.5"),
+    "C": (2.6, "11 4.5 0.1 4.5"),
+    "D": (3.2, "0.1 5.2"),
+    "E": (2, "16 4"),
+    "F": (4.6, "none"),
+    "Z": (2, "5 4"),
+    "ink": (2.4, "none"),
+    "muted": (1.7, "none"),
+    "accent": (2.4, "none"),
+}
 
 
 def _style():
     """Return the style sheet that goes with every figure; a page may set ``--frame-a`` and so on."""
+
     def colours(table):
-        return ''.join(f'--{name}:var(--frame-{name.lower()},{colour});' for name, colour in table.items())
+        return "".join(f"--{name}:var(--frame-{name.lower()},{colour});" for name, colour in table.items())
 
     rules = {
-        '': colours(LIGHT) + '--sheet:var(--pst-color-background,var(--jp-layout-color0,#fff));'
-            'margin:1rem auto;text-align:center',
-        ' svg': 'width:100%;height:auto;fill:none;stroke:currentColor;stroke-width:1.5;'
-                'stroke-linecap:round;stroke-linejoin:round',
-        ' .guide': 'stroke-width:1.3;stroke-dasharray:4 4',
-        ' .faint': 'stroke-width:1;stroke-opacity:.45',
-        ' .thick': 'stroke-width:3',
-        ' .bare': 'stroke-width:.4',
-        ' .tube': 'stroke-width:13',
-        ' .core': 'stroke-width:9.5;stroke:color-mix(in srgb,currentColor 22%,var(--sheet))',
-        ' .paper': 'fill:var(--sheet)',
-        ' .head': 'fill:currentColor;stroke:none',
-        ' .text': 'fill:currentColor;stroke:var(--sheet);stroke-width:200;paint-order:stroke',
-        ' [class*=fill]': 'stroke-linecap:butt',
-        ' input': 'width:55%;vertical-align:middle',
-        ' output': 'display:block;min-height:3em'}
+        "": colours(LIGHT) + "--sheet:var(--pst-color-background,var(--jp-layout-color0,#fff));"
+        "margin:1rem auto;text-align:center",
+        " svg": "width:100%;height:auto;fill:none;stroke:currentColor;stroke-width:1.5;"
+        "stroke-linecap:round;stroke-linejoin:round",
+        " .guide": "stroke-width:1.3;stroke-dasharray:4 4",
+        " .faint": "stroke-width:1;stroke-opacity:.45",
+        " .thick": "stroke-width:3",
+        " .bare": "stroke-width:.4",
+        " .tube": "stroke-width:13",
+        " .core": "stroke-width:9.5;stroke:color-mix(in srgb,currentColor 22%,var(--sheet))",
+        " .paper": "fill:var(--sheet)",
+        " .head": "fill:currentColor;stroke:none",
+        " .text": "fill:currentColor;stroke:var(--sheet);stroke-width:200;paint-order:stroke",
+        " [class*=fill]": "stroke-linecap:butt",
+        " input": "width:55%;vertical-align:middle",
+        " output": "display:block;min-height:3em",
+    }
     for part in (8, 16, 26, 38):
-        rules[f' .fill-{part}'] = f'fill:color-mix(in srgb,currentColor {part}%,var(--sheet))'
+        rules[f" .fill-{part}"] = f"fill:color-mix(in srgb,currentColor {part}%,var(--sheet))"
     for name, (width, dashes) in STROKES.items():
-        rules[f' .{name}'] = f'color:var(--{name})'
-        rules[f' .axis.{name}'] = f'stroke-width:{width};stroke-dasharray:{dashes}'
-    dark = ','.join(f'{page} .orientation-figure'
-                    for page in ('html[data-theme="dark"]', 'body[data-jp-theme-light="false"]'))
-    return (''.join(f'.orientation-figure{part}{{{rule}}}' for part, rule in rules.items())
-            + f'{dark}{{{colours(DARK)}}}')
+        rules[f" .{name}"] = f"color:var(--{name})"
+        rules[f" .axis.{name}"] = f"stroke-width:{width};stroke-dasharray:{dashes}"
+    dark = ",".join(
+        f"{page} .orientation-figure" for page in ('html[data-theme="dark"]', 'body[data-jp-theme-light="false"]')
+    )
+    return (
+        "".join(f".orientation-figure{part}{{{rule}}}" for part, rule in rules.items()) + f"{dark}{{{colours(DARK)}}}"
+    )
 
 
 STYLE = _style()

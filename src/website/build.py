@@ -13,9 +13,7 @@ from .paths import BUILD, HTML, pages
 def missing_pages():
     """Pages that did not come out as real HTML with a title of their own."""
     files = {page: HTML / f"{page}.html" for page in pages()}
-    return [
-        page for page, file in files.items() if not file.is_file() or "<h1>" not in file.read_text("utf8")
-    ]
+    return [page for page, file in files.items() if not file.is_file() or "<h1>" not in file.read_text("utf8")]
 
 
 def main():

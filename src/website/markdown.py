@@ -127,14 +127,11 @@ class MarkdownWriter:
 
     def table(self, node):
         rows = [
-            "| " + " | ".join(self.cell_text(entry) for entry in row.children) + " |"
-            for row in node.findall(nodes.row)
+            "| " + " | ".join(self.cell_text(entry) for entry in row.children) + " |" for row in node.findall(nodes.row)
         ]
         columns = len(next(node.findall(nodes.row)).children)
         rows.insert(1, "|" + " --- |" * columns)
-        titles = [
-            f"**{self.number('table', node)}** " + self.inline(t) for t in node if isinstance(t, nodes.title)
-        ]
+        titles = [f"**{self.number('table', node)}** " + self.inline(t) for t in node if isinstance(t, nodes.title)]
         return "\n\n".join([*titles, "\n".join(rows)])
 
     def cell_text(self, entry):
@@ -188,8 +185,6 @@ class MarkdownWriter:
                 self.say(self.block(child, max(level, 1)))
 
     def figure_caption(self, figure):
-        captions = nodes.figure(
-            "", *[c for c in figure.children if isinstance(c, (nodes.caption, nodes.legend))]
-        )
+        captions = nodes.figure("", *[c for c in figure.children if isinstance(c, (nodes.caption, nodes.legend))])
         captions["ids"] = figure["ids"]
         return self.figure(captions, 1)

@@ -72,6 +72,4 @@ def visit_display(translator, node):
 
 
 def setup(app):
-    app.add_html_math_renderer(
-        "katex", inline_renderers=(visit_inline, None), block_renderers=(visit_display, None)
-    )
+    app.add_html_math_renderer("katex", inline_renderers=(visit_inline, None), block_renderers=(visit_display, None))

@@ -46,7 +46,10 @@ def run(path):
     notebook.cells = [cell for cell in notebook.cells if cell.source.strip()]
     normalise(notebook)
     client = NotebookClient(
-        notebook, timeout=120, resources={"metadata": {"path": path.parent}}, record_timing=False,
+        notebook,
+        timeout=120,
+        resources={"metadata": {"path": path.parent}},
+        record_timing=False,
         coalesce_streams=True,
     )
     try:

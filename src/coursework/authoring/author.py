@@ -23,12 +23,13 @@ import math
 from typing import NamedTuple
 
 from ..checking import sealing
+from ..checking.check import calls_for
 from ..checking.evaluate import MP
 from ..checking.kinds import ENTRIES, WORDS, Blank, Fault, Undecidable, canonical, cell_of, cells, fingerprint, read
-from ..checking.mistakes import Mistake, mistakes as catalogued_mistakes, product_of
+from ..checking.mistakes import Mistake, product_of
+from ..checking.mistakes import mistakes as catalogued_mistakes
 from ..checking.plain import NotPlain, to_plain
 from ..checking.points import ANGLES
-from ..checking.check import calls_for
 
 #: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
 TOLERANCE = 5e-4
@@ -65,22 +66,43 @@ class Question:
         :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
     """
 
-    def __init__(self, name, public, answer, *, variable=None, worth=1, credit=None, hints=None, after=None,
-                 solution='', title='', turns=(), turned=None, authored=None):
+    def __init__(
+        self,
+        name,
+        public,
+        answer,
+        *,
+        variable=None,
+        worth=1,
+        credit=None,
+        hints=None,
+        after=None,
+        solution="",
+        title="",
+        turns=(),
+        turned=None,
+        authored=None,
+    ):
         self.name, self.public, self.answer, self.variable = name, public, answer, variable
-        self.worth, self.credit, self.title = worth, dict(credit or {}), title or name.partition('/')[2].replace('-', ' ')
+        self.worth, self.credit, self.title = (
+            worth,
+            dict(credit or {}),
+            title or name.partition("/")[2].replace("-", " "),
+        )
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
         self.turns, self.turned = list(turns), turned
         self.plain = self.to_plain(answer)
-        self.public.setdefault('salt', None)
-        held = {node[1] for node in self.plain['nodes'] if node[0] == 'symbol'}
-        if self.public.get('symbols') and held >= set(self.public['symbols']):
-            self.public['every symbol'] = True
+        self.public.setdefault("salt", None)
+        held = {node[1] for node in self.plain["nodes"] if node[0] == "symbol"}
+        if self.public.get("symbols") and held >= set(self.public["symbols"]):
+            self.public["every symbol"] = True
         self._settle_points()
         self._demand_turns()
         # What the author says of a mistake is closer to the question than what the catalogue says of it.
-        self.mistakes = [*(Mistake('authored', {'text': text}, wrong) for text, wrong in (authored or {}).items()),
-                         *self._catalogued()]
+        self.mistakes = [
+            *(Mistake("authored", {"text": text}, wrong) for text, wrong in (authored or {}).items()),
+            *self._catalogued(),
+        ]
         self.entries = self._entries()
 
     def to_plain(self, answer):
@@ -92,53 +114,57 @@ class Question:
     def _settle_points(self):
         """Choose the salt, and with it the points, so that the answer lies well inside its cells."""
         for attempt in range(50):
-            self.public['salt'] = hashlib.sha256(f'{self.name} {attempt}'.encode()).hexdigest()[:16]
-            self.public.pop('shift', None)
+            self.public["salt"] = hashlib.sha256(f"{self.name} {attempt}".encode()).hexdigest()[:16]
+            self.public.pop("shift", None)
             try:
                 reading = read(self.public, self.plain)
                 numbers = canonical(self.public, reading) if reading.text is None else []
             except (Blank, Fault, Undecidable) as error:
-                raise AuthorError(f'{self.name}: the right answer cannot be read. {error}') from None
+                raise AuthorError(f"{self.name}: the right answer cannot be read. {error}") from None
             shares = [number / cell_of(self.public) for number in numbers]
-            if self.public.get('tolerance') is not None:
+            if self.public.get("tolerance") is not None:
                 # One bit for each number: whether its cells are moved by half a cell.
-                self.public['shift'] = ''.join('01'[abs(share - MP.nint(share)) > 0.25] for share in shares)
+                self.public["shift"] = "".join("01"[abs(share - MP.nint(share)) > 0.25] for share in shares)
                 return
             if all(abs(abs(share - MP.nint(share)) - 0.5) > 1e-3 for share in shares):
                 return
-        raise AuthorError(f'{self.name}: no points were found at which the answer is not on the edge of a cell.')
+        raise AuthorError(f"{self.name}: no points were found at which the answer is not on the edge of a cell.")
 
     def _demand_turns(self):
         if not self.turns:
             return
-        built = self.to_plain(product_of(self.turns, self.public['kind']))
+        built = self.to_plain(product_of(self.turns, self.public["kind"]))
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
-            raise AuthorError(f'{self.name}: the turns do not give the right answer.')
+            raise AuthorError(f"{self.name}: the turns do not give the right answer.")
 
     def _catalogued(self):
-        if self.public['kind'] != 'function':
+        if self.public["kind"] != "function":
             return catalogued_mistakes(self.public, self.answer, self.turns, self.turned)
-        inner = {**self.public, 'kind': self.public['result']}
+        inner = {**self.public, "kind": self.public["result"]}
         results = [self.answer(*arguments) for arguments in calls_for(self.public)]
-        columns = [{(found.note, json.dumps(found.details)): found.answer for found in catalogued_mistakes(inner, result)}
-                   for result in results]
+        columns = [
+            {(found.note, json.dumps(found.details)): found.answer for found in catalogued_mistakes(inner, result)}
+            for result in results
+        ]
         shared = [known for known in columns[0] if all(known in column for column in columns)]
-        return [Mistake(note, json.loads(details), _replay([column[note, details] for column in columns]))
-                for note, details in shared]
+        return [
+            Mistake(note, json.loads(details), _replay([column[note, details] for column in columns]))
+            for note, details in shared
+        ]
 
     def _entries(self):
         right = self.fingerprint_of(self.plain)
-        entries = {right: Entry('correct', [], self.plain)}
+        entries = {right: Entry("correct", [], self.plain)}
         for mistake in self.mistakes:
             try:
                 plain = self.to_plain(mistake.answer)
                 fingerprints = self._fingerprints(plain)
             except (Fault, Undecidable, NotPlain):
-                continue   # such an answer is refused for its form, which is a message of its own
+                continue  # such an answer is refused for its form, which is a message of its own
             if right in fingerprints:
-                continue   # on this question the mistake makes no difference
+                continue  # on this question the mistake makes no difference
             for text in fingerprints:
-                known = entries.setdefault(text, Entry('mistake', [], plain))
+                known = entries.setdefault(text, Entry("mistake", [], plain))
                 if [mistake.note, mistake.details] not in known.notes:
                     known.notes.append([mistake.note, mistake.details])
         return entries
@@ -146,7 +172,7 @@ class Question:
     def _fingerprints(self, plain):
         """The fingerprint of a mistake, and its neighbours where rounding might cross the edge of a cell."""
         reading = read(self.public, plain)
-        if reading.text is not None or self.public.get('tolerance') is None:
+        if reading.text is not None or self.public.get("tolerance") is None:
             return [fingerprint(self.public, reading)]
         numbers, cell = canonical(self.public, reading), cell_of(self.public)
         choices, spare = [], 3
@@ -156,60 +182,64 @@ class Question:
                 options |= set(cells_near(self.public, number, len(choices), EDGE * cell))
                 spare -= len(options) > 1
             choices.append(sorted(options))
-        return [' '.join(map(str, chosen)) for chosen in itertools.product(*choices)]
+        return [" ".join(map(str, chosen)) for chosen in itertools.product(*choices)]
 
     def sealed(self):
         """What a student receives of the question: its public part and its lockers."""
-        contents = {text: {'outcome': entry.outcome, 'notes': entry.notes} for text, entry in self.entries.items()}
-        keys = {text: sealing.slow_key(self.public['salt'], text) for text in contents}
-        length = max(len(sealing.base64.b64decode(sealing.seal(content, keys[text]))) - 16
-                     for text, content in contents.items())
-        lockers = {sealing.locker(keys[text]): sealing.seal(content, keys[text], length=length)
-                   for text, content in contents.items()}
+        contents = {text: {"outcome": entry.outcome, "notes": entry.notes} for text, entry in self.entries.items()}
+        keys = {text: sealing.slow_key(self.public["salt"], text) for text in contents}
+        length = max(
+            len(sealing.base64.b64decode(sealing.seal(content, keys[text]))) - 16 for text, content in contents.items()
+        )
+        lockers = {
+            sealing.locker(keys[text]): sealing.seal(content, keys[text], length=length)
+            for text, content in contents.items()
+        }
         beside = {}
         for text, entry in self.entries.items():
             for purpose, content in self._beside(entry).items():
                 beside[sealing.locker(keys[text], purpose)] = sealing.seal(content, keys[text], purpose)
-        sealed = {**self.public, 'lockers': dict(sorted(lockers.items()))}
+        sealed = {**self.public, "lockers": dict(sorted(lockers.items()))}
         if beside:
-            sealed['beside'] = dict(sorted(beside.items()))
+            sealed["beside"] = dict(sorted(beside.items()))
         return sealed
 
     def _beside(self, entry):
-        if entry.outcome == 'correct':
-            found = {'solution': to_page(self.solution)} if self.solution else {}
+        if entry.outcome == "correct":
+            found = {"solution": to_page(self.solution)} if self.solution else {}
             if self.after:
-                found['hints'] = self.after
+                found["hints"] = self.after
             return found
         steps = [step for note, _ in entry.notes for step in self.hints.get(note, [])]
-        return {'hints': {self.name: steps}} if steps else {}
+        return {"hints": {self.name: steps}} if steps else {}
 
     def guessing_bits(self):
         """About how many bits a student must guess who tries answers instead of finding one."""
-        public, kind = self.public, self.public['kind']
-        symbols = max(1, len(public.get('symbols', {})))
-        if kind == 'choice':
-            return math.log2(len(public['options']))
-        if kind == 'words':
-            return public['length'] * math.log2(len(public['options']))
-        if kind == 'truth values':
-            return public['length']
-        if kind == 'sequence':
+        public, kind = self.public, self.public["kind"]
+        symbols = max(1, len(public.get("symbols", {})))
+        if kind == "choice":
+            return math.log2(len(public["options"]))
+        if kind == "words":
+            return public["length"] * math.log2(len(public["options"]))
+        if kind == "truth values":
+            return public["length"]
+        if kind == "sequence":
             return math.log2(12)
         if self.turns:
             # Each turn about one of three axes, either way round, through any of the angles.
             return len(self.turns) * math.log2(6 * max(symbols, len(self.turns)))
-        if public.get('tolerance') is not None and kind != 'function':
-            freedom = {'direction cosine matrix': 3, 'quaternion': 3, 'Euler angles': 3, 'axis and angle': 3}.get(
-                kind, len(self.public.get('shift', '1')))
+        if public.get("tolerance") is not None and kind != "function":
+            freedom = {"direction cosine matrix": 3, "quaternion": 3, "Euler angles": 3, "axis and angle": 3}.get(
+                kind, len(self.public.get("shift", "1"))
+            )
             return freedom * math.log2(2 / float(cell_of(public)))
         # As many as it takes to write the answer down, from eight operations and the symbols.
-        plain = self.plain if kind != 'function' else None
-        return min(256, 3 * len(plain['nodes'])) if plain else 64
+        plain = self.plain if kind != "function" else None
+        return min(256, 3 * len(plain["nodes"])) if plain else 64
 
 
 def cells_near(public, number, order, distance):
-    near = {**public, 'shift': public.get('shift', '')[order:order + 1]} if public.get('shift') else public
+    near = {**public, "shift": public.get("shift", "")[order : order + 1]} if public.get("shift") else public
     return [cells(near, [number + side * distance])[0] for side in (-1, 1)]
 
 
@@ -225,15 +255,34 @@ def to_page(markdown):
     from mdit_py_plugins.dollarmath import dollarmath_plugin
 
     def formula(content, options):
-        mark = '$$' if options['display_mode'] else '$'
-        return f'{mark}{html.escape(content, quote=False)}{mark}'
+        mark = "$$" if options["display_mode"] else "$"
+        return f"{mark}{html.escape(content, quote=False)}{mark}"
 
     return MarkdownIt().use(dollarmath_plugin, renderer=formula).render(markdown)
 
 
-def question(name, kind, answer, *, frames=None, symbols=None, unit=None, shape=None, length=None, sequence=None,
-             options=None, tolerance=None, calls=None, takes='lists', result=None, quantity=None, either_sign=None,
-             unit_vector=None, mistakes=None, **rest):
+def question(
+    name,
+    kind,
+    answer,
+    *,
+    frames=None,
+    symbols=None,
+    unit=None,
+    shape=None,
+    length=None,
+    sequence=None,
+    options=None,
+    tolerance=None,
+    calls=None,
+    takes="lists",
+    result=None,
+    quantity=None,
+    either_sign=None,
+    unit_vector=None,
+    mistakes=None,
+    **rest,
+):
     """Build a :class:`Question` from what its author wrote.
 
     Raises
@@ -241,31 +290,45 @@ def question(name, kind, answer, *, frames=None, symbols=None, unit=None, shape=
     AuthorError
         The question is not well posed.
     """
-    known = {*ENTRIES, *WORDS, 'function'}
+    known = {*ENTRIES, *WORDS, "function"}
     if kind not in known:
-        raise AuthorError(f'{name}: the kind {kind!r} is none of {sorted(known)}.')
-    public = {'kind': kind}
+        raise AuthorError(f"{name}: the kind {kind!r} is none of {sorted(known)}.")
+    public = {"kind": kind}
     if isinstance(symbols, str):
-        symbols = {symbol: ANGLES for symbol in symbols.replace(',', ' ').split()}
+        symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
     symbols = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}
     if tolerance is None and not symbols and kind not in WORDS:
         tolerance = TOLERANCE
     for key, value in {
-        'frames': list(frames) if frames else None, 'symbols': symbols, 'unit': unit, 'shape': shape and list(shape),
-        'length': length, 'sequence': sequence, 'options': options and list(options), 'tolerance': tolerance,
-        'calls': calls, 'takes': takes if kind == 'function' else None, 'result': result, 'quantity': quantity,
-        'either sign': either_sign if either_sign is not None else (True if 'quaternion' in (kind, result) else None),
-        'unit vector': unit_vector,
+        "frames": list(frames) if frames else None,
+        "symbols": symbols,
+        "unit": unit,
+        "shape": shape and list(shape),
+        "length": length,
+        "sequence": sequence,
+        "options": options and list(options),
+        "tolerance": tolerance,
+        "calls": calls,
+        "takes": takes if kind == "function" else None,
+        "result": result,
+        "quantity": quantity,
+        "either sign": either_sign if either_sign is not None else (True if "quaternion" in (kind, result) else None),
+        "unit vector": unit_vector,
     }.items():
         if value not in (None, {}, []):
             public[key] = value
     for needed, kinds in NEEDED.items():
         if kind in kinds and needed not in public:
-            raise AuthorError(f'{name}: a question of kind {kind!r} needs {needed!r}.')
+            raise AuthorError(f"{name}: a question of kind {kind!r} needs {needed!r}.")
     return Question(name, public, answer, authored=mistakes, **rest)
 
 
 NEEDED = {
-    'frames': ('direction cosine matrix',), 'sequence': ('Euler angles',), 'options': ('choice', 'words'),
-    'length': ('truth values', 'words'), 'calls': ('function',), 'result': ('function',), 'shape': ('matrix',),
+    "frames": ("direction cosine matrix",),
+    "sequence": ("Euler angles",),
+    "options": ("choice", "words"),
+    "length": ("truth values", "words"),
+    "calls": ("function",),
+    "result": ("function",),
+    "shape": ("matrix",),
 }

@@ -9,20 +9,20 @@ from sympy.core.function import AppliedUndef
 
 #: Ways of writing the sine and the cosine, each a function of the argument.
 SINES = {
-    'as a cosine': lambda x: cos(pi / 2 - x, evaluate=False),
-    'half angle': lambda x: 2 * sin(x / 2) * cos(x / 2),
-    'exponentials': lambda x: (exp(I * x) - exp(-I * x)) / (2 * I),
-    'tangent': lambda x: tan(x) * cos(x),
-    'half tangent': lambda x: 2 * tan(x / 2) / (1 + tan(x / 2)**2),
-    'negative argument': lambda x: -sin(-x, evaluate=False),
+    "as a cosine": lambda x: cos(pi / 2 - x, evaluate=False),
+    "half angle": lambda x: 2 * sin(x / 2) * cos(x / 2),
+    "exponentials": lambda x: (exp(I * x) - exp(-I * x)) / (2 * I),
+    "tangent": lambda x: tan(x) * cos(x),
+    "half tangent": lambda x: 2 * tan(x / 2) / (1 + tan(x / 2) ** 2),
+    "negative argument": lambda x: -sin(-x, evaluate=False),
 }
 COSINES = {
-    'as a sine': lambda x: sin(pi / 2 - x, evaluate=False),
-    'half angle': lambda x: cos(x / 2)**2 - sin(x / 2)**2,
-    'exponentials': lambda x: (exp(I * x) + exp(-I * x)) / 2,
-    'double angle': lambda x: 1 - 2 * sin(x / 2)**2,
-    'half tangent': lambda x: (1 - tan(x / 2)**2) / (1 + tan(x / 2)**2),
-    'negative argument': lambda x: cos(-x, evaluate=False),
+    "as a sine": lambda x: sin(pi / 2 - x, evaluate=False),
+    "half angle": lambda x: cos(x / 2) ** 2 - sin(x / 2) ** 2,
+    "exponentials": lambda x: (exp(I * x) + exp(-I * x)) / 2,
+    "double angle": lambda x: 1 - 2 * sin(x / 2) ** 2,
+    "half tangent": lambda x: (1 - tan(x / 2) ** 2) / (1 + tan(x / 2) ** 2),
+    "negative argument": lambda x: cos(-x, evaluate=False),
 }
 
 
@@ -52,7 +52,7 @@ def flat(answer):
     """The entries of a matrix or a nested list, and a function that puts entries back into that shape."""
     if isinstance(answer, sympy.MatrixBase):
         return list(answer.flat()), lambda entries: sympy.Matrix(*answer.shape, list(entries))
-    if not isinstance(answer, sympy.Basic) and hasattr(answer, 'tolist'):
+    if not isinstance(answer, sympy.Basic) and hasattr(answer, "tolist"):
         answer = answer.tolist()
     if isinstance(answer, (list, tuple)):
         parts = [flat(part) for part in answer]
@@ -68,64 +68,89 @@ def flat(answer):
 
 def equivalent_forms(public, answer):
     """Give the same answer in several forms, as pairs (name of the form, answer)."""
-    kind = public['kind']
-    if kind in ('sequence', 'choice'):
+    kind = public["kind"]
+    if kind in ("sequence", "choice"):
         return _forms_of_word(kind, answer)
-    if kind == 'truth values':
+    if kind == "truth values":
         answer = list(answer)
-        return [('list', answer), ('tuple', tuple(answer)), ('SymPy', [sympy.sympify(part) for part in answer]),
-                ('copy', list(answer))]
-    if kind == 'words':
-        return [('list', list(answer)), ('tuple', tuple(answer)), ('capitals', [part.upper() for part in answer]),
-                ('spaces', [f' {part} ' for part in answer])]
-    if kind == 'function':
-        return [('itself', answer), ('wrapped', lambda *arguments: answer(*arguments)),
-                ('as lists', lambda *arguments: _as_lists(answer(*arguments)))]
-    if hasattr(answer, 'to_matrix'):
-        return [('itself', answer)]
+        return [
+            ("list", answer),
+            ("tuple", tuple(answer)),
+            ("SymPy", [sympy.sympify(part) for part in answer]),
+            ("copy", list(answer)),
+        ]
+    if kind == "words":
+        return [
+            ("list", list(answer)),
+            ("tuple", tuple(answer)),
+            ("capitals", [part.upper() for part in answer]),
+            ("spaces", [f" {part} " for part in answer]),
+        ]
+    if kind == "function":
+        return [
+            ("itself", answer),
+            ("wrapped", lambda *arguments: answer(*arguments)),
+            ("as lists", lambda *arguments: _as_lists(answer(*arguments))),
+        ]
+    if hasattr(answer, "to_matrix"):
+        return [("itself", answer)]
     entries, put = flat(answer)
-    return _forms_of_numbers(public, answer, entries, put) if not unknowns(entries) else _forms_of_symbols(
-        public, answer, entries, put)
+    return (
+        _forms_of_numbers(public, answer, entries, put)
+        if not unknowns(entries)
+        else _forms_of_symbols(public, answer, entries, put)
+    )
 
 
 def _as_lists(result):
-    entries, put = flat(list(result) if getattr(result, 'shape', ())[1:] == (1,) else result)
+    entries, put = flat(list(result) if getattr(result, "shape", ())[1:] == (1,) else result)
     return put(entries)
 
 
 def _forms_of_word(kind, answer):
-    forms = [('itself', answer), ('capitals', answer.upper()), ('spaces around', f'  {answer} ')]
-    if kind == 'sequence':
-        forms += [('dashes', '-'.join(answer)), ('spaces', ' '.join(answer)), ('list', list(answer))]
+    forms = [("itself", answer), ("capitals", answer.upper()), ("spaces around", f"  {answer} ")]
+    if kind == "sequence":
+        forms += [("dashes", "-".join(answer)), ("spaces", " ".join(answer)), ("list", list(answer))]
     return forms
 
 
 def _forms_of_symbols(public, answer, entries, put):
-    forms = [('itself', answer)]
+    forms = [("itself", answer)]
 
     def add(name, change):
         forms.append((name, put([change(sympy.sympify(entry)) for entry in entries])))
 
-    add('expanded', sympy.expand)
-    for name in ('half angle', 'exponentials', 'half tangent', 'negative argument'):
+    add("expanded", sympy.expand)
+    for name in ("half angle", "exponentials", "half tangent", "negative argument"):
         add(name, lambda entry, name=name: _rewrite(entry, SINES[name], COSINES[name]))
-    add('one added as squares', lambda entry: entry * sympy.Add(
-        sin(unknowns(entries)[0])**2, cos(unknowns(entries)[0])**2, evaluate=False))
+    add(
+        "one added as squares",
+        lambda entry: entry * sympy.Add(sin(unknowns(entries)[0]) ** 2, cos(unknowns(entries)[0]) ** 2, evaluate=False),
+    )
     plain = [symbol for symbol in unknowns(entries) if isinstance(symbol, sympy.Symbol)]
-    time = sympy.Symbol('t')
-    add('other assumptions', lambda entry: entry.xreplace({symbol: sympy.Symbol(symbol.name, real=True) for symbol in plain}))
-    add('functions of time', lambda entry: entry.xreplace({symbol: sympy.Function(symbol.name)(time) for symbol in plain}))
+    time = sympy.Symbol("t")
+    add(
+        "other assumptions",
+        lambda entry: entry.xreplace({symbol: sympy.Symbol(symbol.name, real=True) for symbol in plain}),
+    )
+    add(
+        "functions of time",
+        lambda entry: entry.xreplace({symbol: sympy.Function(symbol.name)(time) for symbol in plain}),
+    )
     if isinstance(answer, sympy.MatrixBase):
-        forms += [('nested list', answer.tolist() if answer.cols > 1 else list(answer)),
-                  ('immutable', sympy.ImmutableMatrix(answer)),
-                  ('product', sympy.MatMul(sympy.ImmutableMatrix(answer), sympy.Identity(answer.cols)))]
-        if public['kind'] == 'direction cosine matrix':
+        forms += [
+            ("nested list", answer.tolist() if answer.cols > 1 else list(answer)),
+            ("immutable", sympy.ImmutableMatrix(answer)),
+            ("product", sympy.MatMul(sympy.ImmutableMatrix(answer), sympy.Identity(answer.cols))),
+        ]
+        if public["kind"] == "direction cosine matrix":
             from sympy.physics.mechanics import ReferenceFrame
-            target, source = (ReferenceFrame(name) for name in public['frames'])
+
+            target, source = (ReferenceFrame(name) for name in public["frames"])
             target.orient_explicit(source, sympy.ImmutableMatrix(answer).T)
-            forms.append(('reference frame', target))
-    if public.get('either sign'):
-        add('other sign', lambda entry: -entry)
+            forms.append(("reference frame", target))
+    if public.get("either sign"):
+        add("other sign", lambda entry: -entry)
     return forms
 
 
@@ -133,24 +158,30 @@ def _forms_of_numbers(public, answer, entries, put):
     def each(change):
         return put([change(sympy.sympify(entry)) for entry in entries])
 
-    forms = [('itself', answer), ('15 digits', each(lambda entry: entry.evalf(15))),
-             ('floats', each(lambda entry: float(entry))), ('20 digits', each(lambda entry: entry.evalf(20))),
-             ('sum of two', each(lambda entry: sympy.Add(entry / 3, 2 * entry / 3, evaluate=False))),
-             ('by a root', each(lambda entry: sympy.Mul(entry / 2, sqrt(2), sqrt(2), evaluate=False)))]
+    forms = [
+        ("itself", answer),
+        ("15 digits", each(lambda entry: entry.evalf(15))),
+        ("floats", each(lambda entry: float(entry))),
+        ("20 digits", each(lambda entry: entry.evalf(20))),
+        ("sum of two", each(lambda entry: sympy.Add(entry / 3, 2 * entry / 3, evaluate=False))),
+        ("by a root", each(lambda entry: sympy.Mul(entry / 2, sqrt(2), sqrt(2), evaluate=False))),
+    ]
     digits = _digits(public)
     if digits is not None:
-        forms.append((f'{digits} decimals', each(lambda entry: round(float(entry), digits))))
+        forms.append((f"{digits} decimals", each(lambda entry: round(float(entry), digits))))
     if isinstance(answer, sympy.MatrixBase):
-        forms += [('nested list', answer.tolist() if answer.cols > 1 else list(answer)),
-                  ('immutable', sympy.ImmutableMatrix(answer))]
-    if public.get('either sign'):
-        forms.append(('other sign', each(lambda entry: -entry)))
+        forms += [
+            ("nested list", answer.tolist() if answer.cols > 1 else list(answer)),
+            ("immutable", sympy.ImmutableMatrix(answer)),
+        ]
+    if public.get("either sign"):
+        forms.append(("other sign", each(lambda entry: -entry)))
     return forms
 
 
 def _digits(public):
     """How many decimals are enough for the tolerance of a question."""
-    tolerance = public.get('tolerance')
+    tolerance = public.get("tolerance")
     if tolerance is None:
         return None
     digits = 0
@@ -161,25 +192,32 @@ def _digits(public):
 
 def random_form(public, answer, chance):
     """Give the same answer in a form made up by chance, as one who simplifies nothing might write it."""
-    kind = public['kind']
-    if kind in ('sequence', 'choice', 'truth values', 'words', 'function'):
+    kind = public["kind"]
+    if kind in ("sequence", "choice", "truth values", "words", "function"):
         return chance.choice(equivalent_forms(public, answer))[1]
     entries, put = flat(answer)
     free = unknowns(entries)
     if not free:
-        tolerance = public.get('tolerance')
+        tolerance = public.get("tolerance")
         if tolerance is not None and chance.random() < 0.6:
             result = put([float(entry) + chance.uniform(-0.9, 0.9) * tolerance for entry in entries])
         else:
             result = put([_shuffled_number(sympy.sympify(entry), chance) for entry in entries])
     else:
         result = put([_shuffled(sympy.sympify(entry), chance, free) for entry in entries])
-        changes = {symbol: chance.choice([symbol, sympy.Symbol(str(symbol), real=True), sympy.Function(str(symbol))(
-            sympy.Symbol('t'))]) for symbol in free if isinstance(symbol, sympy.Symbol)}
+        changes = {
+            symbol: chance.choice(
+                [symbol, sympy.Symbol(str(symbol), real=True), sympy.Function(str(symbol))(sympy.Symbol("t"))]
+            )
+            for symbol in free
+            if isinstance(symbol, sympy.Symbol)
+        }
         again, put = flat(result)
         result = put([sympy.sympify(entry).xreplace(changes) for entry in again])
     if isinstance(result, sympy.MatrixBase):
-        result = chance.choice([lambda m: m, sympy.ImmutableMatrix, lambda m: m.tolist() if m.cols > 1 else list(m)])(result)
+        result = chance.choice([lambda m: m, sympy.ImmutableMatrix, lambda m: m.tolist() if m.cols > 1 else list(m)])(
+            result
+        )
     return result
 
 
@@ -193,7 +231,7 @@ def _shuffled(expression, chance, free):
     luck = chance.random()
     if luck < 0.1:
         symbol = chance.choice(free)
-        return sympy.Mul(result, sympy.Add(sin(symbol)**2, cos(symbol)**2, evaluate=False), evaluate=False)
+        return sympy.Mul(result, sympy.Add(sin(symbol) ** 2, cos(symbol) ** 2, evaluate=False), evaluate=False)
     if luck < 0.2:
         extra = chance.choice(free) + chance.randint(1, 5)
         return sympy.Add(result, extra, -extra, evaluate=False)
@@ -205,37 +243,46 @@ def _shuffled(expression, chance, free):
 
 
 def _shuffled_number(number, chance):
-    return chance.choice([
-        lambda: number, lambda: number.evalf(30), lambda: sympy.Add(number, pi, -pi, evaluate=False),
-        lambda: sympy.Mul(number, sqrt(3), 1 / sqrt(3), evaluate=False),
-        lambda: sympy.Mul(number, exp(I * pi / 7), exp(-I * pi / 7), evaluate=False)])()
+    return chance.choice(
+        [
+            lambda: number,
+            lambda: number.evalf(30),
+            lambda: sympy.Add(number, pi, -pi, evaluate=False),
+            lambda: sympy.Mul(number, sqrt(3), 1 / sqrt(3), evaluate=False),
+            lambda: sympy.Mul(number, exp(I * pi / 7), exp(-I * pi / 7), evaluate=False),
+        ]
+    )()
 
 
 def another_answer(public, answer, chance=None):
     """An answer of the right form that is neither right nor a mistake of the catalogue."""
     chance = chance or random.Random(1)
-    kind = public['kind']
-    if kind == 'function':
-        return lambda *arguments: another_answer({**public, 'kind': public['result']}, answer(*arguments), random.Random(1))
-    if kind in ('sequence',):
-        return next(word for word in ('xyx', 'yzy', 'zxy') if word not in (answer, answer[::-1]))
-    if kind == 'choice':
-        return next(option for option in public['options'] if option.lower() != answer.lower())
-    if kind == 'truth values':
+    kind = public["kind"]
+    if kind == "function":
+        return lambda *arguments: another_answer(
+            {**public, "kind": public["result"]}, answer(*arguments), random.Random(1)
+        )
+    if kind in ("sequence",):
+        return next(word for word in ("xyx", "yzy", "zxy") if word not in (answer, answer[::-1]))
+    if kind == "choice":
+        return next(option for option in public["options"] if option.lower() != answer.lower())
+    if kind == "truth values":
         changed = chance.randrange(len(answer))
         return [part != (order == changed) for order, part in enumerate(answer)]
-    if kind == 'words':
-        return [another_answer({**public, 'kind': 'choice'}, part) for part in answer]
-    if hasattr(answer, 'to_matrix'):
+    if kind == "words":
+        return [another_answer({**public, "kind": "choice"}, part) for part in answer]
+    if hasattr(answer, "to_matrix"):
         return answer * Rational(17, 13)
-    if kind in ('direction cosine matrix', 'quaternion'):
+    if kind in ("direction cosine matrix", "quaternion"):
         from ..checking.mistakes import product_of
+
         turn = product_of([((Rational(2, 3), Rational(-1, 3), Rational(2, 3)), Rational(37, 100))], kind)
-        if kind == 'quaternion':
+        if kind == "quaternion":
             from orientation import multiply_quaternions
+
             return multiply_quaternions(sympy.Matrix(list(answer)), turn)
-        if hasattr(answer, 'dcm'):
+        if hasattr(answer, "dcm"):
             answer = answer.dcm(next(iter(answer._dcm_dict)))
-        return turn * sympy.Matrix(answer.tolist() if hasattr(answer, 'tolist') else answer)
+        return turn * sympy.Matrix(answer.tolist() if hasattr(answer, "tolist") else answer)
     entries, put = flat(answer)
     return put([entry * Rational(17, 13) + Rational(11, 37) for entry in map(sympy.sympify, entries)])

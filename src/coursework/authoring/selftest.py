@@ -14,13 +14,13 @@ import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
-from .forms import another_answer, equivalent_forms
 from ..checking.kinds import Fault, Undecidable
 from ..checking.mistakes import message
 from ..checking.plain import NotPlain
 from ..checking.questions import compare, judge, notebook_questions
-from .release import ARCHIVE, CHAPTERS, EXERCISES, HIDDEN, SEALED, SOLUTION, SOURCES, blank, read_source
 from ..checking.reply import Reply, to_html
+from .forms import another_answer, equivalent_forms
+from .release import ARCHIVE, CHAPTERS, EXERCISES, HIDDEN, SEALED, SOLUTION, SOURCES, blank, read_source
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
 SECONDS_PER_TRY = 0.015
@@ -50,37 +50,50 @@ def try_question(question):
     forms = equivalent_forms(question.public, question.answer)
     for form, answer in forms:
         reply = _judge(question, answer)
-        if reply.outcome != 'correct':
+        if reply.outcome != "correct":
             faults.append(f'The right answer in the form "{form}" gets "{reply.outcome}": {reply.messages}')
-    words = question.public['kind'] in ('sequence', 'choice', 'truth values', 'words', 'function')
-    if len(forms) < FORMS and not words and not hasattr(question.answer, 'to_matrix'):
-        faults.append(f'The right answer was tried in {len(forms)} forms only.')
-    sealed = notebook_questions(question.name.partition('/')[0]).get(question.name)
-    if sealed and judge(question.name, sealed, question.plain)[0].outcome != 'correct':
-        faults.append('The right answer does not open what is sealed: make the release anew.')
+    words = question.public["kind"] in ("sequence", "choice", "truth values", "words", "function")
+    if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
+        faults.append(f"The right answer was tried in {len(forms)} forms only.")
+    sealed = notebook_questions(question.name.partition("/")[0]).get(question.name)
+    if sealed and judge(question.name, sealed, question.plain)[0].outcome != "correct":
+        faults.append("The right answer does not open what is sealed: make the release anew.")
     named, unmoved = _try_mistakes(question, faults)
     blank = _judge(question, ...)
-    if blank.outcome != 'not attempted':
+    if blank.outcome != "not attempted":
         faults.append(f'The untouched blank gets "{blank.outcome}".')
-    others = (question.to_plain(another_answer(question.public, question.answer, random.Random(seed))) for seed in range(9))
+    others = (
+        question.to_plain(another_answer(question.public, question.answer, random.Random(seed))) for seed in range(9)
+    )
     other = next((plain for plain in others if question.fingerprint_of(plain) not in question.entries), None)
-    other = Reply(question.name, 'wrong') if other is None else _compare(question, other)
-    if other.outcome == 'correct' or other.outcome == 'wrong' and other.note:
+    other = Reply(question.name, "wrong") if other is None else _compare(question, other)
+    if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
-    return Finding(question.name, question.public['kind'], [form for form, _ in forms], named, unmoved,
-                   question.guessing_bits(), faults)
+    return Finding(
+        question.name,
+        question.public["kind"],
+        [form for form, _ in forms],
+        named,
+        unmoved,
+        question.guessing_bits(),
+        faults,
+    )
 
 
 def _compare(question, plain):
-    return compare(question.name, question.public, plain, lambda text: (
-        question.entries[text]._asdict() if text in question.entries else None))
+    return compare(
+        question.name,
+        question.public,
+        plain,
+        lambda text: question.entries[text]._asdict() if text in question.entries else None,
+    )
 
 
 def _judge(question, answer):
     try:
         return _compare(question, question.to_plain(answer))
     except NotPlain as error:
-        return Reply(question.name, 'invalid', 'unreadable', [str(error)])
+        return Reply(question.name, "invalid", "unreadable", [str(error)])
 
 
 def _try_mistakes(question, faults):
@@ -92,16 +105,18 @@ def _try_mistakes(question, faults):
             plain = question.to_plain(mistake.answer)
             if question.fingerprint_of(plain) == right:
                 unmoved.append(mistake.note)
-                if mistake.note == 'authored':
-                    faults.append(f'This authored mistake gives the right answer: {said}')
+                if mistake.note == "authored":
+                    faults.append(f"This authored mistake gives the right answer: {said}")
                 continue
             reply = _compare(question, plain)
         except (Fault, Undecidable, NotPlain) as refused:
-            named.append((mistake.note, f'(refused for its form) {refused}'))
+            named.append((mistake.note, f"(refused for its form) {refused}"))
             continue
         entry = question.entries[question.fingerprint_of(plain)]
-        if reply.outcome != 'wrong' or [mistake.note, mistake.details] not in entry.notes:
-            faults.append(f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its own message.')
+        if reply.outcome != "wrong" or [mistake.note, mistake.details] not in entry.notes:
+            faults.append(
+                f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its own message.'
+            )
         elif not reply.messages:
             faults.append(f'The mistake "{mistake.note}" has no message.')
         named.append((mistake.note, said))
@@ -110,80 +125,92 @@ def _try_mistakes(question, faults):
 
 # --- what must not be found in anything that a student receives ---------------------------------
 
+
 def secrets_of(source):
     """Texts of a notebook with solutions that no student may receive, without spaces: what each is, and it."""
     found = []
     for cell in source.notebook.cells:
-        if cell.cell_type == 'code':
+        if cell.cell_type == "code":
             for region in SOLUTION.findall(cell.source):
-                found += [('a line of a solution', line) for line in region.splitlines()]
+                found += [("a line of a solution", line) for line in region.splitlines()]
             for region in HIDDEN.findall(cell.source):
-                found += [('a line of a hidden test', line) for line in region.splitlines()]
+                found += [("a line of a hidden test", line) for line in region.splitlines()]
     for name, question in source.questions.items():
         for line in question.solution.splitlines():
-            found.append((f'the worked solution of {name}', line))
+            found.append((f"the worked solution of {name}", line))
         for step in [step for steps in [*question.hints.values(), *question.after.values()] for step in steps]:
-            found.append((f'a hint of {name}', step))
-        if question.public['kind'] not in ('function', 'choice', 'sequence', 'words', 'truth values'):
-            found += [(f'the answer of {name}', text) for text in _writings(question.answer)]
-    given = {_dense(line) for cell in source.notebook.cells
-             for line in HIDDEN.sub('', SOLUTION.sub('', cell.source)).splitlines()}
+            found.append((f"a hint of {name}", step))
+        if question.public["kind"] not in ("function", "choice", "sequence", "words", "truth values"):
+            found += [(f"the answer of {name}", text) for text in _writings(question.answer)]
+    given = {
+        _dense(line)
+        for cell in source.notebook.cells
+        for line in HIDDEN.sub("", SOLUTION.sub("", cell.source)).splitlines()
+    }
     # What stands in place of a solution is given too: the signature of a function and its docstring.
     owners = {question.variable: name for name, question in source.questions.items()}
-    given |= {_dense(line) for cell in source.notebook.cells for region in SOLUTION.findall(cell.source)
-              for line in blank(region, owners).splitlines()}
+    given |= {
+        _dense(line)
+        for cell in source.notebook.cells
+        for region in SOLUTION.findall(cell.source)
+        for line in blank(region, owners).splitlines()
+    }
     # The arguments that a function is tried with are public: whoever checks it must call it.
-    given |= {_dense(json.dumps(question.public.get('calls', ''))) for question in source.questions.values()}
+    given |= {_dense(json.dumps(question.public.get("calls", ""))) for question in source.questions.values()}
     seen = {}
     for what, text in found:
         dense = _dense(text)
         # Short lines stand anywhere, imports and marks tell nothing, and what the author gives openly
         # elsewhere is no secret.
-        if len(dense) >= 14 and not _tells_nothing(text) and not any(dense.strip(',') in line for line in given):
+        if len(dense) >= 14 and not _tells_nothing(text) and not any(dense.strip(",") in line for line in given):
             seen.setdefault(dense, what)
     return seen
 
 
 def _tells_nothing(line):
-    return re.match(r'\s*(import |from \w[\w.]* import |def |### |class )', line) is not None
+    return re.match(r"\s*(import |from \w[\w.]* import |def |### |class )", line) is not None
 
 
 def _writings(answer):
     import sympy
+
     try:
         expression = sympy.Matrix(answer) if isinstance(answer, (list, tuple)) else sympy.sympify(answer)
     except (TypeError, ValueError, sympy.SympifyError):
         return []
-    if not hasattr(expression, 'free_symbols'):
+    if not hasattr(expression, "free_symbols"):
         return []
     writings = [str(expression), sympy.srepr(expression), sympy.latex(expression)]
-    if hasattr(expression, 'tolist'):
+    if hasattr(expression, "tolist"):
         writings.append(str(expression.tolist()))
     return writings
 
 
 def _dense(text):
-    return re.sub(r'\s+', '', text).lower()
+    return re.sub(r"\s+", "", text).lower()
 
 
 def released_texts(exercises=EXERCISES, sealed=SEALED, archive=ARCHIVE):
     """Everything that students receive, as texts by place: files, what is packed in them, and pictures."""
-    files = {str(path): path.read_bytes() for folder, pattern in ((exercises, '*.ipynb'), (sealed, '*.json'))
-             for path in sorted(Path(folder).glob(pattern))}
+    files = {
+        str(path): path.read_bytes()
+        for folder, pattern in ((exercises, "*.ipynb"), (sealed, "*.json"))
+        for path in sorted(Path(folder).glob(pattern))
+    }
     if Path(archive).exists():
         files[str(archive)] = Path(archive).read_bytes()
     texts = {}
     while files:
         name, data = files.popitem()
-        if name.endswith(('.zip', '.whl')):
+        if name.endswith((".zip", ".whl")):
             with zipfile.ZipFile(io.BytesIO(data)) as box:
-                files.update({f'{name}!{inner}': box.read(inner) for inner in box.namelist()})
+                files.update({f"{name}!{inner}": box.read(inner) for inner in box.namelist()})
             continue
-        text = data.decode('utf8', 'replace')
-        if name.endswith(('.ipynb', '.json')):
-            text += '\n'.join(_strings(json.loads(text)))
-        for picture in re.findall(r'base64,([A-Za-z0-9+/=]{40,})', text):
-            text += base64.b64decode(picture).decode('utf8', 'replace')
+        text = data.decode("utf8", "replace")
+        if name.endswith((".ipynb", ".json")):
+            text += "\n".join(_strings(json.loads(text)))
+        for picture in re.findall(r"base64,([A-Za-z0-9+/=]{40,})", text):
+            text += base64.b64decode(picture).decode("utf8", "replace")
         texts[name] = _dense(text)
     return texts
 
@@ -199,7 +226,7 @@ def _strings(data):
     elif isinstance(data, list):
         # A notebook may keep a text as a list of its lines.
         if all(isinstance(part, str) for part in data):
-            yield ''.join(data)
+            yield "".join(data)
         else:
             for part in data:
                 yield from _strings(part)
@@ -207,11 +234,18 @@ def _strings(data):
 
 def leaks(sources, texts):
     """Give every secret that stands in a released text: what it is, and where."""
-    return [(what, place) for source in sources if source.name != CHAPTERS
-            for secret, what in secrets_of(source).items() for place, text in texts.items() if secret in text]
+    return [
+        (what, place)
+        for source in sources
+        if source.name != CHAPTERS
+        for secret, what in secrets_of(source).items()
+        for place, text in texts.items()
+        if secret in text
+    ]
 
 
 # --- the page -----------------------------------------------------------------------------------
+
 
 def selftest(sources=SOURCES, page=None):
     """Try all questions, look for leaks, and write the page.
@@ -221,50 +255,57 @@ def selftest(sources=SOURCES, page=None):
     list of str
         All faults; empty if the exercises can be given to students.
     """
-    read = [read_source(path) for path in sorted(Path(sources).glob('*.ipynb'))]
+    read = [read_source(path) for path in sorted(Path(sources).glob("*.ipynb"))]
     findings = [try_question(question) for source in read for question in source.questions.values()]
     found = leaks(read, released_texts())
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
-        Path(page).write_text(write_page(findings, found), 'utf8')
-    return [f'{finding.name}: {fault}' for finding in findings for fault in finding.faults] + [
-        f'{what} stands in {place}' for what, place in found]
+        Path(page).write_text(write_page(findings, found), "utf8")
+    return [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] + [
+        f"{what} stands in {place}" for what, place in found
+    ]
 
 
 def guessing(bits):
     """How long trying all answers takes, in words."""
-    seconds = 2.0**min(bits, 200) * SECONDS_PER_TRY / 2
-    for limit, size, unit in ((90, 1, 'seconds'), (5400, 60, 'minutes'), (130_000, 3600, 'hours'),
-                              (60_000_000, 86_400, 'days')):
+    seconds = 2.0 ** min(bits, 200) * SECONDS_PER_TRY / 2
+    for limit, size, unit in (
+        (90, 1, "seconds"),
+        (5400, 60, "minutes"),
+        (130_000, 3600, "hours"),
+        (60_000_000, 86_400, "days"),
+    ):
         if seconds < limit:
-            return f'{seconds / size:.0f} {unit}'
-    return 'years'
+            return f"{seconds / size:.0f} {unit}"
+    return "years"
 
 
 def write_page(findings, found):
     rows = []
     for finding in findings:
-        mistakes = ''.join(f'<li><b>{html.escape(note)}</b>: {to_html(said)}</li>' for note, said in finding.mistakes)
-        faults = ''.join(f'<li>{html.escape(fault)}</li>' for fault in finding.faults)
+        mistakes = "".join(f"<li><b>{html.escape(note)}</b>: {to_html(said)}</li>" for note, said in finding.mistakes)
+        faults = "".join(f"<li>{html.escape(fault)}</li>" for fault in finding.faults)
         rows.append(
             f'<tr><th scope="row">{html.escape(finding.name)}</th><td>{html.escape(finding.kind)}</td>'
-            f'<td><details><summary>{len(finding.forms)}</summary>{html.escape(", ".join(finding.forms))}</details></td>'
-            f'<td><details><summary>{len(finding.mistakes)}</summary><ul>{mistakes}</ul></details></td>'
-            f'<td>{html.escape(", ".join(dict.fromkeys(finding.unmoved))) or "none"}</td>'
-            f'<td>{finding.bits:.0f} bits: {guessing(finding.bits)}</td>'
-            f'<td>{f"<ul>{faults}</ul>" if faults else "ready"}</td></tr>')
-    leaked = ''.join(f'<li>{html.escape(what)} stands in {html.escape(place)}</li>' for what, place in found)
+            f"<td><details><summary>{len(finding.forms)}</summary>{html.escape(', '.join(finding.forms))}</details></td>"
+            f"<td><details><summary>{len(finding.mistakes)}</summary><ul>{mistakes}</ul></details></td>"
+            f"<td>{html.escape(', '.join(dict.fromkeys(finding.unmoved))) or 'none'}</td>"
+            f"<td>{finding.bits:.0f} bits: {guessing(finding.bits)}</td>"
+            f"<td>{f'<ul>{faults}</ul>' if faults else 'ready'}</td></tr>"
+        )
+    leaked = "".join(f"<li>{html.escape(what)} stands in {html.escape(place)}</li>" for what, place in found)
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title><style>'
-        'body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem}'
-        'table{border-collapse:collapse;width:100%}th,td{border-bottom:1px solid #bbb;padding:.4rem;'
-        'text-align:left;vertical-align:top}</style>'
-        f'<h1>Exercises, tried</h1><p>{len(findings)} questions; {sum(bool(f.faults) for f in findings)} with faults. '
-        f'{sum(len(f.mistakes) for f in findings)} mistakes are recognised.</p>'
-        '<p>What can be checked without a server can also be tried without one. The last but one column says how many '
-        f'bits a guess needs, and how long one core takes to try half of all such answers at {SECONDS_PER_TRY * 1000:.0f} '
-        'ms each. An answer with few bits should not count much.</p>'
-        f'<h2>Leaks</h2>{f"<ul>{leaked}</ul>" if leaked else "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"}'
-        '<h2>Questions</h2><table><thead><tr><th>Question</th><th>Kind</th><th>Forms that pass</th>'
-        '<th>Mistakes named</th><th>Mistakes that change nothing here</th><th>To guess it</th><th>Faults</th></tr></thead>'
-        f'<tbody>{"".join(rows)}</tbody></table></html>')
+        "body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem}"
+        "table{border-collapse:collapse;width:100%}th,td{border-bottom:1px solid #bbb;padding:.4rem;"
+        "text-align:left;vertical-align:top}</style>"
+        f"<h1>Exercises, tried</h1><p>{len(findings)} questions; {sum(bool(f.faults) for f in findings)} with faults. "
+        f"{sum(len(f.mistakes) for f in findings)} mistakes are recognised.</p>"
+        "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
+        f"bits a guess needs, and how long one core takes to try half of all such answers at {SECONDS_PER_TRY * 1000:.0f} "
+        "ms each. An answer with few bits should not count much.</p>"
+        f"<h2>Leaks</h2>{f'<ul>{leaked}</ul>' if leaked else '<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>'}"
+        "<h2>Questions</h2><table><thead><tr><th>Question</th><th>Kind</th><th>Forms that pass</th>"
+        "<th>Mistakes named</th><th>Mistakes that change nothing here</th><th>To guess it</th><th>Faults</th></tr></thead>"
+        f"<tbody>{''.join(rows)}</tbody></table></html>"
+    )

@@ -54,14 +54,14 @@ def values(nodes, point):
         try:
             work += _work(node, results)
             if work > MOST_WORK:
-                raise TooLarge('it is made of too many operations')
+                raise TooLarge("it is made of too many operations")
             results.append(_value(node, results, point))
         except (Undefined, TooLarge, NotSupported, UnknownSymbol) as error:
             results.append(error)
         except ZeroDivisionError:
-            results.append(Undefined('division by zero'))
+            results.append(Undefined("division by zero"))
         except (ValueError, TypeError, OverflowError, ArithmeticError, mpmath.libmp.NoConvergence) as error:
-            results.append(NotSupported(f'{node[0]} ({type(error).__name__})'))
+            results.append(NotSupported(f"{node[0]} ({type(error).__name__})"))
     return results
 
 
@@ -70,7 +70,7 @@ def number(result):
     if isinstance(result, Exception):
         raise result
     if isinstance(result, bool):
-        raise NotSupported('a truth value in place of a number')
+        raise NotSupported("a truth value in place of a number")
     return result
 
 
@@ -79,47 +79,47 @@ def real(result):
     result = number(result)
     if isinstance(result, MP.mpc):
         if abs(result.imag) > ROUNDING * (1 + abs(result.real)):
-            raise ValueError('complex')
+            raise ValueError("complex")
         return result.real
     return result
 
 
 def _work(node, results):
     operation, *children = node
-    if operation in ('symbol', 'constant', 'integer', 'rational', 'float'):
+    if operation in ("symbol", "constant", "integer", "rational", "float"):
         return 4
     complex_ones = sum(isinstance(results[child], MP.mpc) for child in children)
-    if operation in ('Add', 'Mul'):
+    if operation in ("Add", "Mul"):
         return 2 + len(children) + 7 * complex_ones
     return 10 + len(children) + 90 * complex_ones
 
 
 def _value(node, results, point):
     operation, rest = node[0], node[1:]
-    if operation == 'symbol':
+    if operation == "symbol":
         if rest[0] not in point:
             raise UnknownSymbol(rest[0])
         return point[rest[0]]
-    if operation == 'integer':
+    if operation == "integer":
         return MP.mpf(int(rest[0]))
-    if operation == 'rational':
+    if operation == "rational":
         return MP.mpf(int(rest[0])) / int(rest[1])
-    if operation == 'float':
+    if operation == "float":
         return _bounded(MP.mpf(rest[0]))
-    if operation == 'constant':
+    if operation == "constant":
         if rest[0] not in CONSTANTS:
             raise NotSupported(rest[0])
         return CONSTANTS[rest[0]]
-    if operation == 'Piecewise':
+    if operation == "Piecewise":
         return _first_that_holds([results[child] for child in rest])
     arguments = [results[child] for child in rest]
-    if operation == 'ExprCondPair':
+    if operation == "ExprCondPair":
         return tuple(arguments)
     for argument in arguments:
         if isinstance(argument, Exception):
             raise argument
     if operation in CONDITIONS:
-        if operation not in ('And', 'Or', 'Not'):
+        if operation not in ("And", "Or", "Not"):
             arguments = [_ordered(argument) for argument in arguments]
         return bool(CONDITIONS[operation](arguments))
     if operation not in FUNCTIONS:
@@ -129,11 +129,11 @@ def _value(node, results, point):
 
 def _bounded(result):
     if MP.isnan(result):
-        raise Undefined('no number')
+        raise Undefined("no number")
     if MP.isinf(result):
-        raise Undefined('infinite')
+        raise Undefined("infinite")
     if abs(result) > LARGEST:
-        raise TooLarge('the value is beyond 10^60')
+        raise TooLarge("the value is beyond 10^60")
     return result
 
 
@@ -144,14 +144,14 @@ def _first_that_holds(pairs):
             raise condition
         if condition:
             return number(value)
-    raise Undefined('no case of the Piecewise holds')
+    raise Undefined("no case of the Piecewise holds")
 
 
 def _ordered(argument):
     try:
         return real(argument)
     except ValueError:
-        raise NotSupported('a comparison of complex numbers') from None
+        raise NotSupported("a comparison of complex numbers") from None
 
 
 def _power(base, exponent):
@@ -160,24 +160,25 @@ def _power(base, exponent):
             return MP.zero
         if exponent == 0:
             return MP.one
-        raise Undefined('division by zero')
+        raise Undefined("division by zero")
     # Judged before it is worked out: a power of a power of ten would fill the memory.
     if abs(exponent) > 10_000 or MP.re(exponent * MP.log(base)) > 150:
-        raise TooLarge('a power is beyond 10^60')
+        raise TooLarge("a power is beyond 10^60")
     return MP.power(base, exponent)
 
 
 def _exponential(argument):
     if MP.re(argument) > 150 or abs(argument) > 10**6:
-        raise TooLarge('an exponential is beyond 10^60')
+        raise TooLarge("an exponential is beyond 10^60")
     return MP.exp(argument)
 
 
 def _moderate(function, largest=10**6):
     def bounded(argument):
         if abs(argument) > largest:
-            raise TooLarge('an argument is beyond a million')
+            raise TooLarge("an argument is beyond a million")
         return function(argument)
+
     return bounded
 
 
@@ -195,36 +196,65 @@ def _sign(argument):
 
 
 CONSTANTS = {
-    'Pi': +MP.pi, 'Exp1': +MP.e, 'ImaginaryUnit': MP.mpc(0, 1), 'GoldenRatio': +MP.phi,
-    'BooleanTrue': True, 'BooleanFalse': False,
+    "Pi": +MP.pi,
+    "Exp1": +MP.e,
+    "ImaginaryUnit": MP.mpc(0, 1),
+    "GoldenRatio": +MP.phi,
+    "BooleanTrue": True,
+    "BooleanFalse": False,
 }
 
 FUNCTIONS = {
-    'Add': lambda *terms: sum(terms, MP.zero),
-    'Mul': lambda *factors: MP.fprod(factors),
-    'Pow': _power,
-    'exp': _exponential,
-    'log': lambda argument, base=None: MP.log(argument) if base is None else MP.log(argument) / MP.log(base),
-    'sin': _moderate(MP.sin), 'cos': _moderate(MP.cos), 'tan': _moderate(MP.tan),
-    'cot': _moderate(MP.cot), 'sec': _moderate(MP.sec), 'csc': _moderate(MP.csc), 'sinc': _moderate(_sinc),
-    'asin': MP.asin, 'acos': MP.acos, 'atan': MP.atan, 'acot': MP.acot, 'asec': MP.asec, 'acsc': MP.acsc,
-    'atan2': _real_only(MP.atan2),
-    'sinh': _moderate(MP.sinh, 150), 'cosh': _moderate(MP.cosh, 150), 'tanh': _moderate(MP.tanh, 150),
-    'coth': _moderate(MP.coth, 150), 'sech': _moderate(MP.sech, 150), 'csch': _moderate(MP.csch, 150),
-    'asinh': MP.asinh, 'acosh': MP.acosh, 'atanh': MP.atanh,
-    'Abs': abs, 'sign': _sign, 're': MP.re, 'im': MP.im, 'conjugate': MP.conj, 'arg': MP.arg,
-    'Min': _real_only(min), 'Max': _real_only(max),
-    'floor': _real_only(MP.floor), 'ceiling': _real_only(MP.ceil),
-    'Mod': _real_only(lambda argument, modulus: argument - modulus * MP.floor(argument / modulus)),
-    'Heaviside': lambda argument, middle=MP.mpf(1) / 2: {1: MP.one, -1: MP.zero, 0: middle}[int(_sign(argument))],
+    "Add": lambda *terms: sum(terms, MP.zero),
+    "Mul": lambda *factors: MP.fprod(factors),
+    "Pow": _power,
+    "exp": _exponential,
+    "log": lambda argument, base=None: MP.log(argument) if base is None else MP.log(argument) / MP.log(base),
+    "sin": _moderate(MP.sin),
+    "cos": _moderate(MP.cos),
+    "tan": _moderate(MP.tan),
+    "cot": _moderate(MP.cot),
+    "sec": _moderate(MP.sec),
+    "csc": _moderate(MP.csc),
+    "sinc": _moderate(_sinc),
+    "asin": MP.asin,
+    "acos": MP.acos,
+    "atan": MP.atan,
+    "acot": MP.acot,
+    "asec": MP.asec,
+    "acsc": MP.acsc,
+    "atan2": _real_only(MP.atan2),
+    "sinh": _moderate(MP.sinh, 150),
+    "cosh": _moderate(MP.cosh, 150),
+    "tanh": _moderate(MP.tanh, 150),
+    "coth": _moderate(MP.coth, 150),
+    "sech": _moderate(MP.sech, 150),
+    "csch": _moderate(MP.csch, 150),
+    "asinh": MP.asinh,
+    "acosh": MP.acosh,
+    "atanh": MP.atanh,
+    "Abs": abs,
+    "sign": _sign,
+    "re": MP.re,
+    "im": MP.im,
+    "conjugate": MP.conj,
+    "arg": MP.arg,
+    "Min": _real_only(min),
+    "Max": _real_only(max),
+    "floor": _real_only(MP.floor),
+    "ceiling": _real_only(MP.ceil),
+    "Mod": _real_only(lambda argument, modulus: argument - modulus * MP.floor(argument / modulus)),
+    "Heaviside": lambda argument, middle=MP.mpf(1) / 2: {1: MP.one, -1: MP.zero, 0: middle}[int(_sign(argument))],
 }
 
 CONDITIONS = {
-    'StrictGreaterThan': lambda pair: pair[0] > pair[1],
-    'GreaterThan': lambda pair: pair[0] >= pair[1],
-    'StrictLessThan': lambda pair: pair[0] < pair[1],
-    'LessThan': lambda pair: pair[0] <= pair[1],
-    'Equality': lambda pair: abs(pair[0] - pair[1]) < ROUNDING,
-    'Unequality': lambda pair: abs(pair[0] - pair[1]) >= ROUNDING,
-    'And': all, 'Or': any, 'Not': lambda only: not only[0],
+    "StrictGreaterThan": lambda pair: pair[0] > pair[1],
+    "GreaterThan": lambda pair: pair[0] >= pair[1],
+    "StrictLessThan": lambda pair: pair[0] < pair[1],
+    "LessThan": lambda pair: pair[0] <= pair[1],
+    "Equality": lambda pair: abs(pair[0] - pair[1]) < ROUNDING,
+    "Unequality": lambda pair: abs(pair[0] - pair[1]) >= ROUNDING,
+    "And": all,
+    "Or": any,
+    "Not": lambda only: not only[0],
 }

@@ -34,7 +34,7 @@ LONGEST_TEXT = 2_000
 LONGEST_INTEGER = 400
 DEEPEST = 6
 
-VALUES = ('blank', 'text', 'truth', 'expression', 'matrix', 'list', 'frame', 'vector', 'function', 'raised')
+VALUES = ("blank", "text", "truth", "expression", "matrix", "list", "frame", "vector", "function", "raised")
 
 
 class NotPlain(ValueError):
@@ -60,7 +60,7 @@ def to_plain(answer, calls=None):
     try:
         return _to_plain(answer, calls)
     except RecursionError:
-        raise NotPlain('The answer is nested too deeply to be read. Simplify it.') from None
+        raise NotPlain("The answer is nested too deeply to be read. Simplify it.") from None
 
 
 def _to_plain(answer, calls):
@@ -68,10 +68,10 @@ def _to_plain(answer, calls):
     if calls is None or _is_blank(answer):
         value = writer.value(answer, 0)
     elif not callable(answer):
-        raise NotPlain('A function is asked for: give its name, without calling it.')
+        raise NotPlain("A function is asked for: give its name, without calling it.")
     else:
-        value = ['function', [writer.result(answer, arguments) for arguments in calls]]
-    return {'value': value, 'nodes': writer.nodes}
+        value = ["function", [writer.result(answer, arguments) for arguments in calls]]
+    return {"value": value, "nodes": writer.nodes}
 
 
 def _is_blank(answer):
@@ -87,16 +87,16 @@ class _Writer:
 
     def value(self, answer, depth):
         if depth > DEEPEST:
-            raise NotPlain(f'The answer is nested more than {DEEPEST} deep.')
+            raise NotPlain(f"The answer is nested more than {DEEPEST} deep.")
         if _is_blank(answer):
-            return ['blank']
+            return ["blank"]
         if isinstance(answer, bool):
-            return ['truth', answer]
+            return ["truth", answer]
         if isinstance(answer, str):
-            return ['text', _text(answer)]
+            return ["text", _text(answer)]
         if isinstance(answer, numbers.Number):
-            return ['expression', self.number(answer)]
-        if _module(type(answer)).partition('.')[0] == 'numpy':
+            return ["expression", self.number(answer)]
+        if _module(type(answer)).partition(".")[0] == "numpy":
             return self.numpy(answer, depth)
         if isinstance(answer, (list, tuple, set, frozenset)):
             return self.parts(_in_order(answer), depth)
@@ -104,53 +104,64 @@ class _Writer:
 
     def parts(self, answer, depth):
         if len(answer) > MOST_PARTS:
-            raise NotPlain(f'The answer has {len(answer)} parts; no question asks for that many.')
-        return ['list', [self.value(part, depth + 1) for part in answer]]
+            raise NotPlain(f"The answer has {len(answer)} parts; no question asks for that many.")
+        return ["list", [self.value(part, depth + 1) for part in answer]]
 
     def numpy(self, answer, depth):
-        size = getattr(answer, 'size', 1)
+        size = getattr(answer, "size", 1)
         if size > MOST_PARTS:
-            raise NotPlain(f'The array has {size} entries; no question asks for that many.')
+            raise NotPlain(f"The array has {size} entries; no question asks for that many.")
         return self.value(answer.tolist(), depth)
 
     def sympy(self, answer, depth):
-        if _module(type(answer)).startswith('scipy.spatial'):
-            raise NotPlain('This is a SciPy Rotation, which holds no matrix of two named frames. '
-                           'Turn it into one: `dcm_from_scipy_rotation` of the module does that.')
-        if not any(_module(base).partition('.')[0] == 'sympy' for base in type(answer).__mro__):
-            raise NotPlain(f'An answer of type `{type(answer).__name__[:40]}` cannot be read. '
-                           'Give a SymPy expression, a matrix, a list of numbers or a text.')
+        if _module(type(answer)).startswith("scipy.spatial"):
+            raise NotPlain(
+                "This is a SciPy Rotation, which holds no matrix of two named frames. "
+                "Turn it into one: `dcm_from_scipy_rotation` of the module does that."
+            )
+        if not any(_module(base).partition(".")[0] == "sympy" for base in type(answer).__mro__):
+            raise NotPlain(
+                f"An answer of type `{type(answer).__name__[:40]}` cannot be read. "
+                "Give a SymPy expression, a matrix, a list of numbers or a text."
+            )
         # Mechanics is slow to import; whoever has a frame or a vector has imported it.
-        mechanics = sys.modules.get('sympy.physics.vector')
+        mechanics = sys.modules.get("sympy.physics.vector")
         if mechanics and isinstance(answer, mechanics.ReferenceFrame):
-            return ['frame', _text(answer.name), {
-                _text(other.name): self.value(answer.dcm(other), depth + 1) for other in _connected([answer])}]
+            return [
+                "frame",
+                _text(answer.name),
+                {_text(other.name): self.value(answer.dcm(other), depth + 1) for other in _connected([answer])},
+            ]
         if mechanics and isinstance(answer, mechanics.Vector):
             frames = _connected([frame for _, frame in answer.args])
             try:
-                return ['vector', {
-                    _text(frame.name): self.value(answer.to_matrix(frame), depth + 1) for frame in frames}]
+                return [
+                    "vector",
+                    {_text(frame.name): self.value(answer.to_matrix(frame), depth + 1) for frame in frames},
+                ]
             except ValueError:
-                raise NotPlain('The parts of this vector belong to frames that are not connected: orient one of '
-                               'them with respect to another first.') from None
+                raise NotPlain(
+                    "The parts of this vector belong to frames that are not connected: orient one of "
+                    "them with respect to another first."
+                ) from None
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
         if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(answer, sympy.MatrixBase):
             if not all(sympy.sympify(size).is_Integer for size in answer.shape):
-                raise NotPlain('The matrix has no definite size.')
+                raise NotPlain("The matrix has no definite size.")
             answer = answer.doit().as_explicit()
         if isinstance(answer, sympy.MatrixBase):
             rows, columns = answer.shape
             if rows * columns > MOST_PARTS:
-                raise NotPlain(f'The matrix is {rows} × {columns}; no question asks for one that large.')
-            return ['matrix', rows, columns, [self.expression(entry) for entry in answer.flat()]]
+                raise NotPlain(f"The matrix is {rows} × {columns}; no question asks for one that large.")
+            return ["matrix", rows, columns, [self.expression(entry) for entry in answer.flat()]]
         if isinstance(answer, sympy.Tuple):
             return self.parts(list(answer), depth)
         if answer in (sympy.true, sympy.false):
-            return ['truth', bool(answer)]
+            return ["truth", bool(answer)]
         if isinstance(answer, sympy.Expr):
-            return ['expression', self.expression(answer)]
-        raise NotPlain(f'An answer of type `{type(answer).__name__[:40]}` cannot be read.')
+            return ["expression", self.expression(answer)]
+        raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
 
     def result(self, function, arguments):
         try:
@@ -158,33 +169,37 @@ class _Writer:
         except NotPlain:
             raise
         except Exception as error:
-            return ['raised', _text(f'{type(error).__name__}: {error}'[:300])]
+            return ["raised", _text(f"{type(error).__name__}: {error}"[:300])]
 
     def node(self, *parts):
         if len(self.nodes) >= MOST_NODES:
-            raise NotPlain(f'The answer is made of more than {MOST_NODES} different parts, so it is not '
-                           'read. Simplify it, or build it in fewer steps.')
+            raise NotPlain(
+                f"The answer is made of more than {MOST_NODES} different parts, so it is not "
+                "read. Simplify it, or build it in fewer steps."
+            )
         self.nodes.append(list(parts))
         return len(self.nodes) - 1
 
     def number(self, number):
         if isinstance(number, complex):
             real, imaginary = (self.number(part) for part in (number.real, number.imag))
-            unit = self.node('constant', 'ImaginaryUnit')
-            return self.node('Add', real, self.node('Mul', unit, imaginary))
+            unit = self.node("constant", "ImaginaryUnit")
+            return self.node("Add", real, self.node("Mul", unit, imaginary))
         if isinstance(number, numbers.Rational):
             return self.rational(int(number.numerator), int(number.denominator))
-        return self.node('float', repr(float(number)))
+        return self.node("float", repr(float(number)))
 
     def rational(self, numerator, denominator):
         for part in (numerator, denominator):
             # Compared as powers of two: writing a huge integer out can itself take minutes.
             if part.bit_length() > LONGEST_INTEGER * 3:
-                raise NotPlain(f'The answer holds an integer of about {int(part.bit_length() * 0.30103)} '
-                               'digits. No question needs one.')
+                raise NotPlain(
+                    f"The answer holds an integer of about {int(part.bit_length() * 0.30103)} "
+                    "digits. No question needs one."
+                )
         if denominator == 1:
-            return self.node('integer', str(numerator))
-        return self.node('rational', str(numerator), str(denominator))
+            return self.node("integer", str(numerator))
+        return self.node("rational", str(numerator), str(denominator))
 
     def expression(self, root):
         """Write an expression, children first, without recursion: a chain may be very deep."""
@@ -195,7 +210,7 @@ class _Writer:
                 todo.pop()
                 continue
             if len(todo) > MOST_NODES:
-                self.node()   # says that it is too large
+                self.node()  # says that it is too large
             children = self.children(part)
             missing = [child for child in children if child not in self.written]
             if missing:
@@ -218,32 +233,32 @@ class _Writer:
         if isinstance(part, sympy.Rational):
             return self.rational(int(part.p), int(part.q))
         if isinstance(part, sympy.Float):
-            return self.node('float', libmp.to_str(part._mpf_, 40))
+            return self.node("float", libmp.to_str(part._mpf_, 40))
         if isinstance(part, sympy.Symbol):
-            return self.node('symbol', _text(part.name))
+            return self.node("symbol", _text(part.name))
         if isinstance(part, AppliedUndef):
-            return self.node('symbol', _text(part.func.__name__))
+            return self.node("symbol", _text(part.func.__name__))
         if isinstance(part, sympy.Derivative):
             if isinstance(part.expr, AppliedUndef):
-                return self.node('symbol', _text(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9))
+                return self.node("symbol", _text(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9))
             return self.written[children[0]]
         if isinstance(part, (sympy.UnevaluatedExpr,)):
             return self.written[children[0]]
         if not children:
-            return self.node('constant', type(part).__name__[:60])
+            return self.node("constant", type(part).__name__[:60])
         return self.node(type(part).__name__[:60], *(self.written[child] for child in children))
 
 
 def _text(text):
     text = str(text)
     if len(text) > LONGEST_TEXT:
-        raise NotPlain(f'A text of {len(text)} characters is longer than any answer.')
+        raise NotPlain(f"A text of {len(text)} characters is longer than any answer.")
     return text
 
 
 def _module(kind):
     # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no module.
-    return kind.__module__ or ''
+    return kind.__module__ or ""
 
 
 def _in_order(parts):
@@ -256,13 +271,13 @@ def _connected(frames):
     for frame in found:
         found.extend(other for other in frame._dcm_dict if other not in found)
         if len(found) > 30:
-            raise NotPlain('More than 30 frames are connected with this one.')
+            raise NotPlain("More than 30 frames are connected with this one.")
     return found
 
 
-_DIGITS = re.compile(r'-?[0-9]{1,%d}' % (LONGEST_INTEGER + 10))
-_FLOAT = re.compile(r'[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,6})?|[-+]?inf|[-+]?nan', re.I)
-_NAME = re.compile(r'\w{1,60}', re.ASCII)
+_DIGITS = re.compile(r"-?[0-9]{1,%d}" % (LONGEST_INTEGER + 10))
+_FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,6})?|[-+]?inf|[-+]?nan", re.I)
+_NAME = re.compile(r"\w{1,60}", re.ASCII)
 
 
 def read_plain(data):
@@ -273,23 +288,24 @@ def read_plain(data):
     NotPlain
         The data is not what :func:`to_plain` makes.
     """
+
     def demand(condition):
         if not condition:
-            raise NotPlain('The data of this answer is damaged.')
+            raise NotPlain("The data of this answer is damaged.")
 
-    demand(isinstance(data, dict) and set(data) == {'value', 'nodes'} and isinstance(data['nodes'], list))
-    nodes = data['nodes']
+    demand(isinstance(data, dict) and set(data) == {"value", "nodes"} and isinstance(data["nodes"], list))
+    nodes = data["nodes"]
     demand(len(nodes) <= MOST_NODES)
     for position, node in enumerate(nodes):
         demand(isinstance(node, list) and node and isinstance(node[0], str) and len(node) <= MOST_NODES)
         operation, rest = node[0], node[1:]
-        if operation in ('integer', 'rational'):
-            demand(len(rest) == (1 if operation == 'integer' else 2))
+        if operation in ("integer", "rational"):
+            demand(len(rest) == (1 if operation == "integer" else 2))
             demand(all(isinstance(digits, str) and _DIGITS.fullmatch(digits) for digits in rest))
-            demand(operation == 'integer' or int(rest[1]) > 0)
-        elif operation == 'float':
+            demand(operation == "integer" or int(rest[1]) > 0)
+        elif operation == "float":
             demand(len(rest) == 1 and isinstance(rest[0], str) and _FLOAT.fullmatch(rest[0]))
-        elif operation in ('symbol', 'constant'):
+        elif operation in ("symbol", "constant"):
             demand(len(rest) == 1 and isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
         else:
             demand(_NAME.fullmatch(operation))
@@ -301,30 +317,30 @@ def read_plain(data):
     def value(part, depth):
         demand(depth <= DEEPEST + 2 and isinstance(part, list) and part and part[0] in VALUES)
         kind, rest = part[0], part[1:]
-        demand(len(rest) == {'blank': 0, 'matrix': 3, 'frame': 2}.get(kind, 1))
-        if kind in ('text', 'raised'):
+        demand(len(rest) == {"blank": 0, "matrix": 3, "frame": 2}.get(kind, 1))
+        if kind in ("text", "raised"):
             demand(isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
-        elif kind == 'truth':
+        elif kind == "truth":
             demand(isinstance(rest[0], bool))
-        elif kind == 'expression':
+        elif kind == "expression":
             count(rest[0])
-        elif kind == 'matrix':
+        elif kind == "matrix":
             rows, columns, entries = rest
             demand(type(rows) is int and type(columns) is int and isinstance(entries, list))
             demand(0 <= rows <= MOST_PARTS and 0 <= columns <= MOST_PARTS and len(entries) == rows * columns)
             demand(len(entries) <= MOST_PARTS)
             for entry in entries:
                 count(entry)
-        elif kind in ('list', 'function'):
+        elif kind in ("list", "function"):
             demand(isinstance(rest[0], list) and len(rest[0]) <= MOST_PARTS)
             for inner in rest[0]:
                 value(inner, depth + 1)
-        elif kind in ('frame', 'vector'):
+        elif kind in ("frame", "vector"):
             demand(isinstance(rest[-1], dict) and len(rest[-1]) <= 30)
             demand(all(isinstance(name, str) and len(name) <= LONGEST_TEXT for name in rest[-1]))
-            demand(kind == 'vector' or isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
+            demand(kind == "vector" or isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
             for inner in rest[-1].values():
                 value(inner, depth + 1)
 
-    value(data['value'], 0)
+    value(data["value"], 0)
     return data

@@ -13,19 +13,21 @@ POINTS = 3
 #: taken for the cosine it equals in the first quadrant, and within a half turn, where half-angle forms hold.
 ANGLES = (-3.0, 3.0)
 #: Letters that SymPy has two of and handwriting one.
-TWINS = {'phi': 'varphi', 'varphi': 'phi', 'epsilon': 'varepsilon', 'varepsilon': 'epsilon'}
+TWINS = {"phi": "varphi", "varphi": "phi", "epsilon": "varepsilon", "varepsilon": "epsilon"}
 
 
 def points(question):
     """Give the points of a question: dictionaries from the names of its symbols to numbers."""
-    symbols = question.get('symbols', {})
+    symbols = question.get("symbols", {})
     if not symbols:
         return [{}]
     found = []
     for number in range(POINTS):
-        point = {name: _draw(question, number, order, *limits)
-                 for order, (name, limits) in enumerate(sorted(symbols.items()))}
-        for group in question.get('unit', ()):
+        point = {
+            name: _draw(question, number, order, *limits)
+            for order, (name, limits) in enumerate(sorted(symbols.items()))
+        }
+        for group in question.get("unit", ()):
             length = MP.sqrt(sum(point[name] ** 2 for name in group))
             point.update({name: point[name] / length for name in group})
         for name in list(point):
@@ -38,7 +40,7 @@ def points(question):
 
 def _draw(question, number, order, low, high):
     seed = f"{question['salt']} point {number} of symbol {order}".encode()
-    share = int.from_bytes(hashlib.sha256(seed).digest()[:12], 'big') / MP.mpf(2) ** 96
+    share = int.from_bytes(hashlib.sha256(seed).digest()[:12], "big") / MP.mpf(2) ** 96
     if low < 0 < high and number < 2:
         # The first two points take both signs, so that an even function is never taken for an odd one.
         low, high = (low, low / 20) if (number + order) % 2 else (high / 20, high)

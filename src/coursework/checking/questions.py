@@ -28,16 +28,18 @@ class NoSuchQuestion(KeyError):
 @functools.cache
 def notebook_questions(notebook):
     """The public parts and the lockers of all questions of a notebook, by full name."""
-    if not re.fullmatch('[a-z0-9-]{1,60}', notebook):
+    if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
         return {}
-    file = resources.files(__package__) / 'sealed' / f'{notebook}.json'
+    file = resources.files(__package__) / "sealed" / f"{notebook}.json"
     if not file.is_file():
         return {}
-    data = json.loads(file.read_text('utf8'))
-    if data['format'] != FORMAT:
-        raise RuntimeError(f'The questions of {notebook} need another version of this package: install the one '
-                           'that came with the notebook.')
-    return data['questions']
+    data = json.loads(file.read_text("utf8"))
+    if data["format"] != FORMAT:
+        raise RuntimeError(
+            f"The questions of {notebook} need another version of this package: install the one "
+            "that came with the notebook."
+        )
+    return data["questions"]
 
 
 def find_question(name):
@@ -47,14 +49,14 @@ def find_question(name):
     ------
     NoSuchQuestion
     """
-    notebook, _, _ = name.partition('/')
+    notebook, _, _ = name.partition("/")
     questions = notebook_questions(notebook)
     if name in questions:
         return questions[name]
-    folder = resources.files(__package__) / 'sealed'
-    notebooks = sorted(file.name.removesuffix('.json') for file in folder.iterdir() if file.name.endswith('.json'))
+    folder = resources.files(__package__) / "sealed"
+    notebooks = sorted(file.name.removesuffix(".json") for file in folder.iterdir() if file.name.endswith(".json"))
     near = difflib.get_close_matches(name, [*questions, *notebooks], 1, 0.5)
-    raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ''))
+    raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
 
 
 def judge(name, question, plain):
@@ -63,8 +65,8 @@ def judge(name, question, plain):
 
     def open_locker(text):
         nonlocal earned
-        key = sealing.slow_key(question['salt'], text)
-        sealed = question['lockers'].get(sealing.locker(key))
+        key = sealing.slow_key(question["salt"], text)
+        sealed = question["lockers"].get(sealing.locker(key))
         if sealed is None:
             return None
         earned = key
@@ -89,46 +91,51 @@ def compare(name, question, plain, find):
         reading = read(question, plain)
         text = fingerprint(question, reading)
     except Blank:
-        return Reply(name, 'not attempted', '', ['Put your answer in place of the `...` and run the cells again.'])
+        return Reply(name, "not attempted", "", ["Put your answer in place of the `...` and run the cells again."])
     except Fault as found:
-        return Reply(name, 'invalid', found.note, [found.message])
+        return Reply(name, "invalid", found.note, [found.message])
     except Undecidable as found:
-        return Reply(name, 'undecided', 'undecidable', [f'{found} Try another form, or ask your instructor to '
-                                                        'look at it.'])
+        return Reply(
+            name, "undecided", "undecidable", [f"{found} Try another form, or ask your instructor to look at it."]
+        )
     content = find(text)
     if content is None:
         found = fault(question, reading)
         if found:
-            return Reply(name, 'invalid', found.note, [found.message])
-        return Reply(name, 'wrong', '', [what_can_be_said(question, plain, reading)])
-    if content['outcome'] == 'correct':
-        return Reply(name, 'correct')
-    notes = content['notes']
+            return Reply(name, "invalid", found.note, [found.message])
+        return Reply(name, "wrong", "", [what_can_be_said(question, plain, reading)])
+    if content["outcome"] == "correct":
+        return Reply(name, "correct")
+    notes = content["notes"]
     messages = [message(question, note, details) for note, details in notes[:2]]
     if len(messages) > 1:
-        messages[1] = f'Or, which comes to the same here: {messages[1]}'
-    return Reply(name, 'wrong', notes[0][0], messages)
+        messages[1] = f"Or, which comes to the same here: {messages[1]}"
+    return Reply(name, "wrong", notes[0][0], messages)
 
 
 def opened(question, key, purpose):
     """Open what lies beside a locker: the worked solution, or hints; ``None`` where there is nothing."""
-    sealed = question.get('beside', {}).get(sealing.locker(key, purpose))
+    sealed = question.get("beside", {}).get(sealing.locker(key, purpose))
     return None if sealed is None else sealing.unseal(sealed, key, purpose)
 
 
 def what_can_be_said(question, plain, reading: Reading):
     """What a wrong answer has right, so that its author does not look for the fault there."""
-    kind = question.get('result', question['kind'])
+    kind = question.get("result", question["kind"])
     said = {
-        'direction cosine matrix': 'This is a direction cosine matrix, but not the one that is asked for.',
-        'quaternion': 'This is a quaternion of unit length, but not the one that is asked for.',
-        'Euler angles': 'These angles give another orientation than the one that is asked for.',
-        'axis and angle': 'This axis and angle give another orientation than the one that is asked for.',
-    }.get(kind, 'The form is right, the value is not.')
-    named = {node[1] for node in plain['nodes'] if node[0] == 'symbol'}
-    missing = [symbol for symbol in question.get('symbols', {}) if not {symbol, TWINS.get(symbol)} & named]
-    if question.get('every symbol') and named and missing:
-        said += f' It holds no {" and no ".join(f"`{symbol}`" for symbol in missing)}.'
-    if any(node[0] == 'float' for node in plain['nodes']) and question.get('tolerance') is None and reading.text is None:
-        said += ' It holds decimal fractions; where an exact answer is asked for, write `sm.Rational(1, 2)` and `sm.sqrt(3)`.'
+        "direction cosine matrix": "This is a direction cosine matrix, but not the one that is asked for.",
+        "quaternion": "This is a quaternion of unit length, but not the one that is asked for.",
+        "Euler angles": "These angles give another orientation than the one that is asked for.",
+        "axis and angle": "This axis and angle give another orientation than the one that is asked for.",
+    }.get(kind, "The form is right, the value is not.")
+    named = {node[1] for node in plain["nodes"] if node[0] == "symbol"}
+    missing = [symbol for symbol in question.get("symbols", {}) if not {symbol, TWINS.get(symbol)} & named]
+    if question.get("every symbol") and named and missing:
+        said += f" It holds no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
+    if (
+        any(node[0] == "float" for node in plain["nodes"])
+        and question.get("tolerance") is None
+        and reading.text is None
+    ):
+        said += " It holds decimal fractions; where an exact answer is asked for, write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
     return said

@@ -5,11 +5,11 @@ import re
 
 #: Each outcome with its sign and its word: the word is for those who do not see the sign or its colour.
 OUTCOMES = {
-    'correct': ('✓', 'Correct', '#1a7f37'),
-    'wrong': ('✗', 'Not yet', '#b54708'),
-    'invalid': ('!', 'Not in the form that is asked for', '#b54708'),
-    'undecided': ('?', 'Undecided', '#5b5fc7'),
-    'not attempted': ('…', 'Not attempted', '#6b7280'),
+    "correct": ("✓", "Correct", "#1a7f37"),
+    "wrong": ("✗", "Not yet", "#b54708"),
+    "invalid": ("!", "Not in the form that is asked for", "#b54708"),
+    "undecided": ("?", "Undecided", "#5b5fc7"),
+    "not attempted": ("…", "Not attempted", "#6b7280"),
 }
 
 
@@ -29,7 +29,7 @@ class Reply:
         HTML of the worked solution, once it is earned.
     """
 
-    def __init__(self, question, outcome, note='', messages=(), solution=''):
+    def __init__(self, question, outcome, note="", messages=(), solution=""):
         self.question = question
         self.outcome = outcome
         self.note = note
@@ -38,37 +38,42 @@ class Reply:
 
     def __repr__(self):
         _, word, _ = OUTCOMES[self.outcome]
-        lines = [f'{word}: {self.question}', *map(plain_text, self.messages)]
+        lines = [f"{word}: {self.question}", *map(plain_text, self.messages)]
         if self.solution:
-            lines.append('The worked solution is shown where HTML can be.')
-        return '\n'.join(lines)
+            lines.append("The worked solution is shown where HTML can be.")
+        return "\n".join(lines)
 
     def _repr_html_(self):
         sign, word, colour = OUTCOMES[self.outcome]
         name = html.escape(self.question)
-        paragraphs = ''.join(f'<p style="margin:.3em 0">{to_html(message)}</p>' for message in self.messages)
-        solution = ('<details><summary>The worked solution</summary>'
-                    f'<div>{self.solution}</div></details>' if self.solution else '')
-        return (f'<div class="coursework-reply" role="status" data-outcome="{self.outcome}" '
-                f'style="border-left:.3em solid {colour};padding:.2em .8em">'
-                f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> {word}</strong> '
-                f'<span style="opacity:.8">{name}</span></p>{paragraphs}{solution}</div>')
+        paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message)}</p>' for message in self.messages)
+        solution = (
+            f"<details><summary>The worked solution</summary><div>{self.solution}</div></details>"
+            if self.solution
+            else ""
+        )
+        return (
+            f'<div class="coursework-reply" role="status" data-outcome="{self.outcome}" '
+            f'style="border-left:.3em solid {colour};padding:.2em .8em">'
+            f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> {word}</strong> '
+            f'<span style="opacity:.8">{name}</span></p>{paragraphs}{solution}</div>'
+        )
 
 
 def to_html(message):
     """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed."""
-    pieces = re.split(r'(`[^`]*`|\$[^$]*\$|\*[^*]+\*)', message)
-    return ''.join(map(_piece, pieces))
+    pieces = re.split(r"(`[^`]*`|\$[^$]*\$|\*[^*]+\*)", message)
+    return "".join(map(_piece, pieces))
 
 
 def _piece(piece):
     inner = html.escape(piece[1:-1])
-    if piece.startswith('`'):
-        return f'<code>{inner}</code>'
-    if piece.startswith('$'):
+    if piece.startswith("`"):
+        return f"<code>{inner}</code>"
+    if piece.startswith("$"):
         return f'<span class="math">${inner}$</span>'
-    if piece.startswith('*') and len(piece) > 1:
-        return f'<em>{inner}</em>'
+    if piece.startswith("*") and len(piece) > 1:
+        return f"<em>{inner}</em>"
     return html.escape(piece)
 
 
@@ -78,8 +83,8 @@ def plain_text(message):
     >>> plain_text(r'This is ${}^{N}\\mathbf{C}^{A}$: *transpose* it.')
     'This is N_C_A: transpose it.'
     """
-    message = re.sub(r'\$\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?\$', r'\1_C_\2', message)
-    message = re.sub(r'\\hat\{(\w)\}_(\w)', r'\1_\2', message)
-    message = re.sub(r'\\math\w+\{(\w+)\}', r'\1', message)
-    message = re.sub(r'\$([^$]*)\$', lambda found: found[1].replace('\\', ''), message)
-    return re.sub(r'\*([^*]+)\*', r'\1', message).replace('`', '')
+    message = re.sub(r"\$\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?\$", r"\1_C_\2", message)
+    message = re.sub(r"\\hat\{(\w)\}_(\w)", r"\1_\2", message)
+    message = re.sub(r"\\math\w+\{(\w+)\}", r"\1", message)
+    message = re.sub(r"\$([^$]*)\$", lambda found: found[1].replace("\\", ""), message)
+    return re.sub(r"\*([^*]+)\*", r"\1", message).replace("`", "")

@@ -22,7 +22,7 @@ BLOCK = 48
 
 def slow_key(salt, fingerprint):
     """Stretch a fingerprint into a key of 32 bytes."""
-    return pbkdf2(fingerprint.encode('utf8'), salt.encode('ascii'), ROUNDS)
+    return pbkdf2(fingerprint.encode("utf8"), salt.encode("ascii"), ROUNDS)
 
 
 def portable_pbkdf2(password, salt, rounds):
@@ -41,40 +41,41 @@ def portable_pbkdf2(password, salt, rounds):
         second.update(first.digest())
         return second.digest()
 
-    current = authenticate(salt + b'\0\0\0\1')
-    total = int.from_bytes(current, 'big')
+    current = authenticate(salt + b"\0\0\0\1")
+    total = int.from_bytes(current, "big")
     for _ in range(rounds - 1):
         current = authenticate(current)
-        total ^= int.from_bytes(current, 'big')
-    return total.to_bytes(32, 'big')
+        total ^= int.from_bytes(current, "big")
+    return total.to_bytes(32, "big")
 
 
 def _block(password):
-    return (hashlib.sha256(password).digest() if len(password) > 64 else password).ljust(64, b'\0')
+    return (hashlib.sha256(password).digest() if len(password) > 64 else password).ljust(64, b"\0")
 
 
-if hasattr(hashlib, 'pbkdf2_hmac'):
+if hasattr(hashlib, "pbkdf2_hmac"):
+
     def pbkdf2(password, salt, rounds):
-        return hashlib.pbkdf2_hmac('sha256', password, salt, rounds)
+        return hashlib.pbkdf2_hmac("sha256", password, salt, rounds)
 else:
     pbkdf2 = portable_pbkdf2
 
 
-def locker(key, purpose='reply'):
+def locker(key, purpose="reply"):
     """Name of the locker that a key opens."""
-    return _text(_derive(key, f'name of the {purpose}')[:9])
+    return _text(_derive(key, f"name of the {purpose}")[:9])
 
 
-def seal(content, key, purpose='reply', length=0):
+def seal(content, key, purpose="reply", length=0):
     """Lock up JSON content; shorter content is filled up to ``length`` bytes first."""
-    data = zlib.compress(json.dumps(content, ensure_ascii=False, sort_keys=True).encode('utf8'), 9)
-    data = len(data).to_bytes(4, 'big') + data
-    data = data.ljust(max(length, -(-len(data) // BLOCK) * BLOCK), b'\0')
+    data = zlib.compress(json.dumps(content, ensure_ascii=False, sort_keys=True).encode("utf8"), 9)
+    data = len(data).to_bytes(4, "big") + data
+    data = data.ljust(max(length, -(-len(data) // BLOCK) * BLOCK), b"\0")
     hidden = _mask(data, key, purpose)
     return _text(hidden + _tag(hidden, key, purpose))
 
 
-def unseal(sealed, key, purpose='reply'):
+def unseal(sealed, key, purpose="reply"):
     """Open what :func:`seal` locked.
 
     Raises
@@ -85,23 +86,23 @@ def unseal(sealed, key, purpose='reply'):
     data = base64.b64decode(sealed)
     hidden, tag = data[:-16], data[-16:]
     if not hmac.compare_digest(tag, _tag(hidden, key, purpose)):
-        raise ValueError('The sealed data does not fit this key, or was changed.')
+        raise ValueError("The sealed data does not fit this key, or was changed.")
     data = _mask(hidden, key, purpose)
-    return json.loads(zlib.decompress(data[4:4 + int.from_bytes(data[:4], 'big')]))
+    return json.loads(zlib.decompress(data[4 : 4 + int.from_bytes(data[:4], "big")]))
 
 
 def _derive(key, purpose):
-    return hmac.digest(key, purpose.encode('utf8'), 'sha256')
+    return hmac.digest(key, purpose.encode("utf8"), "sha256")
 
 
 def _mask(data, key, purpose):
-    stream = hashlib.shake_256(_derive(key, f'mask of the {purpose}')).digest(len(data))
+    stream = hashlib.shake_256(_derive(key, f"mask of the {purpose}")).digest(len(data))
     return bytes(a ^ b for a, b in zip(data, stream))
 
 
 def _tag(hidden, key, purpose):
-    return hmac.digest(_derive(key, f'tag of the {purpose}'), hidden, 'sha256')[:16]
+    return hmac.digest(_derive(key, f"tag of the {purpose}"), hidden, "sha256")[:16]
 
 
 def _text(data):
-    return base64.b64encode(data).decode('ascii')
+    return base64.b64encode(data).decode("ascii")

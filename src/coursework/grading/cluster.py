@@ -15,7 +15,7 @@ from distributed.scheduler import KilledWorker
 
 from ..checking.plain import NotPlain, read_plain
 
-CONNECT_WITHIN = '30s'
+CONNECT_WITHIN = "30s"
 
 
 class Sandboxes(WorkerPlugin):
@@ -32,6 +32,7 @@ class Sandboxes(WorkerPlugin):
 
     def of_this_thread(self):
         from .sandbox import Limits, Sandbox
+
         thread = threading.get_ident()
         with self.making:
             if thread not in self.made:
@@ -47,12 +48,13 @@ def run_job(job, name):
     """Run one job, on a worker."""
     from .grade import given_up, software
     from .sandbox import WorkerDied
+
     job = json.loads(job)
     try:
         result = get_worker().plugins[name].of_this_thread().run(job)
     except WorkerDied as error:
         result = given_up(job, str(error))
-    return json.dumps({'result': result, 'software': software()}).encode()
+    return json.dumps({"result": result, "software": software()}).encode()
 
 
 def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
@@ -64,17 +66,18 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
         The cluster cannot be reached, or its software is not the same as here, so that results might differ.
     """
     from .grade import given_up, software
-    name = f'coursework-{uuid.uuid4().hex}'
+
+    name = f"coursework-{uuid.uuid4().hex}"
     with contextlib.ExitStack() as stack:
         try:
             client = stack.enter_context(Client(address, timeout=CONNECT_WITHIN, set_as_default=False))
         except OSError as error:
-            raise ValueError(f'There is no Dask scheduler to be reached at {address} ({error}).') from None
+            raise ValueError(f"There is no Dask scheduler to be reached at {address} ({error}).") from None
         client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
         stack.callback(client.unregister_worker_plugin, name)
         sent = {}
         for job in jobs:
-            future = client.submit(run_job, json.dumps(job).encode(), name, key=f'{name} {job["id"]}', pure=False)
+            future = client.submit(run_job, json.dumps(job).encode(), name, key=f"{name} {job['id']}", pure=False)
             sent[future.key] = future, job
         ours = software()
         for future in as_completed([future for future, _ in sent.values()], loop=client.loop):
@@ -82,14 +85,16 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
             try:
                 answer = json.loads(future.result())
             except KilledWorker as error:
-                yield given_up(job, f'{type(error).__name__}: worker after worker was lost')
+                yield given_up(job, f"{type(error).__name__}: worker after worker was lost")
                 continue
-            if answer['software'] != ours:
-                raise ValueError(f'The cluster has other versions than this machine: {answer["software"]}, and here {ours}.')
-            for found in answer['result']['answers'].values():
-                if found['outcome'] == 'recorded':
+            if answer["software"] != ours:
+                raise ValueError(
+                    f"The cluster has other versions than this machine: {answer['software']}, and here {ours}."
+                )
+            for found in answer["result"]["answers"].values():
+                if found["outcome"] == "recorded":
                     try:
-                        read_plain(found['plain'])
+                        read_plain(found["plain"])
                     except NotPlain:
-                        raise ValueError('The cluster sent damaged data.') from None
-            yield answer['result']
+                        raise ValueError("The cluster sent damaged data.") from None
+            yield answer["result"]

@@ -14,9 +14,20 @@ from ..checking.reply import plain_text
 from .store import write
 from .tables import number, readable, table
 
-NBGRADER = ('assignment', 'duedate', 'timestamp', 'student_id', 'last_name', 'first_name', 'email', 'raw_score',
-            'late_submission_penalty', 'score', 'max_score')
-POSSIBLE = 'points possible'
+NBGRADER = (
+    "assignment",
+    "duedate",
+    "timestamp",
+    "student_id",
+    "last_name",
+    "first_name",
+    "email",
+    "raw_score",
+    "late_submission_penalty",
+    "score",
+    "max_score",
+)
+POSSIBLE = "points possible"
 
 
 class CannotExport(ValueError):
@@ -34,28 +45,29 @@ class Marks:
     """
 
     def __init__(self, store, assignment=None):
-        self.records = [record for record in store.all() if assignment in (None, record['assignment'])]
+        self.records = [record for record in store.all() if assignment in (None, record["assignment"])]
         if not self.records:
-            named = f' of {assignment!r}' if assignment else ''
-            raise CannotExport(f'There are no records{named} in {store.folder}.')
-        self.assignments = sorted({record['assignment'] for record in self.records})
+            named = f" of {assignment!r}" if assignment else ""
+            raise CannotExport(f"There are no records{named} in {store.folder}.")
+        self.assignments = sorted({record["assignment"] for record in self.records})
         self.students = {}
         for record in self.records:
-            self.students.setdefault(record['student'], []).append(record)
-        worth = {record['assignment']: record['worth'] for record in self.records}
+            self.students.setdefault(record["student"], []).append(record)
+        worth = {record["assignment"]: record["worth"] for record in self.records}
         self.worth = sum(worth.values())
 
     def points(self, student):
-        return sum(record['points'] for record in self.students[student])
+        return sum(record["points"] for record in self.students[student])
 
     def undecided(self, student):
-        return sum(record['undecided'] for record in self.students[student])
+        return sum(record["undecided"] for record in self.students[student])
 
     def identity(self, student):
-        return self.students[student][0]['identity']
+        return self.students[student][0]["identity"]
 
 
 # --- a table whose every byte is kept -----------------------------------------------------------
+
 
 class Field(NamedTuple):
     """A cell: what it says, and how that is written."""
@@ -69,11 +81,11 @@ class Gradebook:
 
     def __init__(self, data):
         self.encoding, self.mark = _encoding(data)
-        text = data[len(self.mark):].decode(self.encoding)
-        self.delimiter = max(',;\t', key=text.split('\n', 1)[0].count)
+        text = data[len(self.mark) :].decode(self.encoding)
+        self.delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
         self.lines = _split(text, self.delimiter)
         if len(self.lines) < 2:
-            raise CannotExport('The gradebook has no students.')
+            raise CannotExport("The gradebook has no students.")
         self.header = [field.says.strip() for field in self.lines[0][0]]
 
     def column(self, *names):
@@ -83,7 +95,7 @@ class Gradebook:
 
     def says(self, line, column):
         fields = self.lines[line][0]
-        return fields[column].says.strip() if column is not None and column < len(fields) else ''
+        return fields[column].says.strip() if column is not None and column < len(fields) else ""
 
     def put(self, line, column, text):
         fields = self.lines[line][0]
@@ -91,19 +103,19 @@ class Gradebook:
         fields[column] = Field(text, f'"{text}"' if quoted else text)
 
     def __bytes__(self):
-        text = ''.join(self.delimiter.join(field.written for field in fields) + end for fields, end in self.lines)
+        text = "".join(self.delimiter.join(field.written for field in fields) + end for fields, end in self.lines)
         return self.mark + text.encode(self.encoding)
 
 
 def _encoding(data):
-    for mark, encoding in ((b'\xef\xbb\xbf', 'utf-8'), (b'\xff\xfe', 'utf-16-le'), (b'\xfe\xff', 'utf-16-be')):
+    for mark, encoding in ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
         if data.startswith(mark):
             return encoding, mark
     try:
-        data.decode('utf-8')
-        return 'utf-8', b''
+        data.decode("utf-8")
+        return "utf-8", b""
     except UnicodeDecodeError:
-        return 'latin-1', b''   # gives every byte back as it was
+        return "latin-1", b""  # gives every byte back as it was
 
 
 def _split(text, delimiter):
@@ -113,20 +125,25 @@ def _split(text, delimiter):
     while place < len(text):
         found = pattern.match(text, place)
         written, end = found.groups()
-        says = written[1:written.rindex('"')].replace('""', '"') if written.startswith('"') and len(written) > 1 else written
+        says = (
+            written[1 : written.rindex('"')].replace('""', '"')
+            if written.startswith('"') and len(written) > 1
+            else written
+        )
         fields.append(Field(says, written))
         place = found.end()
         if end != delimiter:
             lines.append((fields, end))
             fields = []
         elif place == len(text):
-            fields.append(Field('', ''))
+            fields.append(Field("", ""))
     if fields:
-        lines.append((fields, ''))
+        lines.append((fields, ""))
     return lines
 
 
 # --- the systems --------------------------------------------------------------------------------
+
 
 def fill(path, marks, column=None, filled=None):
     """Fill the gradebook of Canvas, Moodle or Brightspace.
@@ -154,93 +171,108 @@ def fill(path, marks, column=None, filled=None):
     try:
         book = Gradebook(path.read_bytes())
     except (OSError, UnicodeDecodeError) as error:
-        raise CannotExport(f'{path} cannot be read: {error}.') from None
+        raise CannotExport(f"{path} cannot be read: {error}.") from None
     system = _system(book)
     place = _column(book, system, column)
     out_of, first, comma = _scale(book, system, place)
     found, several = _match(book, system, marks, first)
     scale = out_of / marks.worth if out_of and marks.worth else 1
-    said = [f'{system}: column {book.header[place]!r}.']
+    said = [f"{system}: column {book.header[place]!r}."]
     if scale != 1:
-        said.append(f'The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: points are scaled.')
+        said.append(
+            f"The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: points are scaled."
+        )
     filled_in, waiting, closed = 0, [], []
     for line, student in sorted(found.items()):
         if marks.undecided(student):
             waiting.append(student)
-        elif system == 'Moodle' and book.says(line, book.column('grade can be changed')).lower() == 'no':
+        elif system == "Moodle" and book.says(line, book.column("grade can be changed")).lower() == "no":
             closed.append(student)
         else:
             text = number(round(marks.points(student) * scale, 2))
-            book.put(line, place, text.replace('.', ',') if comma else text)
+            book.put(line, place, text.replace(".", ",") if comma else text)
             filled_in += 1
-    target = Path(filled) if filled else path.with_name(f'{path.stem}-filled{path.suffix}')
+    target = Path(filled) if filled else path.with_name(f"{path.stem}-filled{path.suffix}")
     write(target, bytes(book))
-    said.append(f'{filled_in} filled in: {target}')
-    without = [book.says(line, _shown(book, system)) for line in range(first, len(book.lines))
-               if line not in found and any(field.says for field in book.lines[line][0])]
+    said.append(f"{filled_in} filled in: {target}")
+    without = [
+        book.says(line, _shown(book, system))
+        for line in range(first, len(book.lines))
+        if line not in found and any(field.says for field in book.lines[line][0])
+    ]
     unmatched = [student for student in marks.students if student not in found.values() and student not in several]
-    for heading, names in (('In the gradebook, and nothing was handed in', without),
-                           ('Handed in, and not in the gradebook', unmatched),
-                           ('Of a name that is there more than once, so not filled in', several),
-                           ('Not filled in, because a person has still to decide', waiting),
-                           ('Not filled in, because the system allows no change', closed)):
+    for heading, names in (
+        ("In the gradebook, and nothing was handed in", without),
+        ("Handed in, and not in the gradebook", unmatched),
+        ("Of a name that is there more than once, so not filled in", several),
+        ("Not filled in, because a person has still to decide", waiting),
+        ("Not filled in, because the system allows no change", closed),
+    ):
         if names:
-            said.append(f'{heading} ({len(names)}):')
-            said += [f'  {readable(name, 200)}' for name in names]
+            said.append(f"{heading} ({len(names)}):")
+            said += [f"  {readable(name, 200)}" for name in names]
     return said
 
 
 def _system(book):
-    if book.column('identifier') is not None and book.column('grade') is not None:
-        return 'Moodle'
-    if book.column('orgdefinedid') is not None or book.column('end-of-line indicator') is not None:
-        return 'Brightspace'
-    if book.column('student') is not None and book.column('id') is not None:
-        return 'Canvas'
-    raise CannotExport('This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or Brightspace '
-                       f'(OrgDefinedId, End-of-Line Indicator). Its columns: {", ".join(book.header)[:300]}')
+    if book.column("identifier") is not None and book.column("grade") is not None:
+        return "Moodle"
+    if book.column("orgdefinedid") is not None or book.column("end-of-line indicator") is not None:
+        return "Brightspace"
+    if book.column("student") is not None and book.column("id") is not None:
+        return "Canvas"
+    raise CannotExport(
+        "This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or Brightspace "
+        f"(OrgDefinedId, End-of-Line Indicator). Its columns: {', '.join(book.header)[:300]}"
+    )
 
 
 def _column(book, system, column):
     if column:
         places = [place for place, name in enumerate(book.header) if name == column] or [
-            place for place, name in enumerate(book.header) if name.lower().startswith(column.lower())]
-    elif system == 'Moodle':
-        places = [book.column('grade')]
-    elif system == 'Brightspace':
-        places = [place for place, name in enumerate(book.header) if 'points grade' in name.lower()]
+            place for place, name in enumerate(book.header) if name.lower().startswith(column.lower())
+        ]
+    elif system == "Moodle":
+        places = [book.column("grade")]
+    elif system == "Brightspace":
+        places = [place for place, name in enumerate(book.header) if "points grade" in name.lower()]
     else:
         # Canvas puts the number of an assignment behind its name.
-        places = [place for place, name in enumerate(book.header) if re.search(r'\(\d+\)$', name)]
+        places = [place for place, name in enumerate(book.header) if re.search(r"\(\d+\)$", name)]
     if len(places) != 1:
         names = [book.header[place] for place in places] or book.header
-        raise CannotExport(f'Name the column to fill with --column; there are {", ".join(map(repr, names))}.')
+        raise CannotExport(f"Name the column to fill with --column; there are {', '.join(map(repr, names))}.")
     return places[0]
 
 
 def _scale(book, system, place):
     """What the column is out of, the first line of a student, and whether numbers have a comma."""
-    first, said, comma = 1, '', False
-    if system == 'Canvas':
-        while first < len(book.lines) and (book.says(first, 0).lower() == POSSIBLE or not book.says(first, book.column('id'))):
+    first, said, comma = 1, "", False
+    if system == "Canvas":
+        while first < len(book.lines) and (
+            book.says(first, 0).lower() == POSSIBLE or not book.says(first, book.column("id"))
+        ):
             if book.says(first, 0).lower() == POSSIBLE:
                 said = book.says(first, place)
             first += 1
-    elif system == 'Brightspace':
-        found = re.search(r'MaxPoints:\s*([\d.,]+)', book.header[place])
-        said = found[1] if found else ''
+    elif system == "Brightspace":
+        found = re.search(r"MaxPoints:\s*([\d.,]+)", book.header[place])
+        said = found[1] if found else ""
     else:
-        said = book.says(1, book.column('maximum grade'))
-        comma = bool(re.fullmatch(r'\d+,\d+', said))
+        said = book.says(1, book.column("maximum grade"))
+        comma = bool(re.fullmatch(r"\d+,\d+", said))
     try:
-        return float(said.replace(',', '.')), first, comma
+        return float(said.replace(",", ".")), first, comma
     except ValueError:
         return None, first, comma
 
 
 def _shown(book, system):
-    return {'Canvas': 0, 'Moodle': book.column('full name', 'identifier'),
-            'Brightspace': book.column('username', 'orgdefinedid')}[system]
+    return {
+        "Canvas": 0,
+        "Moodle": book.column("full name", "identifier"),
+        "Brightspace": book.column("username", "orgdefinedid"),
+    }[system]
 
 
 def _match(book, system, marks, first):
@@ -266,48 +298,90 @@ def _keys_of_line(book, system, line):
     def of(*names):
         return book.says(line, book.column(*names)).lower()
 
-    if system == 'Canvas':
-        given = [('id', of('id')), ('own', of('sis login id')), ('own', of('sis user id')), ('own', of('integration id'))]
-    elif system == 'Moodle':
-        given = [('id', of('identifier').removeprefix('participant ').strip()), ('own', of('id number')),
-                 ('own', of('username')), ('own', of('email address').partition('@')[0]), ('name', of('full name'))]
+    if system == "Canvas":
+        given = [
+            ("id", of("id")),
+            ("own", of("sis login id")),
+            ("own", of("sis user id")),
+            ("own", of("integration id")),
+        ]
+    elif system == "Moodle":
+        given = [
+            ("id", of("identifier").removeprefix("participant ").strip()),
+            ("own", of("id number")),
+            ("own", of("username")),
+            ("own", of("email address").partition("@")[0]),
+            ("name", of("full name")),
+        ]
     else:
-        given = [('own', of('orgdefinedid').removeprefix('#')), ('own', of('username').removeprefix('#')),
-                 ('name', ' '.join((of('first name') + ' ' + of('last name')).split()))]
+        given = [
+            ("own", of("orgdefinedid").removeprefix("#")),
+            ("own", of("username").removeprefix("#")),
+            ("name", " ".join((of("first name") + " " + of("last name")).split())),
+        ]
     return {key for key in given if key[1]}
 
 
 def _keys_of_student(system, student, identity):
-    if system.lower() in identity and system != 'Brightspace':
-        yield 'id', identity[system.lower()]
+    if system.lower() in identity and system != "Brightspace":
+        yield "id", identity[system.lower()]
         return
     if not identity:
-        yield 'own', student.lower()   # the folder's name is all that is known
-    if 'name' in identity:
-        yield 'name', identity['name'].lower()
+        yield "own", student.lower()  # the folder's name is all that is known
+    if "name" in identity:
+        yield "name", identity["name"].lower()
 
 
 def write_nbgrader(path, marks):
     """Write nbgrader's table of grades."""
     rows = []
     for record in marks.records:
-        rows.append((record['assignment'], '', '', record['student'], '', '', '', record['points'], 0, record['points'], record['worth']))
+        rows.append(
+            (
+                record["assignment"],
+                "",
+                "",
+                record["student"],
+                "",
+                "",
+                "",
+                record["points"],
+                0,
+                record["points"],
+                record["worth"],
+            )
+        )
     write(path, table(NBGRADER, rows))
 
 
 def write_gradescope(path, marks, student=None):
     """Write what Gradescope reads of an autograder: the results of one student."""
     if student is None and len(marks.students) != 1:
-        raise CannotExport(f'Gradescope takes one student at a time; name one with --student. There are {len(marks.students)}.')
+        raise CannotExport(
+            f"Gradescope takes one student at a time; name one with --student. There are {len(marks.students)}."
+        )
     student = student or next(iter(marks.students))
     if student not in marks.students:
-        raise CannotExport(f'There are no records of {student!r}.')
+        raise CannotExport(f"There are no records of {student!r}.")
     tests = []
     for record in marks.students[student]:
-        for name, mark in record['marks'].items():
-            tests.append({
-                'name': readable(mark['title'], 200), 'number': str(len(tests) + 1), 'score': mark['points'], 'max_score': mark['worth'],
-                'status': 'passed' if mark['outcome'] == 'correct' else 'failed', 'visibility': 'visible', 'output_format': 'text',
-                'output': readable('\n'.join([mark['outcome'], *map(plain_text, mark['messages'])])),
-            })
-    write(path, json.dumps({'score': marks.points(student), 'output_format': 'text', 'tests': tests}, indent=1, ensure_ascii=False) + '\n')
+        for name, mark in record["marks"].items():
+            tests.append(
+                {
+                    "name": readable(mark["title"], 200),
+                    "number": str(len(tests) + 1),
+                    "score": mark["points"],
+                    "max_score": mark["worth"],
+                    "status": "passed" if mark["outcome"] == "correct" else "failed",
+                    "visibility": "visible",
+                    "output_format": "text",
+                    "output": readable("\n".join([mark["outcome"], *map(plain_text, mark["messages"])])),
+                }
+            )
+    write(
+        path,
+        json.dumps(
+            {"score": marks.points(student), "output_format": "text", "tests": tests}, indent=1, ensure_ascii=False
+        )
+        + "\n",
+    )

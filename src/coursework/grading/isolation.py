@@ -67,8 +67,7 @@ class IsolationError(OSError):
 
 
 _library = ctypes.CDLL(None, use_errno=True)
-_library.mount.argtypes = (
-    ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_ulong, ctypes.c_char_p)
+_library.mount.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_ulong, ctypes.c_char_p)
 
 
 def _call(what, result):
@@ -96,8 +95,17 @@ def readable_paths():
     wanted = [sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")]
     wanted += site.getsitepackages()
     # Shared libraries: of this Python, then of the system.
-    wanted += [sysconfig.get_config_var("LIBDIR"), "/lib", "/lib64", "/lib32", "/usr/lib", "/usr/lib64",
-               "/usr/local/lib", "/etc/ld.so.cache", "/usr/share/zoneinfo"]
+    wanted += [
+        sysconfig.get_config_var("LIBDIR"),
+        "/lib",
+        "/lib64",
+        "/lib32",
+        "/usr/lib",
+        "/usr/lib64",
+        "/usr/local/lib",
+        "/etc/ld.so.cache",
+        "/usr/share/zoneinfo",
+    ]
     # The interpreter itself, for bubblewrap to start.
     wanted += [sys.executable, os.path.realpath(sys.executable), os.path.join(sys.prefix, "pyvenv.cfg")]
     # The two packages of this repository, also where they are installed from a working copy.
@@ -268,6 +276,7 @@ def restrict_files(readable, scratch):
 
 # ---- limits and privileges
 
+
 def limit_resources(limits, memory_in_use, threads_in_use):
     """Lower this process's limits for good.
 
@@ -348,6 +357,7 @@ def confine(layers, *, limits, readable, scratch, own_scratch, user, memory_in_u
 
 
 # ---- trying
+
 
 def _read(target):
     for path in target["files"]:
@@ -510,6 +520,7 @@ def lacking(report):
             continue
         missing = [layer for layer in LAYERS if layer in ATTEMPTS[name][1] and not report["layers"][layer]["in force"]]
         reasons = "; or ".join(
-            f"{layer} ({report['layers'][layer]['why not']}): {HOW_TO_GET[layer]}" for layer in missing)
+            f"{layer} ({report['layers'][layer]['why not']}): {HOW_TO_GET[layer]}" for layer in missing
+        )
         lines.append(f"student code could {name}. Missing: {reasons or 'no layer stopped it'}")
     return lines

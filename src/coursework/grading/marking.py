@@ -20,18 +20,21 @@ from ..checking.reply import Reply
 from .store import write
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
-NEARLY = MP.mpf('1.5e-3')
+NEARLY = MP.mpf("1.5e-3")
 #: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
-CUT_SHORT = ('It took longer than it may.', 'It took more memory than it may.')
+CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
 
 # --- what is known of each question -------------------------------------------------------------
 
+
 def names_asked(path):
     """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
     # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
-    cells = [SimpleNamespace(cell_type=cell['cell_type'], source=''.join(cell['source']))
-             for cell in json.loads(Path(path).read_text('utf8'))['cells']]
+    cells = [
+        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
+        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
+    ]
     return release._checked_names(SimpleNamespace(cells=cells))
 
 
@@ -42,18 +45,27 @@ def questions_of(path):
 
 def about(question):
     """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it."""
-    found = json.loads(json.dumps({
-        'title': question.title, 'variable': question.variable, 'worth': question.worth,
-        'credit': question.credit, 'public': question.public,
-        'known': {text: {'outcome': entry.outcome, 'notes': entry.notes} for text, entry in question.entries.items()},
-        'right': _canonical_of(question),
-    }))
-    return {**found, 'version': hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]}
+    found = json.loads(
+        json.dumps(
+            {
+                "title": question.title,
+                "variable": question.variable,
+                "worth": question.worth,
+                "credit": question.credit,
+                "public": question.public,
+                "known": {
+                    text: {"outcome": entry.outcome, "notes": entry.notes} for text, entry in question.entries.items()
+                },
+                "right": _canonical_of(question),
+            }
+        )
+    )
+    return {**found, "version": hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]}
 
 
 def _canonical_of(question):
     reading = read(question.public, question.plain)
-    if reading.text is not None or question.public.get('tolerance') is not None:
+    if reading.text is not None or question.public.get("tolerance") is not None:
         return None
     return [MP.nstr(number, 30) for number in canonical(question.public, reading)]
 
@@ -66,36 +78,43 @@ def load_questions(paths, kept):
     """
     ours, found = _digest_of_package(), {}
     for path in map(Path, paths):
-        place = Path(kept) / f'{path.stem}-{hashlib.sha256(ours + path.read_bytes()).hexdigest()[:16]}.json'
+        place = Path(kept) / f"{path.stem}-{hashlib.sha256(ours + path.read_bytes()).hexdigest()[:16]}.json"
         if not place.exists():
             write(place, json.dumps(questions_of(path), ensure_ascii=False))
-        found.update(json.loads(place.read_text('utf8')))
+        found.update(json.loads(place.read_text("utf8")))
     return found
 
 
 def _digest_of_package():
-    import orientation
     import sympy
+
+    import orientation
+
     digest = hashlib.sha256(sympy.__version__.encode())
     for package in (Path(__file__).parents[1], Path(orientation.__file__).parent):
-        for path in sorted(package.rglob('*.py')):
+        for path in sorted(package.rglob("*.py")):
             digest.update(path.read_bytes())
     return digest.digest()
 
 
 def asked_of_sandbox(questions):
     """What the sandbox is told of each question: the answer's name and the calls of a function, no more."""
-    variables = [question['variable'] for question in questions.values()]
-    return {name: {
-        # Two questions may call their answers the same, in two notebooks that were joined: then only the
-        # checks tell them apart.
-        'variable': question['variable'] if variables.count(question['variable']) == 1 else None,
-        'calls': None if question['public']['kind'] != 'function' else {
-            'arguments': question['public']['calls'], 'as': question['public']['takes']},
-    } for name, question in questions.items()}
+    variables = [question["variable"] for question in questions.values()]
+    return {
+        name: {
+            # Two questions may call their answers the same, in two notebooks that were joined: then only the
+            # checks tell them apart.
+            "variable": question["variable"] if variables.count(question["variable"]) == 1 else None,
+            "calls": None
+            if question["public"]["kind"] != "function"
+            else {"arguments": question["public"]["calls"], "as": question["public"]["takes"]},
+        }
+        for name, question in questions.items()
+    }
 
 
 # --- one answer ---------------------------------------------------------------------------------
+
 
 def mark(name, question, answer, finished=True):
     """Judge what the sandbox says of an answer.
@@ -117,59 +136,73 @@ def mark(name, question, answer, finished=True):
         question, and ``group``, which identical answers have in common.
     """
     reply, text = judge(name, question, answer, finished)
-    notes = question['known'].get(text, {}).get('notes') if reply.outcome == 'wrong' else None
-    share = {'correct': 1, 'wrong': question['credit'].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
+    notes = question["known"].get(text, {}).get("notes") if reply.outcome == "wrong" else None
+    share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     return {
-        'outcome': reply.outcome, 'note': reply.note, 'details': notes[0][1] if notes else {}, 'messages': reply.messages,
-        'points': round(question['worth'] * share, 4), 'worth': question['worth'],
-        'group': hashlib.sha256(text.encode()).hexdigest()[:16] if text else '', 'version': question['version'],
+        "outcome": reply.outcome,
+        "note": reply.note,
+        "details": notes[0][1] if notes else {},
+        "messages": reply.messages,
+        "points": round(question["worth"] * share, 4),
+        "worth": question["worth"],
+        "group": hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
+        "version": question["version"],
     }
 
 
 def judge(name, question, answer, finished=True):
     """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
-    state = answer['outcome']
-    if state == 'missing':
+    state = answer["outcome"]
+    if state == "missing":
         if not finished:
-            return _undecided(name, 'not reached', 'The notebook did not come to its end, and this answer was not '
-                                                   'reached.'), ''
-        variable = f' under the name `{question["variable"]}`' if question['variable'] else ''
-        return Reply(name, 'not attempted', 'missing', [f'No answer was found{variable}.']), ''
-    if state == 'unreadable' and answer['why'] not in CUT_SHORT:
-        return Reply(name, 'invalid', 'unreadable', [answer['why']]), ''
-    if state != 'recorded':
-        return _undecided(name, 'stopped while it was read',
-                          f'Reading this answer was stopped. {answer.get("why") or answer.get("error", "")}'.strip()), ''
+            return _undecided(
+                name, "not reached", "The notebook did not come to its end, and this answer was not reached."
+            ), ""
+        variable = f" under the name `{question['variable']}`" if question["variable"] else ""
+        return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
+    if state == "unreadable" and answer["why"] not in CUT_SHORT:
+        return Reply(name, "invalid", "unreadable", [answer["why"]]), ""
+    if state != "recorded":
+        return _undecided(
+            name,
+            "stopped while it was read",
+            f"Reading this answer was stopped. {answer.get('why') or answer.get('error', '')}".strip(),
+        ), ""
     found = []
 
     def look_up(text):
         found.append(text)
-        return question['known'].get(text)
+        return question["known"].get(text)
 
     try:
-        plain = read_plain(answer['plain'])
-        reply = compare(name, question['public'], plain, look_up)
-        if reply.outcome == 'wrong' and not reply.note and _nearly_right(question, plain):
-            reply = _undecided(name, 'nearly right', 'The value agrees with the right one to about three digits: it '
-                                                     'may have been rounded where an exact answer is asked for.')
+        plain = read_plain(answer["plain"])
+        reply = compare(name, question["public"], plain, look_up)
+        if reply.outcome == "wrong" and not reply.note and _nearly_right(question, plain):
+            reply = _undecided(
+                name,
+                "nearly right",
+                "The value agrees with the right one to about three digits: it "
+                "may have been rounded where an exact answer is asked for.",
+            )
     except NotPlain as error:
-        reply = Reply(name, 'invalid', 'unreadable', [str(error)])
-    except Exception as error:   # a fault of ours costs no student a mark
-        reply = _undecided(name, 'not worked out', f'This answer could not be worked out ({type(error).__name__}).')
-    return reply, ''.join(found)
+        reply = Reply(name, "invalid", "unreadable", [str(error)])
+    except Exception as error:  # a fault of ours costs no student a mark
+        reply = _undecided(name, "not worked out", f"This answer could not be worked out ({type(error).__name__}).")
+    return reply, "".join(found)
 
 
 def _undecided(name, note, message):
-    return Reply(name, 'undecided', note, [message])
+    return Reply(name, "undecided", note, [message])
 
 
 def _nearly_right(question, plain):
-    if question['right'] is None:
+    if question["right"] is None:
         return False
     try:
-        numbers = canonical(question['public'], read(question['public'], plain))
+        numbers = canonical(question["public"], read(question["public"], plain))
     except (Blank, Fault, Undecidable):
         return False
-    right = [MP.mpf(number) for number in question['right']]
+    right = [MP.mpf(number) for number in question["right"]]
     return len(numbers) == len(right) and all(
-        abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right))
+        abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right)
+    )

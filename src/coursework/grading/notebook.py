@@ -240,7 +240,7 @@ class _Notebook:
         self.writing = True
         try:
             while data:
-                data = data[self.write(self.records, data):]
+                data = data[self.write(self.records, data) :]
         finally:
             self.writing = False
 

@@ -49,21 +49,66 @@ figure { margin: .6rem 0; } .scroll table { min-width: 32rem; }
   section.question { background: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } }
 """
 #: No script, no picture, no font, no address: a page loads nothing, whatever is in it.
-POLICY = ("default-src 'none'; style-src 'sha256-" + base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
-          + "'; base-uri 'none'; form-action 'none'")
+POLICY = (
+    "default-src 'none'; style-src 'sha256-"
+    + base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
+    + "'; base-uri 'none'; form-action 'none'"
+)
 
-MATHEMATICS = {'math', 'mrow', 'mi', 'mo', 'mn', 'msup', 'msub', 'msubsup', 'mfrac', 'msqrt', 'mroot', 'mtext', 'mspace',
-               'mover', 'munder', 'munderover', 'mtable', 'mtr', 'mtd', 'mstyle', 'mpadded', 'menclose'}
-ATTRIBUTES = {'display', 'mathvariant', 'stretchy', 'fence', 'form', 'separator', 'accent', 'minsize', 'maxsize', 'lspace',
-              'rspace', 'width', 'columnalign', 'rowspacing', 'columnspacing', 'displaystyle', 'scriptlevel', 'linethickness'}
+MATHEMATICS = {
+    "math",
+    "mrow",
+    "mi",
+    "mo",
+    "mn",
+    "msup",
+    "msub",
+    "msubsup",
+    "mfrac",
+    "msqrt",
+    "mroot",
+    "mtext",
+    "mspace",
+    "mover",
+    "munder",
+    "munderover",
+    "mtable",
+    "mtr",
+    "mtd",
+    "mstyle",
+    "mpadded",
+    "menclose",
+}
+ATTRIBUTES = {
+    "display",
+    "mathvariant",
+    "stretchy",
+    "fence",
+    "form",
+    "separator",
+    "accent",
+    "minsize",
+    "maxsize",
+    "lspace",
+    "rspace",
+    "width",
+    "columnalign",
+    "rowspacing",
+    "columnspacing",
+    "displaystyle",
+    "scriptlevel",
+    "linethickness",
+}
 
 
 def page(title, body):
     """A whole page; ``body`` is HTML, ``title`` is text."""
-    return (f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-            f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
-            f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f'<title>{text(title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n')
+    return (
+        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{text(title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
+    )
 
 
 def text(value, most=400):
@@ -73,16 +118,16 @@ def text(value, most=400):
 
 def message(said):
     """A message, with ``code``, *emphasis* and $mathematics$ marked as in Markdown, as HTML."""
-    return ''.join(map(_piece, re.split(r'(`[^`]*`|\$[^$]*\$|\*[^*\s][^*]*\*)', said[:4_000])))
+    return "".join(map(_piece, re.split(r"(`[^`]*`|\$[^$]*\$|\*[^*\s][^*]*\*)", said[:4_000])))
 
 
 def _piece(piece):
-    if len(piece) > 1 and piece[0] == piece[-1] == '`':
-        return f'<code>{text(piece[1:-1])}</code>'
-    if len(piece) > 2 and piece[0] == piece[-1] == '$':
+    if len(piece) > 1 and piece[0] == piece[-1] == "`":
+        return f"<code>{text(piece[1:-1])}</code>"
+    if len(piece) > 2 and piece[0] == piece[-1] == "$":
         return formula(piece[1:-1])
-    if len(piece) > 2 and piece[0] == piece[-1] == '*':
-        return f'<em>{text(piece[1:-1])}</em>'
+    if len(piece) > 2 and piece[0] == piece[-1] == "*":
+        return f"<em>{text(piece[1:-1])}</em>"
     return text(piece, 4_000)
 
 
@@ -90,29 +135,30 @@ def _piece(piece):
 def formula(source):
     """TeX as MathML, or as it is where it cannot be turned into that."""
     from latex2mathml.converter import convert
+
     try:
         if len(source) > 300:
             raise ValueError
         found = convert(source)
         # A student's words may have come into a message: only what draws mathematics is let through.
         for element in ElementTree.fromstring(found).iter():
-            name = element.tag.rpartition('}')[2]
+            name = element.tag.rpartition("}")[2]
             if name not in MATHEMATICS or not set(element.attrib) <= ATTRIBUTES:
                 raise ValueError
         return found
     except Exception:
-        return f'<code>{text(source)}</code>'
+        return f"<code>{text(source)}</code>"
 
 
 # --- an answer in readable form -----------------------------------------------------------------
 
-OPERATORS = {'Add': (' + ', 1), 'Mul': ('*', 2), 'Pow': ('**', 3)}
-NAMES = {'Pi': 'pi', 'Exp1': 'E', 'ImaginaryUnit': 'I', 'Abs': 'abs'}
+OPERATORS = {"Add": (" + ", 1), "Mul": ("*", 2), "Pow": ("**", 3)}
+NAMES = {"Pi": "pi", "Exp1": "E", "ImaginaryUnit": "I", "Abs": "abs"}
 
 
 def answer_as_text(plain, most=300):
     """A plain answer as one line like the code that makes it, cut short where it is long."""
-    return _Printer(plain['nodes'], most).value(plain['value']) if plain else ''
+    return _Printer(plain["nodes"], most).value(plain["value"]) if plain else ""
 
 
 class _Printer:
@@ -127,71 +173,79 @@ class _Printer:
         if self.left <= 0:
             return self.cut()
         self.left -= len(piece)
-        return piece if self.left >= 0 else piece[:self.left] + self.cut()
+        return piece if self.left >= 0 else piece[: self.left] + self.cut()
 
     def cut(self):
         """The sign that something is missing: once."""
         first, self.is_cut = not self.is_cut, True
-        return '…' if first else ''
+        return "…" if first else ""
 
-    def parts(self, parts, write, between=', '):
+    def parts(self, parts, write, between=", "):
         written = []
         for part in parts:
             if self.left <= 0:
                 written.append(self.cut())
                 break
-            written.append((self.put(between) if written else '') + write(part))
-        return ''.join(written)
+            written.append((self.put(between) if written else "") + write(part))
+        return "".join(written)
 
     def value(self, value):
         kind, *rest = value
-        if kind == 'blank':
-            return self.put('...')
-        if kind == 'text':
+        if kind == "blank":
+            return self.put("...")
+        if kind == "text":
             return self.put(repr(readable(rest[0])))
-        if kind == 'truth':
+        if kind == "truth":
             return self.put(str(rest[0]))
-        if kind == 'raised':
-            return self.put(f'raised {readable(rest[0])}')
-        if kind == 'expression':
+        if kind == "raised":
+            return self.put(f"raised {readable(rest[0])}")
+        if kind == "expression":
             return self.node(rest[0], 0, 0)
-        if kind == 'matrix':
+        if kind == "matrix":
             rows, columns, entries = rest
-            lines = [entries[row * columns:(row + 1) * columns] for row in range(rows)]
-            return '[' + self.parts(lines, lambda line: '[' + self.parts(line, lambda entry: self.node(entry, 0, 0)) + ']') + ']'
-        if kind == 'list':
-            return '[' + self.parts(rest[0], self.value) + ']'
-        if kind == 'function':
-            return self.put('returned ') + self.parts(rest[0], self.value, '; ')
-        if kind == 'frame':
-            return self.put(f'frame {readable(rest[0])}: ') + self.named(rest[1])
-        return self.put('vector: ') + self.named(rest[0])
+            lines = [entries[row * columns : (row + 1) * columns] for row in range(rows)]
+            return (
+                "["
+                + self.parts(lines, lambda line: "[" + self.parts(line, lambda entry: self.node(entry, 0, 0)) + "]")
+                + "]"
+            )
+        if kind == "list":
+            return "[" + self.parts(rest[0], self.value) + "]"
+        if kind == "function":
+            return self.put("returned ") + self.parts(rest[0], self.value, "; ")
+        if kind == "frame":
+            return self.put(f"frame {readable(rest[0])}: ") + self.named(rest[1])
+        return self.put("vector: ") + self.named(rest[0])
 
     def named(self, values):
-        return self.parts(sorted(values), lambda name: self.put(f'in {readable(name)}: ') + self.value(values[name]), '; ')
+        return self.parts(
+            sorted(values), lambda name: self.put(f"in {readable(name)}: ") + self.value(values[name]), "; "
+        )
 
     def node(self, order, depth, around):
         if self.left <= 0 or depth > 40:
-            return self.cut() if self.left <= 0 else self.put('…')
+            return self.cut() if self.left <= 0 else self.put("…")
         operation, *rest = self.nodes[order]
-        if operation == 'symbol':
+        if operation == "symbol":
             return self.put(readable(rest[0]))
-        if operation == 'constant':
+        if operation == "constant":
             return self.put(NAMES.get(rest[0], readable(rest[0])))
-        if operation in ('integer', 'rational', 'float'):
-            digits = '/'.join(rest)
-            if operation == 'float' and 1e-300 < abs(float(digits)) < 1e300:
-                digits = f'{float(digits):.10g}'   # enough to recognise a number by
-            tight = around > 1 and ('/' in digits or digits.startswith('-'))
-            return self.put(f'({digits})' if tight else digits)
-        if operation == 'Pow' and self.nodes[rest[1]] == ['rational', '1', '2']:
-            return self.put('sqrt(') + self.node(rest[0], depth + 1, 0) + self.put(')')
-        if operation == 'Mul' and len(rest) > 1 and self.nodes[rest[0]] == ['integer', '-1']:
-            inner = self.put('-') + self.parts(rest[1:], lambda child: self.node(child, depth + 1, 2), '*')
-            return f'({inner})' if around > 1 else inner
+        if operation in ("integer", "rational", "float"):
+            digits = "/".join(rest)
+            if operation == "float" and 1e-300 < abs(float(digits)) < 1e300:
+                digits = f"{float(digits):.10g}"  # enough to recognise a number by
+            tight = around > 1 and ("/" in digits or digits.startswith("-"))
+            return self.put(f"({digits})" if tight else digits)
+        if operation == "Pow" and self.nodes[rest[1]] == ["rational", "1", "2"]:
+            return self.put("sqrt(") + self.node(rest[0], depth + 1, 0) + self.put(")")
+        if operation == "Mul" and len(rest) > 1 and self.nodes[rest[0]] == ["integer", "-1"]:
+            inner = self.put("-") + self.parts(rest[1:], lambda child: self.node(child, depth + 1, 2), "*")
+            return f"({inner})" if around > 1 else inner
         if operation in OPERATORS:
             sign, binding = OPERATORS[operation]
-            inner = self.parts(rest, lambda child: self.node(child, depth + 1, binding + (operation == 'Pow')), sign)
-            inner = inner.replace('+ -', '- ')
-            return f'({inner})' if around > binding else inner
-        return self.put(f'{operation}(') + self.parts(rest, lambda child: self.node(child, depth + 1, 0)) + self.put(')')
+            inner = self.parts(rest, lambda child: self.node(child, depth + 1, binding + (operation == "Pow")), sign)
+            inner = inner.replace("+ -", "- ")
+            return f"({inner})" if around > binding else inner
+        return (
+            self.put(f"{operation}(") + self.parts(rest, lambda child: self.node(child, depth + 1, 0)) + self.put(")")
+        )

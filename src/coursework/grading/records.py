@@ -28,8 +28,7 @@ class Records:
     @property
     def too_many(self):
         """Whether more came than any honest notebook sends."""
-        return (
-            self.received > MOST_BYTES or self.lines > MOST_RECORDS or len(self.unfinished) > LONGEST_LINE)
+        return self.received > MOST_BYTES or self.lines > MOST_RECORDS or len(self.unfinished) > LONGEST_LINE
 
     def feed(self, data):
         self.received += len(data)

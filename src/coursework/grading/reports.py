@@ -13,71 +13,71 @@ from .pages import text
 from .store import file_name, write
 from .tables import number, table
 
-DECIDED = ('✓', 'Decided by a person')
+DECIDED = ("✓", "Decided by a person")
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
 DEEDS = {
-    'transposed': 'gave the transpose',
-    'sign of one turn': 'gave the angle of the {turn} turn the wrong sign',
-    'sign of two turns': 'gave the angles of the {first} and the {second} turn the wrong sign',
-    'sign of every turn': 'turned the wrong way round throughout',
-    'other order': 'multiplied in the other order (space fixed turns)',
-    'other order, transposed': 'multiplied in the other order and gave the transpose',
-    'angles interchanged': 'interchanged the angles of the {first} and the {second} turn',
-    'another sequence': 'used the sequence {sequence}',
-    'another axis': 'made the {turn} turn about {axis}',
-    'turn missing': 'left the {turn} turn out',
-    'one factor only': 'gave the {turn} turn alone',
-    'sine for cosine': 'interchanged sine and cosine in the {turn} turn',
-    'degrees taken for radians': 'took degrees for radians',
-    'in degrees': 'answered in degrees',
-    'in radians': 'answered in radians where degrees are asked for',
-    'sign of a symbol': 'gave {symbol} the wrong sign',
-    'symbols interchanged': 'interchanged {first} and {second}',
-    'conjugate': 'gave the conjugate',
-    'scalar last': 'put the scalar last',
-    'scalar last, conjugate': 'put the scalar last and gave the conjugate',
-    'whole angle': 'used the whole angle in place of half of it',
-    'quarter angle': 'halved the angle twice',
-    'opposite': 'gave the opposite',
-    'reciprocal': 'gave the reciprocal',
-    'half': 'gave half of it',
-    'double': 'gave twice of it',
-    'supplement': 'gave the supplementary angle',
-    'complement': 'gave the complementary angle',
-    'not turned': 'left the components as they were, along the first frame',
-    'turned the wrong way': 'multiplied by the transpose',
-    'angles of another sequence': 'gave the angles of the sequence {sequence}',
-    'angles of the transpose': 'gave the angles of the transposed matrix',
-    'space fixed angles': 'gave space fixed angles',
-    'angles in reverse': 'gave the angles in reverse order',
-    'sign of one angle': 'gave the {turn} angle the wrong sign',
-    'sign of every angle': 'gave every angle the wrong sign',
-    'axis reversed': 'turned the wrong way round',
-    'sequence reversed': 'gave the sequence in reverse',
-    'cosine for sine': 'interchanged sine and cosine',
-    'stray symbol': 'used a symbol that the question does not have',
-    'undefined': 'gave something without a finite value',
-    'too large': 'gave something too large to be worked out',
-    'not real': 'gave complex numbers',
-    'shape': 'gave something of another shape or kind',
-    'frame': 'gave another frame than the one asked for',
-    'raised an error': 'gave a function that stops with an error',
-    'returned nothing': 'gave a function that returns nothing',
-    'impossible sequence': 'gave a sequence that is none',
-    'zero axis': 'gave an axis of length zero',
-    'not orthogonal': 'gave a matrix that is not orthogonal',
-    'left-handed': 'gave a left-handed matrix',
-    'not unit length': 'gave something that has not unit length',
-    'degrees': 'gave angles in degrees',
-    'unreadable': 'gave something that cannot be read as an answer',
+    "transposed": "gave the transpose",
+    "sign of one turn": "gave the angle of the {turn} turn the wrong sign",
+    "sign of two turns": "gave the angles of the {first} and the {second} turn the wrong sign",
+    "sign of every turn": "turned the wrong way round throughout",
+    "other order": "multiplied in the other order (space fixed turns)",
+    "other order, transposed": "multiplied in the other order and gave the transpose",
+    "angles interchanged": "interchanged the angles of the {first} and the {second} turn",
+    "another sequence": "used the sequence {sequence}",
+    "another axis": "made the {turn} turn about {axis}",
+    "turn missing": "left the {turn} turn out",
+    "one factor only": "gave the {turn} turn alone",
+    "sine for cosine": "interchanged sine and cosine in the {turn} turn",
+    "degrees taken for radians": "took degrees for radians",
+    "in degrees": "answered in degrees",
+    "in radians": "answered in radians where degrees are asked for",
+    "sign of a symbol": "gave {symbol} the wrong sign",
+    "symbols interchanged": "interchanged {first} and {second}",
+    "conjugate": "gave the conjugate",
+    "scalar last": "put the scalar last",
+    "scalar last, conjugate": "put the scalar last and gave the conjugate",
+    "whole angle": "used the whole angle in place of half of it",
+    "quarter angle": "halved the angle twice",
+    "opposite": "gave the opposite",
+    "reciprocal": "gave the reciprocal",
+    "half": "gave half of it",
+    "double": "gave twice of it",
+    "supplement": "gave the supplementary angle",
+    "complement": "gave the complementary angle",
+    "not turned": "left the components as they were, along the first frame",
+    "turned the wrong way": "multiplied by the transpose",
+    "angles of another sequence": "gave the angles of the sequence {sequence}",
+    "angles of the transpose": "gave the angles of the transposed matrix",
+    "space fixed angles": "gave space fixed angles",
+    "angles in reverse": "gave the angles in reverse order",
+    "sign of one angle": "gave the {turn} angle the wrong sign",
+    "sign of every angle": "gave every angle the wrong sign",
+    "axis reversed": "turned the wrong way round",
+    "sequence reversed": "gave the sequence in reverse",
+    "cosine for sine": "interchanged sine and cosine",
+    "stray symbol": "used a symbol that the question does not have",
+    "undefined": "gave something without a finite value",
+    "too large": "gave something too large to be worked out",
+    "not real": "gave complex numbers",
+    "shape": "gave something of another shape or kind",
+    "frame": "gave another frame than the one asked for",
+    "raised an error": "gave a function that stops with an error",
+    "returned nothing": "gave a function that returns nothing",
+    "impossible sequence": "gave a sequence that is none",
+    "zero axis": "gave an axis of length zero",
+    "not orthogonal": "gave a matrix that is not orthogonal",
+    "left-handed": "gave a left-handed matrix",
+    "not unit length": "gave something that has not unit length",
+    "degrees": "gave angles in degrees",
+    "unreadable": "gave something that cannot be read as an answer",
 }
-ORDINALS = ('first', 'second', 'third', 'fourth', 'fifth', 'sixth')
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
-    'works only out of order': 'It works only if its cells are run in another order than they stand in. The answers '
-                               'count; before you hand in, choose *Restart the kernel and run all cells*.',
-    'wrote into the records': 'Its code wrote where answers are recorded. What it wrote was not taken for more than '
-                              'an answer.',
-    'could not be run': 'It could not be run here. Your instructor will look at it.',
+    "works only out of order": "It works only if its cells are run in another order than they stand in. The answers "
+    "count; before you hand in, choose *Restart the kernel and run all cells*.",
+    "wrote into the records": "Its code wrote where answers are recorded. What it wrote was not taken for more than "
+    "an answer.",
+    "could not be run": "It could not be run here. Your instructor will look at it.",
 }
 
 
@@ -85,138 +85,213 @@ def write_all(store):
     """Make the tables and the pages of all records."""
     classes, rows, undecided = {}, [], []
     for record in store.all():
-        record['answers'] = {name: answer.get('plain') for name, answer in record['answers'].items()}
-        place = store.folder / 'feedback' / file_name(record['student']) / f'{file_name(record["assignment"])}.html'
+        record["answers"] = {name: answer.get("plain") for name, answer in record["answers"].items()}
+        place = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
         _write_if_new(place, feedback(record))
-        shorter = {**record, 'answers': {name: pages.answer_as_text(plain) for name, plain in record['answers'].items()}}
-        classes.setdefault(record['assignment'], []).append(shorter)
+        shorter = {
+            **record,
+            "answers": {name: pages.answer_as_text(plain) for name, plain in record["answers"].items()},
+        }
+        classes.setdefault(record["assignment"], []).append(shorter)
         rows.append(shorter)
-        undecided += [(record['student'], name, mark['worth'], mark['note'], ' '.join(mark['messages']), shorter['answers'].get(name, ''))
-                      for name, mark in record['marks'].items() if mark['outcome'] == 'undecided']
-    refused = [tuple(entry) for entry in _read(store.folder / 'refused.json', [])]
-    write(store.folder / 'grades.csv', grades(rows))
-    write(store.folder / 'undecided.csv', table(
-        ('student', 'question', 'credit', 'comment', 'worth', 'why', 'message', 'answer'),
-        [(student, name, '', '', worth, why, said, answer) for student, name, worth, why, said, answer in undecided]))
-    write(store.folder / 'refused.csv', table(('file', 'student', 'why'), refused))
-    write(store.folder / 'report.html', report(classes, refused))
+        undecided += [
+            (
+                record["student"],
+                name,
+                mark["worth"],
+                mark["note"],
+                " ".join(mark["messages"]),
+                shorter["answers"].get(name, ""),
+            )
+            for name, mark in record["marks"].items()
+            if mark["outcome"] == "undecided"
+        ]
+    refused = [tuple(entry) for entry in _read(store.folder / "refused.json", [])]
+    write(store.folder / "grades.csv", grades(rows))
+    write(
+        store.folder / "undecided.csv",
+        table(
+            ("student", "question", "credit", "comment", "worth", "why", "message", "answer"),
+            [
+                (student, name, "", "", worth, why, said, answer)
+                for student, name, worth, why, said, answer in undecided
+            ],
+        ),
+    )
+    write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
+    write(store.folder / "report.html", report(classes, refused))
 
 
 def _read(path, otherwise):
-    return json.loads(path.read_text('utf8')) if path.exists() else otherwise
+    return json.loads(path.read_text("utf8")) if path.exists() else otherwise
 
 
 def _write_if_new(path, content):
-    if not path.exists() or path.read_text('utf8') != content:
+    if not path.exists() or path.read_text("utf8") != content:
         write(path, content, lasting=False)
 
 
 def grades(records):
     """All marks as CSV: a line for each student and assignment."""
-    names = list(dict.fromkeys(name for record in records for name in record['marks']))
+    names = list(dict.fromkeys(name for record in records for name in record["marks"]))
     rows = []
     for record in records:
-        marks = [record['marks'].get(name) for name in names]
-        rows.append([
-            record['student'], record['assignment'], record['points'], record['worth'], record['undecided'],
-            'late' if any(notebook['late'] for notebook in record['notebooks']) else '',
-            *(mark['points'] if mark else '' for mark in marks), *(mark['outcome'] if mark else '' for mark in marks)])
-    return table(['student', 'assignment', 'points', 'worth', 'undecided', 'late', *names,
-                  *(f'{name}: outcome' for name in names)], rows)
+        marks = [record["marks"].get(name) for name in names]
+        rows.append(
+            [
+                record["student"],
+                record["assignment"],
+                record["points"],
+                record["worth"],
+                record["undecided"],
+                "late" if any(notebook["late"] for notebook in record["notebooks"]) else "",
+                *(mark["points"] if mark else "" for mark in marks),
+                *(mark["outcome"] if mark else "" for mark in marks),
+            ]
+        )
+    return table(
+        [
+            "student",
+            "assignment",
+            "points",
+            "worth",
+            "undecided",
+            "late",
+            *names,
+            *(f"{name}: outcome" for name in names),
+        ],
+        rows,
+    )
 
 
 # --- for a student ------------------------------------------------------------------------------
 
+
 def feedback(record):
     """The page that a student gets."""
-    open_ = record['undecided']
-    pending = f'<p class="soft">{_count(open_, "answer is", "answers are")} still to be looked at by a person.</p>' if open_ else ''
-    body = [f'<header><p class="soft">{text(record["student"])}</p><h1>{text(record["assignment"])}</h1>'
-            f'<p class="big">{number(record["points"])} of {number(record["worth"])} points</p>{pending}</header>']
-    body += [_question(order, name, mark, record['answers'].get(name)) for order, (name, mark) in
-             enumerate(record['marks'].items(), 1)]
+    open_ = record["undecided"]
+    pending = (
+        f'<p class="soft">{_count(open_, "answer is", "answers are")} still to be looked at by a person.</p>'
+        if open_
+        else ""
+    )
+    body = [
+        f'<header><p class="soft">{text(record["student"])}</p><h1>{text(record["assignment"])}</h1>'
+        f'<p class="big">{number(record["points"])} of {number(record["worth"])} points</p>{pending}</header>'
+    ]
+    body += [
+        _question(order, name, mark, record["answers"].get(name))
+        for order, (name, mark) in enumerate(record["marks"].items(), 1)
+    ]
     body.append(_about_notebooks(record))
-    return pages.page(f'{record["assignment"]}: {record["student"]}', '\n'.join(body))
+    return pages.page(f"{record['assignment']}: {record['student']}", "\n".join(body))
 
 
 def _question(order, name, mark, plain):
-    sign, word = DECIDED if mark['outcome'] == 'decided' else OUTCOMES[mark['outcome']][:2]
-    paragraphs = ''.join(f'<p>{pages.message(said)}</p>' for said in mark['messages'])
-    read = pages.answer_as_text(plain) if plain and mark['outcome'] != 'not attempted' else ''
-    answer = f'<p class="soft">Your answer, as it was read:</p><pre>{text(read, 2_000)}</pre>' if read else ''
-    return (f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(_title(mark))}</h3>'
-            f'<span class="verdict"><span aria-hidden="true">{sign}</span> {word} · {_points(mark)}</span></div>'
-            f'<p class="soft"><code>{text(name)}</code></p>{paragraphs}{answer}</section>')
+    sign, word = DECIDED if mark["outcome"] == "decided" else OUTCOMES[mark["outcome"]][:2]
+    paragraphs = "".join(f"<p>{pages.message(said)}</p>" for said in mark["messages"])
+    read = pages.answer_as_text(plain) if plain and mark["outcome"] != "not attempted" else ""
+    answer = f'<p class="soft">Your answer, as it was read:</p><pre>{text(read, 2_000)}</pre>' if read else ""
+    return (
+        f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(_title(mark))}</h3>'
+        f'<span class="verdict"><span aria-hidden="true">{sign}</span> {word} · {_points(mark)}</span></div>'
+        f'<p class="soft"><code>{text(name)}</code></p>{paragraphs}{answer}</section>'
+    )
 
 
 def _title(mark):
-    return mark['title'][:1].upper() + mark['title'][1:]
+    return mark["title"][:1].upper() + mark["title"][1:]
 
 
 def _points(mark):
-    earned = '–' if mark['outcome'] == 'undecided' else number(mark['points'])
-    return f'{earned} of {number(mark["worth"])}'
+    earned = "–" if mark["outcome"] == "undecided" else number(mark["points"])
+    return f"{earned} of {number(mark['worth'])}"
 
 
 def _about_notebooks(record):
     items = []
-    for notebook in record['notebooks']:
-        name = f'<code>{text(notebook["file"])}</code>'
-        items += [f'<li>{name}: {pages.message(NOTES.get(note, note))}</li>' for note in notebook['notes']]
-        failed = [(order, cell) for order, cell in enumerate(notebook['cells'], 1) if cell['outcome'] not in ('done', 'not run')]
-        items += [f'<li>{name}: code cell {order} stopped{_line(cell)}. <code>{text(cell.get("error", cell["outcome"]))}</code></li>'
-                  for order, cell in failed[:10]]
-        if notebook['unknown questions']:
-            items.append(f'<li>{name}: no question is called {", ".join(f"<code>{text(one)}</code>" for one in notebook["unknown questions"][:5])}.</li>')
-    items += [f'<li><code>{text(notebook["file"])}</code> was not counted: a newer notebook answers the same questions.</li>'
-              for notebook in record['superseded']]
-    return f'<h2>Your notebook</h2><ul>{"".join(items)}</ul>' if items else ''
+    for notebook in record["notebooks"]:
+        name = f"<code>{text(notebook['file'])}</code>"
+        items += [f"<li>{name}: {pages.message(NOTES.get(note, note))}</li>" for note in notebook["notes"]]
+        failed = [
+            (order, cell)
+            for order, cell in enumerate(notebook["cells"], 1)
+            if cell["outcome"] not in ("done", "not run")
+        ]
+        items += [
+            f"<li>{name}: code cell {order} stopped{_line(cell)}. <code>{text(cell.get('error', cell['outcome']))}</code></li>"
+            for order, cell in failed[:10]
+        ]
+        if notebook["unknown questions"]:
+            items.append(
+                f"<li>{name}: no question is called {', '.join(f'<code>{text(one)}</code>' for one in notebook['unknown questions'][:5])}.</li>"
+            )
+    items += [
+        f"<li><code>{text(notebook['file'])}</code> was not counted: a newer notebook answers the same questions.</li>"
+        for notebook in record["superseded"]
+    ]
+    return f"<h2>Your notebook</h2><ul>{''.join(items)}</ul>" if items else ""
 
 
 def _line(cell):
-    return f' in line {cell["line"]}' if 'line' in cell else ''
+    return f" in line {cell['line']}" if "line" in cell else ""
 
 
 def _count(how_many, one, more):
-    return f'{how_many} {one if how_many == 1 else more}'
+    return f"{how_many} {one if how_many == 1 else more}"
 
 
 # --- for the instructor -------------------------------------------------------------------------
 
+
 def deed(mark):
     """What was done, in words that follow "31 % of the class"."""
-    if mark['note'] == 'authored':
-        return f'were told: “{mark["messages"][0]}”'
+    if mark["note"] == "authored":
+        return f"were told: “{mark['messages'][0]}”"
     # Where there is only one turn, it has no number.
-    details = {name: ORDINALS[value] if isinstance(value, int) else value or '' for name, value in mark['details'].items()}
-    return ' '.join(DEEDS.get(mark['note'], mark['note']).format(**details).split())
+    details = {
+        name: ORDINALS[value] if isinstance(value, int) else value or "" for name, value in mark["details"].items()
+    }
+    return " ".join(DEEDS.get(mark["note"], mark["note"]).format(**details).split())
 
 
 def report(classes, refused):
     """The page on the class."""
-    body = ['<h1>How the class did</h1>']
+    body = ["<h1>How the class did</h1>"]
     if not classes:
-        body.append('<p>Nothing has been graded.</p>')
+        body.append("<p>Nothing has been graded.</p>")
     for assignment, records in sorted(classes.items()):
         body.append(_assignment(assignment, records))
     if refused:
-        rows = ''.join(f'<tr><td><code>{text(file)}</code></td><td>{text(why)}</td></tr>' for file, _, why in refused)
-        body.append(f'<h2 id="refused">Files that were not graded</h2><p>{_count(len(refused), "file was", "files were")} refused. '
-                    'Whoever handed one in may not know.</p>'
-                    f'<div class="scroll"><table><thead><tr><th>File</th><th>Why</th></tr></thead><tbody>{rows}</tbody></table></div>')
+        rows = "".join(f"<tr><td><code>{text(file)}</code></td><td>{text(why)}</td></tr>" for file, _, why in refused)
+        body.append(
+            f'<h2 id="refused">Files that were not graded</h2><p>{_count(len(refused), "file was", "files were")} refused. '
+            "Whoever handed one in may not know.</p>"
+            f'<div class="scroll"><table><thead><tr><th>File</th><th>Why</th></tr></thead><tbody>{rows}</tbody></table></div>'
+        )
     body.append(_how(classes))
-    return pages.page('How the class did', '\n'.join(body))
+    return pages.page("How the class did", "\n".join(body))
 
 
 def _assignment(assignment, records):
-    points, worth = [record['points'] for record in records], max(record['worth'] for record in records)
-    names = list(records[0]['marks'])
+    points, worth = [record["points"] for record in records], max(record["worth"] for record in records)
+    names = list(records[0]["marks"])
     numbers = {name: order for order, name in enumerate(names, 1)}
-    said = (f'<section><h2 id="{file_name(assignment)}">{text(assignment)}</h2>'
-            f'<p>{_count(len(records), "student", "students")}. The mean is {mean(points):.1f} of {number(worth)} points, '
-            f'the median {number(median(points))}.</p>')
-    return (said + _histogram(points, worth) + _success(records, names) + _mixups(records, names, numbers)
-            + _clusters(records, numbers) + _undecided(records, numbers) + _odd(records) + '</section>')
+    said = (
+        f'<section><h2 id="{file_name(assignment)}">{text(assignment)}</h2>'
+        f"<p>{_count(len(records), 'student', 'students')}. The mean is {mean(points):.1f} of {number(worth)} points, "
+        f"the median {number(median(points))}.</p>"
+    )
+    return (
+        said
+        + _histogram(points, worth)
+        + _success(records, names)
+        + _mixups(records, names, numbers)
+        + _clusters(records, numbers)
+        + _undecided(records, numbers)
+        + _odd(records)
+        + "</section>"
+    )
 
 
 def _histogram(points, worth):
@@ -231,27 +306,40 @@ def _histogram(points, worth):
         tall = count / top * 120 if top else 0
         x = left + order * step
         low, high = worth * order / bins, worth * (order + 1) / bins
-        bars.append(f'<rect class="bar" x="{x + 3:.1f}" y="{base - tall:.1f}" width="{step - 6:.1f}" height="{tall:.1f}"/>'
-                    f'<text x="{x + step / 2:.1f}" y="{base - tall - 6:.1f}" text-anchor="middle">{count or ""}</text>'
-                    f'<text x="{x:.1f}" y="{base + 17}" text-anchor="middle">{number(round(low, 1))}</text>')
+        bars.append(
+            f'<rect class="bar" x="{x + 3:.1f}" y="{base - tall:.1f}" width="{step - 6:.1f}" height="{tall:.1f}"/>'
+            f'<text x="{x + step / 2:.1f}" y="{base - tall - 6:.1f}" text-anchor="middle">{count or ""}</text>'
+            f'<text x="{x:.1f}" y="{base + 17}" text-anchor="middle">{number(round(low, 1))}</text>'
+        )
         if order == bins - 1:
-            bars.append(f'<text x="{x + step:.1f}" y="{base + 17}" text-anchor="middle">{number(round(high, 1))}</text>')
-    spoken = '; '.join(f'{number(round(worth * order / bins, 1))} to {number(round(worth * (order + 1) / bins, 1))} points: {count}'
-                       for order, count in enumerate(counts))
-    return (f'<figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="Number of students by points. {spoken}.">'
-            f'<line class="axis" x1="{left}" y1="{base}" x2="{width - left}" y2="{base}"/>{"".join(bars)}</svg>'
-            '<figcaption>Number of students by points.</figcaption></figure>')
+            bars.append(
+                f'<text x="{x + step:.1f}" y="{base + 17}" text-anchor="middle">{number(round(high, 1))}</text>'
+            )
+    spoken = "; ".join(
+        f"{number(round(worth * order / bins, 1))} to {number(round(worth * (order + 1) / bins, 1))} points: {count}"
+        for order, count in enumerate(counts)
+    )
+    return (
+        f'<figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="Number of students by points. {spoken}.">'
+        f'<line class="axis" x1="{left}" y1="{base}" x2="{width - left}" y2="{base}"/>{"".join(bars)}</svg>'
+        "<figcaption>Number of students by points.</figcaption></figure>"
+    )
 
 
 #: What a bar is made of, in order: outcomes, and what they are called.
-PARTS = (('correct', 'right'), ('wrong', 'wrong'), ('invalid', 'not in the form asked for'), ('undecided', 'undecided'),
-         ('none', 'not attempted'))
+PARTS = (
+    ("correct", "right"),
+    ("wrong", "wrong"),
+    ("invalid", "not in the form asked for"),
+    ("undecided", "undecided"),
+    ("none", "not attempted"),
+)
 
 
 def _success(records, names):
     rows = []
     for order, name in enumerate(names, 1):
-        marks = [record['marks'][name] for record in records if name in record['marks']]
+        marks = [record["marks"][name] for record in records if name in record["marks"]]
         counts = Counter(_part(mark) for mark in marks)
         x, bars = 0.0, []
         for part, word in PARTS:
@@ -259,95 +347,149 @@ def _success(records, names):
                 wide = 300 * counts[part] / len(marks)
                 bars.append(f'<rect class="edge of-{part}" x="{x:.1f}" y="0" width="{wide:.1f}" height="18"/>')
                 x += wide
-        spoken = ', '.join(f'{counts[part]} {word}' for part, word in PARTS if counts[part])
-        rows.append(f'<tr><td class="number">{order}</td><td>{text(_title(marks[0]))}<br><span class="soft">{spoken}</span></td>'
-                    f'<td><svg viewBox="0 0 300 18" width="300" height="18" role="img" aria-label="{spoken}">{"".join(bars)}</svg></td>'
-                    f'<td class="number">{_percent(counts["correct"], len(marks))}</td></tr>')
-    key = ''.join(f'<span><svg width="11" height="11" viewBox="0 0 11 11" aria-hidden="true"><rect class="of-{part}" width="11" height="11"/></svg>'
-                  f'{word}</span>' for part, word in PARTS)
-    return ('<h3>Question by question</h3><div class="scroll"><table><thead><tr><th class="number">No.</th><th>Question</th>'
-            '<th>The class</th><th class="number">Right</th></tr></thead>'
-            f'<tbody>{"".join(rows)}</tbody></table></div><p class="key">{key}</p>')
+        spoken = ", ".join(f"{counts[part]} {word}" for part, word in PARTS if counts[part])
+        rows.append(
+            f'<tr><td class="number">{order}</td><td>{text(_title(marks[0]))}<br><span class="soft">{spoken}</span></td>'
+            f'<td><svg viewBox="0 0 300 18" width="300" height="18" role="img" aria-label="{spoken}">{"".join(bars)}</svg></td>'
+            f'<td class="number">{_percent(counts["correct"], len(marks))}</td></tr>'
+        )
+    key = "".join(
+        f'<span><svg width="11" height="11" viewBox="0 0 11 11" aria-hidden="true"><rect class="of-{part}" width="11" height="11"/></svg>'
+        f"{word}</span>"
+        for part, word in PARTS
+    )
+    return (
+        '<h3>Question by question</h3><div class="scroll"><table><thead><tr><th class="number">No.</th><th>Question</th>'
+        '<th>The class</th><th class="number">Right</th></tr></thead>'
+        f'<tbody>{"".join(rows)}</tbody></table></div><p class="key">{key}</p>'
+    )
 
 
 def _part(mark):
-    return {'not attempted': 'none', 'decided': 'correct' if mark['points'] else 'wrong'}.get(mark['outcome'], mark['outcome'])
+    return {"not attempted": "none", "decided": "correct" if mark["points"] else "wrong"}.get(
+        mark["outcome"], mark["outcome"]
+    )
 
 
 def _percent(part, whole):
     share = 100 * part / whole
-    return f'{share:.0f} %' if share >= 1 or not part else 'under 1 %'
+    return f"{share:.0f} %" if share >= 1 or not part else "under 1 %"
 
 
 def _mixups(records, names, numbers):
     found = Counter()
     for record in records:
         for name in names:
-            mark = record['marks'].get(name)
-            if mark and mark['outcome'] in ('wrong', 'invalid') and mark['note']:
+            mark = record["marks"].get(name)
+            if mark and mark["outcome"] in ("wrong", "invalid") and mark["note"]:
                 found[name, deed(mark)] += 1
     shown = sorted(found.items(), key=lambda entry: (-entry[1], numbers[entry[0][0]], entry[0][1]))[:20]
-    titles = {name: mark['title'] for record in records for name, mark in record['marks'].items()}
-    rows = ''.join(
+    titles = {name: mark["title"] for record in records for name, mark in record["marks"].items()}
+    rows = "".join(
         f'<tr><td class="number"><strong>{_percent(count, len(records))}</strong></td>'
         f'<td><svg viewBox="0 0 120 12" width="120" height="12" role="img" aria-label="{count} of {len(records)}">'
         f'<rect class="of-none" width="120" height="12"/><rect class="of-wrong" width="{120 * count / len(records):.1f}" height="12"/></svg></td>'
         f'<td>{pages.message(what)} in question {numbers[name]}, <em>{text(titles[name])}</em> <span class="soft">({count} of {len(records)})</span></td></tr>'
-        for (name, what), count in shown if count > 1 or len(records) < 30)
-    return ('<h3>What was mixed up</h3><p>Of the class,</p><div class="scroll"><table><thead><tr><th class="number">Share</th><th></th>'
-            f'<th>did this</th></tr></thead><tbody>{rows}</tbody></table></div>') if rows else ''
+        for (name, what), count in shown
+        if count > 1 or len(records) < 30
+    )
+    return (
+        (
+            '<h3>What was mixed up</h3><p>Of the class,</p><div class="scroll"><table><thead><tr><th class="number">Share</th><th></th>'
+            f"<th>did this</th></tr></thead><tbody>{rows}</tbody></table></div>"
+        )
+        if rows
+        else ""
+    )
 
 
 def _clusters(records, numbers):
     groups = {}
     for record in records:
-        for name, mark in record['marks'].items():
-            if mark['outcome'] == 'wrong' and not mark['note'] and mark['group']:
-                groups.setdefault((name, mark['group']), []).append(record)
-    found = sorted((entry for entry in groups.items() if len(entry[1]) > 1),
-                   key=lambda entry: (-len(entry[1]), numbers.get(entry[0][0], 0), entry[0][1]))[:15]
-    rows = ''.join(f'<tr><td class="number">{len(same)}</td><td class="number">{numbers.get(name, "")}</td>'
-                   f'<td><code>{text(same[0]["answers"].get(name, ""))}</code></td></tr>' for (name, _), same in found)
-    return ('<h3>The same wrong answer, without a name</h3><p>These answers were given more than once and no mistake that is '
+        for name, mark in record["marks"].items():
+            if mark["outcome"] == "wrong" and not mark["note"] and mark["group"]:
+                groups.setdefault((name, mark["group"]), []).append(record)
+    found = sorted(
+        (entry for entry in groups.items() if len(entry[1]) > 1),
+        key=lambda entry: (-len(entry[1]), numbers.get(entry[0][0], 0), entry[0][1]),
+    )[:15]
+    rows = "".join(
+        f'<tr><td class="number">{len(same)}</td><td class="number">{numbers.get(name, "")}</td>'
+        f"<td><code>{text(same[0]['answers'].get(name, ''))}</code></td></tr>"
+        for (name, _), same in found
+    )
+    return (
+        (
+            "<h3>The same wrong answer, without a name</h3><p>These answers were given more than once and no mistake that is "
             'known leads to them. A look may show one that should be.</p><div class="scroll"><table><thead><tr>'
             '<th class="number">Students</th><th class="number">Question</th><th>One of these answers</th></tr></thead>'
-            f'<tbody>{rows}</tbody></table></div>') if rows else ''
+            f"<tbody>{rows}</tbody></table></div>"
+        )
+        if rows
+        else ""
+    )
 
 
 def _undecided(records, numbers):
-    rows = ''.join(f'<tr><td>{text(record["student"])}</td><td class="number">{numbers.get(name, "")}</td>'
-                   f'<td>{" ".join(map(pages.message, mark["messages"]))}</td><td><code>{text(record["answers"].get(name, ""))}</code></td></tr>'
-                   for record in records for name, mark in record['marks'].items() if mark['outcome'] == 'undecided')
-    return ('<h3>For you to decide</h3><p>Copy <code>undecided.csv</code> to <code>decisions.csv</code>, write a credit '
-            'from 0 to 1 into its lines, and run <code>coursework regrade</code>. Until then these answers earn nothing and '
+    rows = "".join(
+        f'<tr><td>{text(record["student"])}</td><td class="number">{numbers.get(name, "")}</td>'
+        f"<td>{' '.join(map(pages.message, mark['messages']))}</td><td><code>{text(record['answers'].get(name, ''))}</code></td></tr>"
+        for record in records
+        for name, mark in record["marks"].items()
+        if mark["outcome"] == "undecided"
+    )
+    return (
+        (
+            "<h3>For you to decide</h3><p>Copy <code>undecided.csv</code> to <code>decisions.csv</code>, write a credit "
+            "from 0 to 1 into its lines, and run <code>coursework regrade</code>. Until then these answers earn nothing and "
             'are counted nowhere as wrong.</p><div class="scroll"><table><thead><tr><th>Student</th><th class="number">Question</th>'
-            f'<th>Why</th><th>The answer</th></tr></thead><tbody>{rows}</tbody></table></div>') if rows else ''
+            f"<th>Why</th><th>The answer</th></tr></thead><tbody>{rows}</tbody></table></div>"
+        )
+        if rows
+        else ""
+    )
 
 
 def _odd(records):
     kinds = {}
     for record in records:
-        for notebook in record['notebooks']:
-            for note in notebook['notes']:
-                kinds.setdefault(note, []).append(record['student'])
-            for outcome in {cell['outcome'] for cell in notebook['cells']} - {'done', 'not run', 'error'}:
-                kinds.setdefault(f'stopped by a limit or by itself: {outcome}', []).append(record['student'])
-        if record['superseded']:
-            kinds.setdefault('handed in more than once; the newest counts', []).append(record['student'])
-    rows = ''.join(f'<tr><td>{text(kind)}</td><td class="number">{len(students)}</td><td>{text(", ".join(students))}</td></tr>'
-                   for kind, students in sorted(kinds.items()))
-    return ('<h3>Notebooks worth a look</h3><div class="scroll"><table><thead><tr><th>What</th><th class="number">How many</th><th>Whose</th></tr></thead>'
-            f'<tbody>{rows}</tbody></table></div>') if rows else ''
+        for notebook in record["notebooks"]:
+            for note in notebook["notes"]:
+                kinds.setdefault(note, []).append(record["student"])
+            for outcome in {cell["outcome"] for cell in notebook["cells"]} - {"done", "not run", "error"}:
+                kinds.setdefault(f"stopped by a limit or by itself: {outcome}", []).append(record["student"])
+        if record["superseded"]:
+            kinds.setdefault("handed in more than once; the newest counts", []).append(record["student"])
+    rows = "".join(
+        f'<tr><td>{text(kind)}</td><td class="number">{len(students)}</td><td>{text(", ".join(students))}</td></tr>'
+        for kind, students in sorted(kinds.items())
+    )
+    return (
+        (
+            '<h3>Notebooks worth a look</h3><div class="scroll"><table><thead><tr><th>What</th><th class="number">How many</th><th>Whose</th></tr></thead>'
+            f"<tbody>{rows}</tbody></table></div>"
+        )
+        if rows
+        else ""
+    )
 
 
 def _how(classes):
     records = [record for group in classes.values() for record in group]
     ways = Counter()
     for record in records:
-        for notebook in record['notebooks']:
-            isolation = notebook['isolation']
-            ways[('WEAK: ' if isolation['weak'] else '') + (', '.join(isolation['layers']) or 'none')] += 1
-    versions = Counter(', '.join(f'{name} {version}' for name, version in record['software'].items()) for record in records)
-    items = [f'<li>{_count(count, "notebook", "notebooks")} isolated by {text(way)}.</li>' for way, count in sorted(ways.items())]
-    items += [f'<li>{_count(count, "record", "records")} made with {text(version)}.</li>' for version, count in sorted(versions.items())]
-    return f'<h2>How it was graded</h2><ul class="soft">{"".join(items)}</ul>' if items else ''
+        for notebook in record["notebooks"]:
+            isolation = notebook["isolation"]
+            ways[("WEAK: " if isolation["weak"] else "") + (", ".join(isolation["layers"]) or "none")] += 1
+    versions = Counter(
+        ", ".join(f"{name} {version}" for name, version in record["software"].items()) for record in records
+    )
+    items = [
+        f"<li>{_count(count, 'notebook', 'notebooks')} isolated by {text(way)}.</li>"
+        for way, count in sorted(ways.items())
+    ]
+    items += [
+        f"<li>{_count(count, 'record', 'records')} made with {text(version)}.</li>"
+        for version, count in sorted(versions.items())
+    ]
+    return f'<h2>How it was graded</h2><ul class="soft">{"".join(items)}</ul>' if items else ""

@@ -20,23 +20,23 @@ from ..authoring import release
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
 #: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
 HOSTILE = {
-    'replaces the check': "import coursework\ncoursework.check = check = lambda *answers: 'Correct'",
-    'leaves': 'import os\nos._exit(0)',
-    'kills itself': 'import os, signal\nos.kill(os.getpid(), signal.SIGKILL)',
-    'equals everything': 'class Right:\n    def __eq__(self, other):\n        return True\n    def __hash__(self):\n        return 0\n'
-                         'sm.Expr.__eq__ = Right.__eq__',
-    'changes json': "import json\njson.dumps = json.JSONEncoder.encode = lambda *a, **k: '{\"outcome\": \"correct\"}'",
-    'reads and writes files': "for place in ('/etc/passwd', '../grades.csv'):\n    try:\n        print(open(place).read())\n"
-                              "    except OSError:\n        pass\ntry:\n    open('/tmp/forged', 'w').write('x')\nexcept OSError:\n    pass",
-    'calls home': "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\nexcept OSError:\n    pass",
-    'forks': 'import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n            os._exit(0)\n    except OSError:\n        pass',
-    'fills the memory': "try:\n    much = [bytearray(1 << 26) for number in range(40)]\nexcept MemoryError:\n    pass",
-    'writes much': "for number in range(200_000):\n    print('x' * 100)",
-    'a name that is code': "theta = sm.Symbol('__import__(\"os\").system(\"touch /tmp/forged\")')",
-    'a script': "_ = check('<script>alert(1)</script>', '<img src=x onerror=alert(1)>')",
-    'walks the frames': "import sys\nframe = sys._getframe()\nwhile frame:\n    frame.f_globals['check'] = frame.f_globals.get('check')\n"
-                        "    frame = frame.f_back",
-    'never ends': 'while True:\n    pass',
+    "replaces the check": "import coursework\ncoursework.check = check = lambda *answers: 'Correct'",
+    "leaves": "import os\nos._exit(0)",
+    "kills itself": "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
+    "equals everything": "class Right:\n    def __eq__(self, other):\n        return True\n    def __hash__(self):\n        return 0\n"
+    "sm.Expr.__eq__ = Right.__eq__",
+    "changes json": 'import json\njson.dumps = json.JSONEncoder.encode = lambda *a, **k: \'{"outcome": "correct"}\'',
+    "reads and writes files": "for place in ('/etc/passwd', '../grades.csv'):\n    try:\n        print(open(place).read())\n"
+    "    except OSError:\n        pass\ntry:\n    open('/tmp/forged', 'w').write('x')\nexcept OSError:\n    pass",
+    "calls home": "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\nexcept OSError:\n    pass",
+    "forks": "import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n            os._exit(0)\n    except OSError:\n        pass",
+    "fills the memory": "try:\n    much = [bytearray(1 << 26) for number in range(40)]\nexcept MemoryError:\n    pass",
+    "writes much": "for number in range(200_000):\n    print('x' * 100)",
+    "a name that is code": 'theta = sm.Symbol(\'__import__("os").system("touch /tmp/forged")\')',
+    "a script": "_ = check('<script>alert(1)</script>', '<img src=x onerror=alert(1)>')",
+    "walks the frames": "import sys\nframe = sys._getframe()\nwhile frame:\n    frame.f_globals['check'] = frame.f_globals.get('check')\n"
+    "    frame = frame.f_back",
+    "never ends": "while True:\n    pass",
 }
 
 
@@ -52,7 +52,8 @@ class _Exercise:
 
     def __init__(self, stems, folder):
         import nbformat
-        sources = [release.read_source(Path(folder) / f'{stem}.ipynb') for stem in stems]
+
+        sources = [release.read_source(Path(folder) / f"{stem}.ipynb") for stem in stems]
         self.questions = {name: question for source in sources for name, question in source.questions.items()}
         self.cells, self.parts, self.solved = [], [], {}
         self.names = {}
@@ -62,18 +63,21 @@ class _Exercise:
             owners = {variable: name for name, variable in checked.items()}
             for number, (cell, original) in enumerate(zip(notebook.cells, source.notebook.cells)):
                 cell = copy.deepcopy(cell)
-                if cell.cell_type == 'code':
+                if cell.cell_type == "code":
                     regions = release.SOLUTION.findall(original.source)
                     answered = [owners[variable] for region in regions for variable in release._bound(region, owners)]
                     if answered:
                         self.parts.append(Part(len(self.cells), list(dict.fromkeys(answered))))
-                        self.solved[len(self.cells)] = release.HIDDEN.sub('', release.SOLUTION.sub(
-                            lambda region: region[1], original.source)).rstrip()
+                        self.solved[len(self.cells)] = release.HIDDEN.sub(
+                            "", release.SOLUTION.sub(lambda region: region[1], original.source)
+                        ).rstrip()
                     self.names.update(_symbols(original.source))
                 self.cells.append(cell)
         for number, cell in enumerate(self.cells):
-            cell['id'] = f'cell-{number}'
-        self.metadata = nbformat.v4.new_notebook(metadata={'kernelspec': release.KERNEL, 'language_info': {'name': 'python'}})
+            cell["id"] = f"cell-{number}"
+        self.metadata = nbformat.v4.new_notebook(
+            metadata={"kernelspec": release.KERNEL, "language_info": {"name": "python"}}
+        )
 
     def notebook(self, cells):
         made = copy.deepcopy(self.metadata)
@@ -85,11 +89,16 @@ def _symbols(source):
     """The variable of each symbol that a cell makes by ``sm.symbols('...')`` or ``me.dynamicsymbols``."""
     found = {}
     for node in ast.parse(source).body:
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and getattr(node.value.func, 'attr', '') in (
-                'symbols', 'dynamicsymbols', 'Symbol') and node.value.args and isinstance(node.value.args[0], ast.Constant):
+        if (
+            isinstance(node, ast.Assign)
+            and isinstance(node.value, ast.Call)
+            and getattr(node.value.func, "attr", "") in ("symbols", "dynamicsymbols", "Symbol")
+            and node.value.args
+            and isinstance(node.value.args[0], ast.Constant)
+        ):
             target = node.targets[0]
-            variables = [part.id for part in getattr(target, 'elts', [target]) if isinstance(part, ast.Name)]
-            found.update(zip(str(node.value.args[0].value).replace(',', ' ').split(), variables))
+            variables = [part.id for part in getattr(target, "elts", [target]) if isinstance(part, ast.Name)]
+            found.update(zip(str(node.value.args[0].value).replace(",", " ").split(), variables))
     return found
 
 
@@ -100,43 +109,43 @@ def code_of(answer, names):
 
     class Code(StrPrinter):
         def _print_Symbol(self, symbol):
-            return names.get(symbol.name) or f'sm.Symbol({symbol.name!r})'
+            return names.get(symbol.name) or f"sm.Symbol({symbol.name!r})"
 
         def _print_Function(self, function):
             name = function.func.__name__
             if isinstance(function, sympy.core.function.AppliedUndef):
                 return names.get(name) or f'sm.Function({name!r})(sm.Symbol("t"))'
-            return f'sm.{name}({self.stringify(function.args, ", ")})'
+            return f"sm.{name}({self.stringify(function.args, ', ')})"
 
         _print_ExpBase = _print_exp = _print_Abs = _print_Function
 
         def _print_Rational(self, number):
-            return f'sm.Rational({number.p}, {number.q})' if number.q != 1 else str(number.p)
+            return f"sm.Rational({number.p}, {number.q})" if number.q != 1 else str(number.p)
 
         def _print_Pow(self, power, rational=False):
             if power.exp == sympy.Rational(1, 2):
-                return f'sm.sqrt({self._print(power.base)})'
-            return f'({self._print(power.base)})**({self._print(power.exp)})'
+                return f"sm.sqrt({self._print(power.base)})"
+            return f"({self._print(power.base)})**({self._print(power.exp)})"
 
         def _print_Pi(self, pi):
-            return 'sm.pi'
+            return "sm.pi"
 
         def _print_ImaginaryUnit(self, unit):
-            return 'sm.I'
+            return "sm.I"
 
         def _print_Exp1(self, base):
-            return 'sm.E'
+            return "sm.E"
 
-    if hasattr(answer, 'tolist') and not isinstance(answer, sympy.MatrixBase):
+    if hasattr(answer, "tolist") and not isinstance(answer, sympy.MatrixBase):
         answer = answer.tolist()
     if isinstance(answer, (str, bool, int, float)):
         return repr(answer)
     if isinstance(answer, (list, tuple)):
         parts = [code_of(part, names) for part in answer]
-        return None if None in parts else f'[{", ".join(parts)}]'
+        return None if None in parts else f"[{', '.join(parts)}]"
     if isinstance(answer, sympy.MatrixBase):
         parts = [code_of(row, names) for row in answer.tolist()]
-        return None if None in parts else f'sm.Matrix([{", ".join(parts)}])'
+        return None if None in parts else f"sm.Matrix([{', '.join(parts)}])"
     if isinstance(answer, sympy.Expr) and not answer.atoms(sympy.Derivative):
         return Code().doprint(answer)
     return None
@@ -144,9 +153,11 @@ def code_of(answer, names):
 
 # --- one answer ---------------------------------------------------------------------------------
 
+
 def _forms(question):
     """The right answer in other forms than its author's."""
     import sympy
+
     answer = question.answer
     yield answer
     if isinstance(answer, (sympy.MatrixBase, sympy.Expr)):
@@ -154,7 +165,7 @@ def _forms(question):
         if answer.free_symbols:
             yield each(lambda entry: entry.rewrite(sympy.exp))
             yield each(sympy.expand)
-        elif question.public.get('tolerance') is not None:
+        elif question.public.get("tolerance") is not None:
             yield each(lambda entry: sympy.N(entry, 9))
         if isinstance(answer, sympy.MatrixBase) and 1 not in answer.shape:
             yield answer.tolist()
@@ -163,8 +174,9 @@ def _forms(question):
 def _slip(question):
     """A wrong answer that no catalogue knows, the same each time."""
     import sympy
+
     answer = question.answer
-    if hasattr(answer, 'tolist') and not isinstance(answer, sympy.MatrixBase):
+    if hasattr(answer, "tolist") and not isinstance(answer, sympy.MatrixBase):
         answer = answer.tolist()
     if isinstance(answer, sympy.MatrixBase):
         changed = sympy.Matrix(answer)
@@ -173,8 +185,11 @@ def _slip(question):
     if isinstance(answer, (sympy.Expr, int, float)) and not isinstance(answer, bool):
         return answer / 3 + sympy.Rational(1, 7)
     if isinstance(answer, (list, tuple)) and answer and isinstance(answer[0], str):
-        options = question.public.get('options') or answer
-        return [next(option for option in options if option != answer[0]) if len(set(options)) > 1 else answer[0], *answer[1:]]
+        options = question.public.get("options") or answer
+        return [
+            next(option for option in options if option != answer[0]) if len(set(options)) > 1 else answer[0],
+            *answer[1:],
+        ]
     if isinstance(answer, (list, tuple)) and answer and isinstance(answer[0], bool):
         return [not answer[0], *answer[1:]]
     return None
@@ -183,7 +198,8 @@ def _slip(question):
 def _expected(question, answer):
     """What is to come of an answer: its outcome and note."""
     from .marking import about, judge
-    reply, _ = judge(question.name, about(question), {'outcome': 'recorded', 'plain': question.to_plain(answer)})
+
+    reply, _ = judge(question.name, about(question), {"outcome": "recorded", "plain": question.to_plain(answer)})
     return reply.outcome, reply.note
 
 
@@ -206,11 +222,12 @@ class _Answers:
         for answer in answers:
             code = code_of(answer, exercise.names) if not callable(answer) else None
             if code is not None and len(code) < 1500:
-                found.append((f'{question.variable} = {code}', _expected(question, answer)))
+                found.append((f"{question.variable} = {code}", _expected(question, answer)))
         return found
 
 
 # --- one notebook -------------------------------------------------------------------------------
+
 
 class _Student:
     """Works through the exercise and hands it in."""
@@ -218,7 +235,7 @@ class _Student:
     def __init__(self, exercise, answers, dice):
         self.exercise, self.answers, self.dice = exercise, answers, dice
         self.cells = copy.deepcopy(exercise.cells)
-        self.expected = {name: ['not attempted', ''] for name in exercise.questions}
+        self.expected = {name: ["not attempted", ""] for name in exercise.questions}
         self.did = []
         skill = dice.betavariate(4, 1.6)
         for part in exercise.parts:
@@ -227,14 +244,14 @@ class _Student:
     def answer(self, part, skill):
         chance = self.dice.random()
         if chance > 0.94 and len(part.questions) == 1:
-            return   # left open
+            return  # left open
         if chance < skill or len(part.questions) > 1 or not self.answers.wrong[part.questions[0]]:
             self.solve(part)
             return
         name = part.questions[0]
         options = self.answers.wrong[name]
         # A class has its favourite mistakes.
-        code, outcome = self.dice.choices(options, [2.0 ** -order for order in range(len(options))])[0]
+        code, outcome = self.dice.choices(options, [2.0**-order for order in range(len(options))])[0]
         self.put(part, code, {name: list(outcome)})
 
     def solve(self, part):
@@ -245,73 +262,88 @@ class _Student:
             self.put(part, code, {name: list(outcome)})
         else:
             self.cells[part.cell].source = self.exercise.solved[part.cell]
-            self.expected.update({name: ['correct', ''] for name in part.questions})
+            self.expected.update({name: ["correct", ""] for name in part.questions})
 
     def put(self, part, code, outcomes):
         variable = self.exercise.questions[part.questions[0]].variable
-        lines = self.cells[part.cell].source.split('\n')
-        blank = next((order for order, line in enumerate(lines) if line.startswith((f'{variable} = ...', f'def {variable}('))), None)
+        lines = self.cells[part.cell].source.split("\n")
+        blank = next(
+            (order for order, line in enumerate(lines) if line.startswith((f"{variable} = ...", f"def {variable}("))),
+            None,
+        )
         if blank is None:
             self.solve(part)
             return
-        self.cells[part.cell].source = '\n'.join([*lines[:blank], code, *(line for line in lines[blank + 1:] if '...' not in line)])
+        self.cells[part.cell].source = "\n".join(
+            [*lines[:blank], code, *(line for line in lines[blank + 1 :] if "..." not in line)]
+        )
         self.expected.update(outcomes)
 
     # -- what happens to notebooks
 
     def lose_metadata(self):
         for cell in self.cells:
-            cell.metadata.pop('nbgrader', None)
+            cell.metadata.pop("nbgrader", None)
 
     def run_out_of_order(self):
         """Move the first code cell to the end; it ran first all the same."""
-        first = next(order for order, cell in enumerate(self.cells) if cell.cell_type == 'code')
+        first = next(order for order, cell in enumerate(self.cells) if cell.cell_type == "code")
         moved = self.cells.pop(first)
         self.cells.append(moved)
         moved.execution_count = 1
-        for count, cell in enumerate((cell for cell in self.cells[:-1] if cell.cell_type == 'code'), 2):
+        for count, cell in enumerate((cell for cell in self.cells[:-1] if cell.cell_type == "code"), 2):
             cell.execution_count = count
 
     def break_a_cell(self):
         part = self.dice.choice([part for part in self.exercise.parts if len(part.questions) == 1])
-        self.cells[part.cell].source += '\nprint((unfinished'
-        self.expected[part.questions[0]] = ['not attempted', 'missing']
+        self.cells[part.cell].source += "\nprint((unfinished"
+        self.expected[part.questions[0]] = ["not attempted", "missing"]
         return part
 
     def check_twice(self):
         """Copy a cell and its check to the end: the last answer counts, and it is the same."""
         part = self.dice.choice(self.exercise.parts)
-        self.cells += copy.deepcopy(self.cells[part.cell:part.cell + 2])
+        self.cells += copy.deepcopy(self.cells[part.cell : part.cell + 2])
 
     def join_cells(self):
         """Put an answer and its check into one cell."""
         for part in sorted(self.exercise.parts, reverse=True):
-            if part.cell + 1 < len(self.cells) and 'check(' in self.cells[part.cell + 1].source:
-                self.cells[part.cell].source += '\n' + self.cells.pop(part.cell + 1).source
+            if part.cell + 1 < len(self.cells) and "check(" in self.cells[part.cell + 1].source:
+                self.cells[part.cell].source += "\n" + self.cells.pop(part.cell + 1).source
 
     def add_cell(self, source):
         import nbformat
+
         place = self.dice.choice([part.cell for part in self.exercise.parts])
         cell = nbformat.v4.new_code_cell(source)
-        cell['id'] = 'cell-added'
+        cell["id"] = "cell-added"
         self.cells.insert(place, cell)
 
     def notebook(self):
         import nbformat
+
         for number, cell in enumerate(self.cells):
-            cell['id'] = f'cell-{number}'
+            cell["id"] = f"cell-{number}"
         return nbformat.writes(self.exercise.notebook(self.cells))
 
 
 HABITS = (
-    ('without metadata', 0.08, _Student.lose_metadata), ('out of order', 0.04, _Student.run_out_of_order),
-    ('a broken cell', 0.05, _Student.break_a_cell), ('checked twice', 0.06, _Student.check_twice),
-    ('joined cells', 0.05, _Student.join_cells),
-    ('prints', 0.05, lambda student: student.add_cell("import warnings\nwarnings.warn('careful')\nprint(A_C_N) if 'A_C_N' in globals() else None")),
+    ("without metadata", 0.08, _Student.lose_metadata),
+    ("out of order", 0.04, _Student.run_out_of_order),
+    ("a broken cell", 0.05, _Student.break_a_cell),
+    ("checked twice", 0.06, _Student.check_twice),
+    ("joined cells", 0.05, _Student.join_cells),
+    (
+        "prints",
+        0.05,
+        lambda student: student.add_cell(
+            "import warnings\nwarnings.warn('careful')\nprint(A_C_N) if 'A_C_N' in globals() else None"
+        ),
+    ),
 )
 
 
-def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout='folders'):
+def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="folders"):
     """Write a class to a folder, and give where its submissions are.
 
     Parameters
@@ -326,8 +358,10 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout='
         How the submissions are handed out.
     """
     folder = Path(solutions or release.SOURCES)
-    stems = list(notebooks) or [sorted(path.stem for path in folder.glob('*.ipynb') if path.stem != release.CHAPTERS)[0]]
-    dice = random.Random(f'class {seed}')
+    stems = list(notebooks) or [
+        sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != release.CHAPTERS)[0]
+    ]
+    dice = random.Random(f"class {seed}")
     exercise = _Exercise(stems, folder)
     answers = _Answers(exercise, dice)
     out = Path(out)
@@ -335,9 +369,14 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout='
     files, expected = {}, {}
     hostile = dict(zip(dice.sample(range(students), min(students // 14 or 1, len(HOSTILE))), HOSTILE))
     left = [number for number in range(students) if number not in hostile]
-    broken = dict(zip(dice.sample(left, min(students // 50, 4)), ('half a file', 'two entries of one name', 'empty', 'no notebook')))
+    broken = dict(
+        zip(
+            dice.sample(left, min(students // 50, 4)),
+            ("half a file", "two entries of one name", "empty", "no notebook"),
+        )
+    )
     for number in range(students):
-        student = f'student-{number + 1:03}'
+        student = f"student-{number + 1:03}"
         work = _Student(exercise, answers, dice)
         for name, share, habit in HABITS:
             if dice.random() < share and number not in hostile:
@@ -346,47 +385,53 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout='
                 break
         if number in hostile:
             work.add_cell(HOSTILE[hostile[number]])
-            work.did.append(f'hostile: {hostile[number]}')
-        data = work.notebook().encode('utf8')
+            work.did.append(f"hostile: {hostile[number]}")
+        data = work.notebook().encode("utf8")
         if number in broken:
-            data = {'half a file': data[:len(data) // 2], 'two entries of one name': data.replace(b'{', b'{"cells": [], ', 1),
-                    'empty': b'', 'no notebook': b'PK\x03\x04 a text in another format'}[broken[number]]
-            work.did.append(f'refused: {broken[number]}')
+            data = {
+                "half a file": data[: len(data) // 2],
+                "two entries of one name": data.replace(b"{", b'{"cells": [], ', 1),
+                "empty": b"",
+                "no notebook": b"PK\x03\x04 a text in another format",
+            }[broken[number]]
+            work.did.append(f"refused: {broken[number]}")
         files[student] = data
-        expected[student] = {'did': work.did, 'questions': work.expected}
-    (out / 'expected.json').write_text(json.dumps(expected, indent=1) + '\n', 'utf8')
-    (out / 'gradebook.csv').write_bytes(_gradebook(layout, list(files), len(stems) and sum(
-        question.worth for question in exercise.questions.values())))
-    return LAYOUTS[layout](out, files, '-and-'.join(stems))
+        expected[student] = {"did": work.did, "questions": work.expected}
+    (out / "expected.json").write_text(json.dumps(expected, indent=1) + "\n", "utf8")
+    (out / "gradebook.csv").write_bytes(
+        _gradebook(layout, list(files), len(stems) and sum(question.worth for question in exercise.questions.values()))
+    )
+    return LAYOUTS[layout](out, files, "-and-".join(stems))
 
 
 # --- how it is handed out -----------------------------------------------------------------------
 
+
 def _folders(out, files, name):
-    place = out / 'submissions'
+    place = out / "submissions"
     for student, data in files.items():
         folder = place / student
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / f'{name}.ipynb').write_bytes(data)
-    if 'student-001' in files and not (place / 'student-000').exists():
-        (place / 'student-000').mkdir()
-        os.symlink('../student-001', place / 'student-000' / 'copied')
+        (folder / f"{name}.ipynb").write_bytes(data)
+    if "student-001" in files and not (place / "student-000").exists():
+        (place / "student-000").mkdir()
+        os.symlink("../student-001", place / "student-000" / "copied")
     return place
 
 
 def _nbgrader(out, files, name):
-    place = out / 'submitted'
+    place = out / "submitted"
     for student, data in files.items():
         folder = place / student / name
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / f'{name}.ipynb').write_bytes(data)
+        (folder / f"{name}.ipynb").write_bytes(data)
     return place
 
 
 def _zip(out, entries):
-    place = out / 'submissions.zip'
+    place = out / "submissions.zip"
     data = io.BytesIO()
-    with zipfile.ZipFile(data, 'w', zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for entry, content in entries.items():
             info = zipfile.ZipInfo(entry, (2026, 11, 21, 20, 1, 0))
             info.compress_type = zipfile.ZIP_DEFLATED
@@ -401,40 +446,70 @@ def _numbers(files):
 
 
 def _canvas(out, files, name):
-    return _zip(out, {f'{student.replace("-", "")}_{"LATE_" if number % 20 == 0 else ""}{number}_{800_000 + number}_{name}.ipynb': data
-                      for student, data, number in _numbers(files)})
+    return _zip(
+        out,
+        {
+            f"{student.replace('-', '')}_{'LATE_' if number % 20 == 0 else ''}{number}_{800_000 + number}_{name}.ipynb": data
+            for student, data, number in _numbers(files)
+        },
+    )
 
 
 def _moodle(out, files, name):
-    return _zip(out, {f'{student.title().replace("-", " ")}_{number}_assignsubmission_file_/{name}.ipynb': data
-                      for student, data, number in _numbers(files)})
+    return _zip(
+        out,
+        {
+            f"{student.title().replace('-', ' ')}_{number}_assignsubmission_file_/{name}.ipynb": data
+            for student, data, number in _numbers(files)
+        },
+    )
 
 
 def _brightspace(out, files, name):
-    entries = {'index.html': b'<html></html>'}
+    entries = {"index.html": b"<html></html>"}
     for student, data, number in _numbers(files):
         handed_in = datetime.datetime(2026, 11, 21, 20, number % 60)
-        when = f'{handed_in:%b %d, %Y} {handed_in.hour - 12}{handed_in.minute:02} PM'
-        entries[f'{number}-4711 - {student.title().replace("-", " ")} - {when}/{name}.ipynb'] = data
+        when = f"{handed_in:%b %d, %Y} {handed_in.hour - 12}{handed_in.minute:02} PM"
+        entries[f"{number}-4711 - {student.title().replace('-', ' ')} - {when}/{name}.ipynb"] = data
     return _zip(out, entries)
 
 
-LAYOUTS = {'folders': _folders, 'canvas': _canvas, 'moodle': _moodle, 'brightspace': _brightspace, 'nbgrader': _nbgrader}
+LAYOUTS = {
+    "folders": _folders,
+    "canvas": _canvas,
+    "moodle": _moodle,
+    "brightspace": _brightspace,
+    "nbgrader": _nbgrader,
+}
 
 
 def _gradebook(layout, students, worth):
     """The gradebook that the teacher would export, with a student more who handed in nothing."""
-    students = [*students, f'student-{len(students) + 1:03}']
-    numbered = [(student, student.title().replace('-', ' '), 100_000 + number) for number, student in enumerate(students, 1)]
-    if layout == 'moodle':
-        lines = ['Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed","Feedback comments"']
-        lines += [f'"Participant {number}","{name}",{student}@example.org,"Submitted for grading",,{worth}.00,Yes,'
-                  for student, name, number in numbered]
-        return '\ufeff'.encode() + '\n'.join([*lines, '']).encode()
-    if layout == 'brightspace':
-        lines = [f'OrgDefinedId,Username,Last Name,First Name,Exercises Points Grade <Numeric MaxPoints:{worth}>,End-of-Line Indicator']
-        lines += [f'#{number},#{student},{name.split()[1]},{name.split()[0]},,#' for student, name, number in numbered]
-        return '\r\n'.join([*lines, '']).encode()
-    lines = ['Student,ID,SIS User ID,SIS Login ID,Section,Exercises (4711),Final Score', f'    Points Possible,,,,,{worth},(read only)']
-    lines += [f'"{name.split()[1]}, {name.split()[0]}",{number},S{number},{student},Section 1,,' for student, name, number in numbered]
-    return '\r\n'.join([*lines, '']).encode()
+    students = [*students, f"student-{len(students) + 1:03}"]
+    numbered = [
+        (student, student.title().replace("-", " "), 100_000 + number) for number, student in enumerate(students, 1)
+    ]
+    if layout == "moodle":
+        lines = [
+            'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed","Feedback comments"'
+        ]
+        lines += [
+            f'"Participant {number}","{name}",{student}@example.org,"Submitted for grading",,{worth}.00,Yes,'
+            for student, name, number in numbered
+        ]
+        return "\ufeff".encode() + "\n".join([*lines, ""]).encode()
+    if layout == "brightspace":
+        lines = [
+            f"OrgDefinedId,Username,Last Name,First Name,Exercises Points Grade <Numeric MaxPoints:{worth}>,End-of-Line Indicator"
+        ]
+        lines += [f"#{number},#{student},{name.split()[1]},{name.split()[0]},,#" for student, name, number in numbered]
+        return "\r\n".join([*lines, ""]).encode()
+    lines = [
+        "Student,ID,SIS User ID,SIS Login ID,Section,Exercises (4711),Final Score",
+        f"    Points Possible,,,,,{worth},(read only)",
+    ]
+    lines += [
+        f'"{name.split()[1]}, {name.split()[0]}",{number},S{number},{student},Section 1,,'
+        for student, name, number in numbered
+    ]
+    return "\r\n".join([*lines, ""]).encode()

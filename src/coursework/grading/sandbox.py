@@ -167,7 +167,8 @@ class Sandbox:
                 "This machine does not keep student code apart well enough, so none is run:\n"
                 + "\n".join(f"- {line}" for line in lacking)
                 + "\nTo run it all the same, on a machine that you can afford to lose, say "
-                "--allow-weak-isolation; every result will record it.")
+                "--allow-weak-isolation; every result will record it."
+            )
 
     def target(self, stack):
         """What the isolation is tried on: a file, two ports and a local socket, all of our own."""
@@ -187,7 +188,10 @@ class Sandbox:
         for listener in (tcp, local):
             listener.listen(64)
         return {
-            "files": [str(file)], "tcp": tcp.getsockname()[1], "udp": udp.getsockname()[1], "local": name,
+            "files": [str(file)],
+            "tcp": tcp.getsockname()[1],
+            "udp": udp.getsockname()[1],
+            "local": name,
             "limits": self.limits.for_child(),
         }
 
@@ -200,17 +204,42 @@ class Sandbox:
             with other:
                 handles = (other.fileno(), processes)
                 self.process = subprocess.Popen(
-                    [*command, sys.executable, "-s", "-P", "-B", "-X", "utf8", "-c",
-                     "from coursework.grading.warm_parent import main; main()", *map(str, handles)],
-                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self.errors, cwd="/",
-                    pass_fds=handles, start_new_session=True, env={
-                        "LANG": "C.UTF-8", "TZ": "UTC", "PYTHONHASHSEED": "0", "MPLBACKEND": "Agg",
-                        "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"})
+                    [
+                        *command,
+                        sys.executable,
+                        "-s",
+                        "-P",
+                        "-B",
+                        "-X",
+                        "utf8",
+                        "-c",
+                        "from coursework.grading.warm_parent import main; main()",
+                        *map(str, handles),
+                    ],
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=self.errors,
+                    cwd="/",
+                    pass_fds=handles,
+                    start_new_session=True,
+                    env={
+                        "LANG": "C.UTF-8",
+                        "TZ": "UTC",
+                        "PYTHONHASHSEED": "0",
+                        "MPLBACKEND": "Agg",
+                        "OPENBLAS_NUM_THREADS": "1",
+                        "OMP_NUM_THREADS": "1",
+                        "MKL_NUM_THREADS": "1",
+                    },
+                )
         finally:
             os.close(processes)
         start = {
-            "without": sorted(self.without), "target": target, "base": self.base,
-            "namespaces made by": made_by, "why no namespaces": why_not,
+            "without": sorted(self.without),
+            "target": target,
+            "base": self.base,
+            "namespaces made by": made_by,
+            "why no namespaces": why_not,
             # Root gives the code to a user that nobody else is; its limit of threads counts only these.
             "user": 1_900_000_000 + random.SystemRandom().randrange(10**8),
             "threads in use": 0 if os.geteuid() == 0 else threads_of(os.geteuid()),
@@ -324,7 +353,8 @@ class _Run:
         number = len(self.job["cells"])
         cells, answers, finished = self.in_order(list(range(number)))
         if any(has_not(answers, question) for question in self.questions) and any(
-                cell.get("error", "").startswith("NameError") for cell in cells.values()):
+            cell.get("error", "").startswith("NameError") for cell in cells.values()
+        ):
             self.try_order_of_execution(answers)
         if self.damaged:
             self.notes.append("wrote into the records")
@@ -404,14 +434,16 @@ class _Once:
         self.limits = run.limits
         self.notebook_deadline = run.deadline
         job = run.job
-        self.job = json.dumps({
-            "cells": [cell["source"] for cell in job["cells"]],
-            "order": order,
-            "skip": skip,
-            "seed": job.get("seed", 0),
-            "variables": {q: about["variable"] for q, about in job["questions"].items() if about.get("variable")},
-            "calls": {q: about["calls"] for q, about in job["questions"].items() if about.get("calls")},
-        }).encode()
+        self.job = json.dumps(
+            {
+                "cells": [cell["source"] for cell in job["cells"]],
+                "order": order,
+                "skip": skip,
+                "seed": job.get("seed", 0),
+                "variables": {q: about["variable"] for q, about in job["questions"].items() if about.get("variable")},
+                "calls": {q: about["calls"] for q, about in job["questions"].items() if about.get("calls")},
+            }
+        ).encode()
         self.records = records.Records(len(job["cells"]))
         self.steps = []  # begun and not ended, outermost first
         self.begun = []
@@ -506,8 +538,7 @@ class _Once:
                     self.deadlines[-1] += now - begun
             if record["end"][0] == "cell":
                 index = record["end"][1]
-                self.cells[index] = {
-                    name: record[name] for name in ("outcome", "error", "line") if name in record}
+                self.cells[index] = {name: record[name] for name in ("outcome", "error", "line") if name in record}
                 if "threads" in record:
                     self.left_threads.append(index)
         elif "answer" in record:
@@ -516,8 +547,11 @@ class _Once:
                 if len(self.unknown) < MOST_UNKNOWN:
                     self.unknown[question] = True
                 return
-            answer = {"outcome": "recorded", "plain": record["plain"]} if "plain" in record else {
-                "outcome": "unreadable", "why": record["unreadable"]}
+            answer = (
+                {"outcome": "recorded", "plain": record["plain"]}
+                if "plain" in record
+                else {"outcome": "unreadable", "why": record["unreadable"]}
+            )
             answer |= {"from": record["from"], "cell": record["cell"]}
             if not has_not({question: answer}, question) or has_not(self.answers, question):
                 self.answers[question] = answer
@@ -529,8 +563,9 @@ class _Once:
         """Name how the child ended."""
         how = ended["ended"]
         if how.get("code") == NOT_CONFINED and not self.records.received:
-            raise WeakIsolation("A notebook's process could not be confined, so it did not run: "
-                                + self.sandbox.last_error())
+            raise WeakIsolation(
+                "A notebook's process could not be confined, so it did not run: " + self.sandbox.last_error()
+            )
         if self.finished:
             return
         outcome, error = "exited", f"The process was left with code {how.get('code')}."

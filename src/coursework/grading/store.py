@@ -30,73 +30,77 @@ class Store:
 
     def __init__(self, folder):
         self.folder = Path(folder)
-        self.records = self.folder / 'records'
+        self.records = self.folder / "records"
 
     @contextlib.contextmanager
     def locked(self):
         """Keep other runs away; what a run that was killed left half done is removed."""
         self.records.mkdir(parents=True, exist_ok=True)
-        with open(self.folder / 'lock', 'w') as lock:
+        with open(self.folder / "lock", "w") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
-                raise InUse(f'Another run is at work in {self.folder}.') from None
-            for path in self.folder.rglob('.half-*'):
+                raise InUse(f"Another run is at work in {self.folder}.") from None
+            for path in self.folder.rglob(".half-*"):
                 path.unlink()
             yield
 
     def place(self, student, assignment):
-        return self.records / file_name(student) / f'{file_name(assignment)}.json'
+        return self.records / file_name(student) / f"{file_name(assignment)}.json"
 
     def read(self, student, assignment):
         """A student's record, or ``None``."""
         try:
-            return json.loads(self.place(student, assignment).read_text('utf8'))
+            return json.loads(self.place(student, assignment).read_text("utf8"))
         except FileNotFoundError:
             return None
 
     def save(self, record):
-        write(self.place(record['student'], record['assignment']), as_text(record))
+        write(self.place(record["student"], record["assignment"]), as_text(record))
 
     def all(self):
         """All records, by student and assignment, one at a time."""
-        found = sorted(self.records.glob('*/*.json'), key=lambda path: (path.parent.name, path.name))
+        found = sorted(self.records.glob("*/*.json"), key=lambda path: (path.parent.name, path.name))
         for path in found:
-            yield json.loads(path.read_text('utf8'))
+            yield json.loads(path.read_text("utf8"))
 
     def log(self, line):
         """Write a line of what happened, with its time; nothing that is graded depends on it."""
         import datetime
-        now = datetime.datetime.now().isoformat(' ', 'milliseconds')
-        with open(self.folder / 'run.log', 'a', encoding='utf8') as file:
-            file.write(f'{now}  {line}\n')
+
+        now = datetime.datetime.now().isoformat(" ", "milliseconds")
+        with open(self.folder / "run.log", "a", encoding="utf8") as file:
+            file.write(f"{now}  {line}\n")
 
 
 def as_text(value):
     """JSON with a line for each entry of the outermost list or object: short, and still to be read."""
     if isinstance(value, dict):
-        lines = [f'{json.dumps(name, ensure_ascii=False)}: {json.dumps(inner, ensure_ascii=False)}' for name, inner in value.items()]
-        return '{\n' + ',\n'.join(lines) + '\n}\n'
-    return '[\n' + ',\n'.join(json.dumps(inner, ensure_ascii=False) for inner in value) + '\n]\n'
+        lines = [
+            f"{json.dumps(name, ensure_ascii=False)}: {json.dumps(inner, ensure_ascii=False)}"
+            for name, inner in value.items()
+        ]
+        return "{\n" + ",\n".join(lines) + "\n}\n"
+    return "[\n" + ",\n".join(json.dumps(inner, ensure_ascii=False) for inner in value) + "\n]\n"
 
 
 def file_name(name):
     """A name for a file that a student's name cannot lead astray; different names stay different."""
-    plain = re.sub(r'[^A-Za-z0-9._-]+', '-', name).strip('.-')[:60]
+    plain = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip(".-")[:60]
     # The letter's case counts too: some file systems do not tell a from A. And what looks like a name with a
     # digest gets one as well, or somebody could call himself what another is called here.
-    if plain and plain == name == name.lower() and not re.search(r'-[0-9a-f]{8}$', name):
+    if plain and plain == name == name.lower() and not re.search(r"-[0-9a-f]{8}$", name):
         return plain
-    return f'{plain.lower() or "student"}-{hashlib.sha256(name.encode("utf8", "surrogatepass")).hexdigest()[:8]}'
+    return f"{plain.lower() or 'student'}-{hashlib.sha256(name.encode('utf8', 'surrogatepass')).hexdigest()[:8]}"
 
 
 def write(path, text, lasting=True):
     """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    half = path.with_name(f'.half-{secrets.token_hex(8)}')
-    with open(half, 'wb') as file:
-        file.write(text.encode('utf8', 'backslashreplace') if isinstance(text, str) else text)
+    half = path.with_name(f".half-{secrets.token_hex(8)}")
+    with open(half, "wb") as file:
+        file.write(text.encode("utf8", "backslashreplace") if isinstance(text, str) else text)
         if lasting:
             file.flush()
             os.fsync(file.fileno())

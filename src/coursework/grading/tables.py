@@ -4,7 +4,7 @@ import csv
 import io
 import unicodedata
 
-STARTS_A_FORMULA = ('=', '+', '-', '@', '\t', '\r')
+STARTS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def as_cell(value):
@@ -15,27 +15,27 @@ def as_cell(value):
     """
     if isinstance(value, (int, float)):
         return number(value)
-    text = ' '.join(readable(str(value)).split())
+    text = " ".join(readable(str(value)).split())
     # Also what looks the same to some spreadsheets: the wide forms of these signs.
-    starts = unicodedata.normalize('NFKC', text[:1])
+    starts = unicodedata.normalize("NFKC", text[:1])
     return f"'{text}" if starts.startswith(STARTS_A_FORMULA) or str(value).startswith(STARTS_A_FORMULA) else text
 
 
 def as_written(cell):
     """The text that :func:`as_cell` marked."""
     plain = cell.removeprefix("'")
-    return plain if plain != cell and unicodedata.normalize('NFKC', plain[:1]).startswith(STARTS_A_FORMULA) else cell
+    return plain if plain != cell and unicodedata.normalize("NFKC", plain[:1]).startswith(STARTS_A_FORMULA) else cell
 
 
 def number(value):
     """Points without needless zeros."""
-    return f'{value:.4f}'.rstrip('0').rstrip('.') if value != int(value) else str(int(value))
+    return f"{value:.4f}".rstrip("0").rstrip(".") if value != int(value) else str(int(value))
 
 
 def table(header, rows):
     """A table as CSV, every text in quotation marks."""
     file = io.StringIO()
-    writer = csv.writer(file, quoting=csv.QUOTE_ALL, lineterminator='\r\n')
+    writer = csv.writer(file, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     writer.writerow(header)
     for row in rows:
         writer.writerow([as_cell(value) for value in row])
@@ -44,6 +44,10 @@ def table(header, rows):
 
 def readable(text, most=2_000):
     """Text that shows what it holds: without signs that are not seen, or that turn the rest round."""
-    shown = ''.join(sign if sign in '\n\t' or unicodedata.category(sign) not in ('Cc', 'Cf', 'Cs', 'Co', 'Cn') else '\N{REPLACEMENT CHARACTER}'
-                    for sign in text[:most])
-    return shown + ('…' if len(text) > most else '')
+    shown = "".join(
+        sign
+        if sign in "\n\t" or unicodedata.category(sign) not in ("Cc", "Cf", "Cs", "Co", "Cn")
+        else "\N{REPLACEMENT CHARACTER}"
+        for sign in text[:most]
+    )
+    return shown + ("…" if len(text) > most else "")

@@ -152,8 +152,15 @@ class WarmParent:
 
     def confine(self, layers, limits, folder):
         isolation.confine(
-            layers, limits=limits, readable=self.readable, scratch=folder, own_scratch=self.own_scratch,
-            user=self.user, memory_in_use=self.memory_in_use, threads_in_use=self.threads_in_use)
+            layers,
+            limits=limits,
+            readable=self.readable,
+            scratch=folder,
+            own_scratch=self.own_scratch,
+            user=self.user,
+            memory_in_use=self.memory_in_use,
+            threads_in_use=self.threads_in_use,
+        )
 
     def end_all(self, child):
         """Kill the child and everything it may have left behind. The only one who reaps."""
@@ -218,8 +225,10 @@ class WarmParent:
             for module in (os, sympy):
                 Path(module.__file__).read_bytes()
         except OSError as error:
-            problems.append(f"the isolated process cannot read Python's own libraries ({error}); "
-                            "start grading as the user who owns them")
+            problems.append(
+                f"the isolated process cannot read Python's own libraries ({error}); "
+                "start grading as the user who owns them"
+            )
         try:
             Path("trial").write_bytes(b"x" * 100)
         except OSError as error:
@@ -249,8 +258,12 @@ class WarmParent:
         except IsolationError as error:
             not_stopped = [f"the layers do not work together: {error}"]
         scratch.remove_folder(outside)
-        return {"layers": layers, "not stopped": not_stopped, "landlock version": isolation.landlock_version(),
-                "scratch in memory": self.own_scratch}
+        return {
+            "layers": layers,
+            "not stopped": not_stopped,
+            "landlock version": isolation.landlock_version(),
+            "scratch in memory": self.own_scratch,
+        }
 
     def why_not(self, layer, target):
         if layer in self.off:

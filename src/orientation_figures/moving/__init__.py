@@ -2,14 +2,23 @@
 
 ``orientation`` does not load this package, which needs anywidget.
 """
+
 from .explorer import SequenceExplorer
 from .figure import MovingFigure
 from .gimbal import GimbalFigure
 from .motion import MotionFigure
+from .nine_numbers import NineNumbersFigure
 from .quaternion import QuaternionFigure
 from .successive import SuccessiveFigure
-from .nine_numbers import NineNumbersFigure
 from .triad import TriadFigure
 
-__all__ = ['GimbalFigure', 'MotionFigure', 'MovingFigure', 'NineNumbersFigure', 'QuaternionFigure', 'SequenceExplorer',
-           'SuccessiveFigure', 'TriadFigure']
+__all__ = [
+    "GimbalFigure",
+    "MotionFigure",
+    "MovingFigure",
+    "NineNumbersFigure",
+    "QuaternionFigure",
+    "SequenceExplorer",
+    "SuccessiveFigure",
+    "TriadFigure",
+]

@@ -3,33 +3,34 @@
 Pages opened from disk cannot import modules, and anywidget wants one module for each figure. Both come
 from the same files.
 """
+
 import re
 from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
-SHARED = ('mathematics', 'glyphs', 'shared')
-IMPORT = re.compile(r'^import \{([^}]*)\} from .*;\n', re.MULTILINE)
-EXPORT = re.compile(r'^export (?=(?:async function|function|class|const) (\w+))', re.MULTILINE)
-COMMENT = re.compile(r'^\s*//.*\n|^ +', re.MULTILINE)
+SHARED = ("mathematics", "glyphs", "shared")
+IMPORT = re.compile(r"^import \{([^}]*)\} from .*;\n", re.MULTILINE)
+EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
+COMMENT = re.compile(r"^\s*//.*\n|^ +", re.MULTILINE)
 
 
 @cache
 def source(name):
     """Return the text of a module without comments and indentation, which only weigh."""
-    return COMMENT.sub('', (FOLDER / 'js' / f'{name}.js').read_text('utf8'))
+    return COMMENT.sub("", (FOLDER / "js" / f"{name}.js").read_text("utf8"))
 
 
 def body(name):
     """Return a module's text without imports and exports, for a scope where the names are known."""
-    return EXPORT.sub('', IMPORT.sub('', source(name)))
+    return EXPORT.sub("", IMPORT.sub("", source(name)))
 
 
 def esm(name):
     """Return the figure ``name`` as one module that imports nothing, as anywidget takes it."""
     # The figure has a scope of its own, where it may use a name that the shared modules have.
-    figure = f'const render = (() => {{\n{body(name)}return render;\n}})();\n'
-    return ''.join(map(body, SHARED)) + figure + 'export default { render };\n'
+    figure = f"const render = (() => {{\n{body(name)}return render;\n}})();\n"
+    return "".join(map(body, SHARED)) + figure + "export default { render };\n"
 
 
 def shared_script():
@@ -40,10 +41,10 @@ def shared_script():
 
 def script(name):
     """Return the classic script that brings the figures of one kind to life."""
-    names = ', '.join(group.strip().rstrip(',') for group in IMPORT.findall(source(name)))
+    names = ", ".join(group.strip().rstrip(",") for group in IMPORT.findall(source(name)))
     return f"(() => {{\nconst {{ {names} }} = orientation;\n{body(name)}orientation.start('{name}', render);\n}})();\n"
 
 
 def style():
     """Return the style sheet of the controls; that of the drawings comes with each still."""
-    return (FOLDER / 'moving.css').read_text('utf8')
+    return (FOLDER / "moving.css").read_text("utf8")

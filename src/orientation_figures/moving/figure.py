@@ -1,4 +1,5 @@
 """What every moving figure is: a widget in Jupyter, a still on paper, and the state that both show."""
+
 import json
 from difflib import get_close_matches
 from html import escape
@@ -25,18 +26,18 @@ class MovingFigure(anywidget.AnyWidget):
     in pixels, beside and below its controls, which a page keeps free so that nothing moves.
     """
 
-    kind = ''
+    kind = ""
     sheet = (-180, -160, 180, 160)
     room = (0, 0)
 
     _esm = traitlets.Unicode().tag(sync=True)
     _css = traitlets.Unicode().tag(sync=True)
 
-    @traitlets.default('_esm')
+    @traitlets.default("_esm")
     def _default_esm(self):
         return bundle.esm(self.kind)
 
-    @traitlets.default('_css')
+    @traitlets.default("_css")
     def _default_css(self):
         return STYLE + bundle.style()
 
@@ -48,20 +49,20 @@ class MovingFigure(anywidget.AnyWidget):
 
     def __setattr__(self, name, value):
         # The same once it is made: a misspelt name would become an attribute that nothing shows.
-        if not name.startswith('_') and not hasattr(type(self), name):
+        if not name.startswith("_") and not hasattr(type(self), name):
             raise AttributeError(self._without(name))
         super().__setattr__(name, value)
 
     def _without(self, name):
         """Return the message for a name that cannot be set, with the one that was probably meant."""
         names = sorted(self.trait_names(state=True))
-        near = ''.join(f' (did you mean {close}?)' for close in get_close_matches(name, names, 1))
-        return f'{type(self).__name__} has no {name}{near}; what can be set is {", ".join(names)}'
+        near = "".join(f" (did you mean {close}?)" for close in get_close_matches(name, names, 1))
+        return f"{type(self).__name__} has no {name}{near}; what can be set is {', '.join(names)}"
 
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
         # Imported only now: a still needs NumPy and Matplotlib, the figure itself does not.
-        return import_module(f'.stills.{self.kind}', __package__).drawing(self)
+        return import_module(f".stills.{self.kind}", __package__).drawing(self)
 
     def state(self):
         """Return the attributes that the figure shows, by their names."""
@@ -70,27 +71,29 @@ class MovingFigure(anywidget.AnyWidget):
     def still(self):
         """Return the HTML for pages without a kernel: the still, and the state to start from."""
         svg = svg_on(self.sheet, self.drawing())
-        state = escape(json.dumps(self.state(), separators=(',', ':')), quote=False).replace("'", '&#39;')
-        return (f'<figure class="orientation-figure moving" data-figure="{self.kind}" '
-                f'style="--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px" data-state=\'{state}\'>'
-                f'<style>{STYLE}</style><div class="still">{svg}</div></figure>')
+        state = escape(json.dumps(self.state(), separators=(",", ":")), quote=False).replace("'", "&#39;")
+        return (
+            f'<figure class="orientation-figure moving" data-figure="{self.kind}" '
+            f"style=\"--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px\" data-state='{state}'>"
+            f'<style>{STYLE}</style><div class="still">{svg}</div></figure>'
+        )
 
     def _repr_mimebundle_(self, **kwargs):
         data, metadata = super()._repr_mimebundle_(**kwargs)
-        return (data | {'text/html': self.still()} if stills_can_be_drawn() else data), metadata
+        return (data | {"text/html": self.still()} if stills_can_be_drawn() else data), metadata
 
     def __repr__(self):
         if stills_can_be_drawn():
-            return f'{type(self).__name__}: {self.drawing().alt}'
-        state = ', '.join(f'{name}={value!r}' for name, value in self.state().items())
-        return f'{type(self).__name__}({state})'
+            return f"{type(self).__name__}: {self.drawing().alt}"
+        state = ", ".join(f"{name}={value!r}" for name, value in self.state().items())
+        return f"{type(self).__name__}({state})"
 
 
 def stills_can_be_drawn():
     """Return whether NumPy and Matplotlib are there."""
     # They are looked for, not imported in vain: where they are missing, as in a browser, a figure is shown by
     # its front end and needs no still; where they are there, no error of a still must be lost.
-    return all(map(find_spec, ('numpy', 'matplotlib')))
+    return all(map(find_spec, ("numpy", "matplotlib")))
 
 
 def svg_on(sheet, drawing):

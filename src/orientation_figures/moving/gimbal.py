@@ -1,8 +1,10 @@
 """A camera gimbal with its three joints, for any of the twelve sequences, gimbal lock included."""
+
 import math
 
 from orientation._numbers_and_symbols import NUMBERS
 from orientation.euler_angles import dcm_from_body_fixed, lock_margin_formula
+
 from .figure import MovingFigure
 from .state import Numbers, Sequence
 
@@ -28,11 +30,11 @@ class GimbalFigure(MovingFigure):
     (1.370796, 0.198669)
     """
 
-    kind = 'gimbal'
+    kind = "gimbal"
     sheet = (-180, -185, 200, 185)
     room = (436, 784)
     angles = Numbers(tuple(map(math.radians, (15, -25, -30))), (3,), math.pi).tag(sync=True, state=True)
-    sequence = Sequence('zxy').tag(sync=True, state=True)
+    sequence = Sequence("zxy").tag(sync=True, state=True)
 
     @property
     def dcm(self):

@@ -3,38 +3,83 @@
 They look like those of ``orientation_figures.drawing``. The file is kept with the others, so that the figures are
 alive where there is no Matplotlib to set anything.
 """
+
 import json
 
 from ..drawing import typeset
 from .bundle import FOLDER
 
-COMMAND = 'python -m orientation_figures.moving.glyphs'
-FILE = FOLDER / 'js' / 'glyphs.js'
+COMMAND = "python -m orientation_figures.moving.glyphs"
+FILE = FOLDER / "js" / "glyphs.js"
 
 #: Every text that a figure sets as mathematics.
-LABELS = (*(rf'\hat{{{frame}}}_{axis}' for frame in 'nabcd' for axis in 'xyz'), r'\hat{e}', *'NABCDtxyz',
-          r'\psi', r'\theta', r'\theta/2', r'\varphi', 'q_0', 'q_i', 'q_j', 'q_k', 'e_x', 'e_y', 'e_z', 'I_x', 'I_y', 'I_z',
-          r'{}^A\mathbf{C}^N', r'{}^D\mathbf{C}^A', r'\hat{a}_x\times\hat{a}_y',
-          *(rf'\hat{{e}}_{axis}' for axis in 'xyz'), 'E', 'q', '-q', '0', r'4\,\mathrm{s}',
-          *(rf'{top}^\circ/\mathrm{{s}}' for top in (30, 60, 90, 120, 180, 360, 720)), *(rf'\mathbf{{C}}_{axis}' for axis in 'xyz'),
-          *(rf'{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}' for frames in ('NN', 'BN', 'CN', 'DN', 'BA', 'CB', 'DC')),
-          # The axes of the plots of motion.
-          r'\mathbf{H}', r'\mathrm{not\ orthogonal\ by}', r'\mathrm{error\ (rad)}', r'\mathrm{margin\ to\ gimbal\ lock\ (degrees)}',
-          r't\ \mathrm{(s)}', '10^{-15}', '10^{-10}', '10^{-5}', '0', '1', '5', '10', '15', '20', '90')
+LABELS = (
+    *(rf"\hat{{{frame}}}_{axis}" for frame in "nabcd" for axis in "xyz"),
+    r"\hat{e}",
+    *"NABCDtxyz",
+    r"\psi",
+    r"\theta",
+    r"\theta/2",
+    r"\varphi",
+    "q_0",
+    "q_i",
+    "q_j",
+    "q_k",
+    "e_x",
+    "e_y",
+    "e_z",
+    "I_x",
+    "I_y",
+    "I_z",
+    r"{}^A\mathbf{C}^N",
+    r"{}^D\mathbf{C}^A",
+    r"\hat{a}_x\times\hat{a}_y",
+    *(rf"\hat{{e}}_{axis}" for axis in "xyz"),
+    "E",
+    "q",
+    "-q",
+    "0",
+    r"4\,\mathrm{s}",
+    *(rf"{top}^\circ/\mathrm{{s}}" for top in (30, 60, 90, 120, 180, 360, 720)),
+    *(rf"\mathbf{{C}}_{axis}" for axis in "xyz"),
+    *(rf"{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}" for frames in ("NN", "BN", "CN", "DN", "BA", "CB", "DC")),
+    # The axes of the plots of motion.
+    r"\mathbf{H}",
+    r"\mathrm{not\ orthogonal\ by}",
+    r"\mathrm{error\ (rad)}",
+    r"\mathrm{margin\ to\ gimbal\ lock\ (degrees)}",
+    r"t\ \mathrm{(s)}",
+    "10^{-15}",
+    "10^{-10}",
+    "10^{-5}",
+    "0",
+    "1",
+    "5",
+    "10",
+    "15",
+    "20",
+    "90",
+)
 
 
 def glyphs():
     """Return the module of outlines and of where they stand in each label, 1000 units to the em."""
     outlines, labels = {}, {}
     for text in LABELS:
-        placed, ink = typeset(f'${text}$')
-        labels[text] = {'ink': [round(float(edge)) for edge in ink.ravel()],
-                        'glyphs': [[outlines.setdefault(outline, len(outlines)), round(float(x)), round(float(y)),
-                                    round(float(size), 3)] for outline, (x, y), size in placed]}
-    return (f'// Made by `{COMMAND}`.\n'
-            f'export const OUTLINES = {json.dumps(list(outlines), separators=(",", ":"))};\n'
-            f'export const LABELS = {json.dumps(labels, separators=(",", ":"))};\n')
+        placed, ink = typeset(f"${text}$")
+        labels[text] = {
+            "ink": [round(float(edge)) for edge in ink.ravel()],
+            "glyphs": [
+                [outlines.setdefault(outline, len(outlines)), round(float(x)), round(float(y)), round(float(size), 3)]
+                for outline, (x, y), size in placed
+            ],
+        }
+    return (
+        f"// Made by `{COMMAND}`.\n"
+        f"export const OUTLINES = {json.dumps(list(outlines), separators=(',', ':'))};\n"
+        f"export const LABELS = {json.dumps(labels, separators=(',', ':'))};\n"
+    )
 
 
-if __name__ == '__main__':
-    FILE.write_text(glyphs(), 'utf8')
+if __name__ == "__main__":
+    FILE.write_text(glyphs(), "utf8")

@@ -1,4 +1,5 @@
 """A racket that tumbles, its orientation integrated as a matrix, as a quaternion and as Euler angles."""
+
 import traitlets
 
 from .figure import MovingFigure, svg_on
@@ -6,10 +7,10 @@ from .state import Numbers
 
 #: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's a_x
 #: runs along its handle and a_z out of its face; the book's a_x runs along its long edges.
-MOMENTS = {'racket': (1.2, 16.0, 17.0), 'book': (6.9, 13.3, 19.7)}
-DESCRIPTIONS = {'matrix': 'direction cosine matrix', 'quaternion': 'quaternion', 'angles': 'Euler angles'}
+MOMENTS = {"racket": (1.2, 16.0, 17.0), "book": (6.9, 13.3, 19.7)}
+DESCRIPTIONS = {"matrix": "direction cosine matrix", "quaternion": "quaternion", "angles": "Euler angles"}
 SECONDS = 20.0
-PLOT = (-180, 0, 180, 356)   # left, top, right and bottom
+PLOT = (-180, 0, 180, 356)  # left, top, right and bottom
 
 
 class Between(Numbers):
@@ -22,8 +23,9 @@ class Between(Numbers):
     def validate(self, obj, value):
         number = super().validate(obj, value)
         if not self.least <= number <= self.most:
-            raise traitlets.TraitError(f'{self.name} is {value!r}; from {self.least:g} to {self.most:g} '
-                                       f'{self.unit} can be had')
+            raise traitlets.TraitError(
+                f"{self.name} is {value!r}; from {self.least:g} to {self.most:g} {self.unit} can be had"
+            )
         return number
 
 
@@ -33,12 +35,14 @@ class Moments(Numbers):
     def validate(self, obj, value):
         moments = super().validate(obj, value)
         if not all(0.1 <= moment <= 20 for moment in moments):
-            raise traitlets.TraitError(f'{self.name} is {value!r}; from 0.1 to 20 g m^2 can be had')
+            raise traitlets.TraitError(f"{self.name} is {value!r}; from 0.1 to 20 g m^2 can be had")
         largest = max(moments)
         others = sum(moments) - largest
         if largest > others + 1e-9:
-            raise traitlets.TraitError(f'{self.name} is {value!r}: no body has such moments of inertia, because the '
-                                       f'largest, {largest:g}, is more than the sum of the others, {others:g}')
+            raise traitlets.TraitError(
+                f"{self.name} is {value!r}: no body has such moments of inertia, because the "
+                f"largest, {largest:g}, is more than the sum of the others, {others:g}"
+            )
         return moments
 
 
@@ -83,17 +87,17 @@ class MotionFigure(MovingFigure):
     1
     """
 
-    kind = 'motion'
+    kind = "motion"
     sheet = (-180, -150, 180, 150)
     room = (684, 1255)
-    moments = Moments(MOMENTS['racket'], (3,)).tag(sync=True, state=True)
-    axis = traitlets.Enum(tuple('xyz'), 'y').tag(sync=True, state=True)
-    disturbance = Between(0.01, 0, 0.5, 'rad/s').tag(sync=True, state=True)
-    method = traitlets.Enum(('Euler', 'Runge-Kutta'), 'Euler').tag(sync=True, state=True)
-    step = Between(0.01, 0.005, 0.1, 'seconds').tag(sync=True, state=True)
+    moments = Moments(MOMENTS["racket"], (3,)).tag(sync=True, state=True)
+    axis = traitlets.Enum(tuple("xyz"), "y").tag(sync=True, state=True)
+    disturbance = Between(0.01, 0, 0.5, "rad/s").tag(sync=True, state=True)
+    method = traitlets.Enum(("Euler", "Runge-Kutta"), "Euler").tag(sync=True, state=True)
+    step = Between(0.01, 0.005, 0.1, "seconds").tag(sync=True, state=True)
     restored = traitlets.Bool(False).tag(sync=True, state=True)
-    description = traitlets.Enum(tuple(DESCRIPTIONS), 'matrix').tag(sync=True, state=True)
-    time = Between(6.0, 0, SECONDS, 'seconds').tag(sync=True, state=True)
+    description = traitlets.Enum(tuple(DESCRIPTIONS), "matrix").tag(sync=True, state=True)
+    time = Between(6.0, 0, SECONDS, "seconds").tag(sync=True, state=True)
 
     def run(self):
         """Return what has been computed from 0 to ``time``, as a dict of arrays with one row for each step.
@@ -102,7 +106,8 @@ class MotionFigure(MovingFigure):
         integrated; and ``'reference'``, the unit quaternion of the fine integration. A run ends early where
         its numbers have grown beyond a million.
         """
-        from . import tumbling   # only now: it needs NumPy
+        from . import tumbling  # only now: it needs NumPy
+
         count = int(self.time / self.step + 1e-9)
         return tumbling.run(self.moments, self.axis, self.disturbance, self.method, self.step, self.restored, count)
 
@@ -110,25 +115,28 @@ class MotionFigure(MovingFigure):
     def dcm(self):
         """The matrix of the drawn description at ``time``, orthogonal or not, shape ``(3, 3)``."""
         from . import tumbling
+
         return tumbling.matrices(self.run(), self.description, slice(-1, None))[0]
 
     @property
     def body(self):
         """What is drawn: 'racket', 'book' or, for other moments of inertia, 'block'."""
-        return next((name for name, moments in MOMENTS.items() if moments == self.moments), 'block')
+        return next((name for name, moments in MOMENTS.items() if moments == self.moments), "block")
 
     @property
     def flips(self):
         """How often the body has turned its spin axis over against the angular momentum."""
         from . import tumbling
+
         return tumbling.flips(self.run(), self.moments, self.axis)
 
     def still(self):
         plot = svg_on(PLOT, self.plot())
-        end = '</div></figure>'
+        end = "</div></figure>"
         return super().still().removesuffix(end) + plot + end
 
     def plot(self):
         """Return the ``Drawing`` of how the drift has grown up to ``time``."""
         from .stills import motion
+
         return motion.plot(self)

@@ -1,5 +1,7 @@
 """Nine numbers that should be a direction cosine matrix: what fails, and the nearest matrix that is one."""
+
 from orientation.direction_cosines import check_dcm, nearest_dcm
+
 from .figure import MovingFigure
 from .state import Numbers
 
@@ -25,7 +27,7 @@ class NineNumbersFigure(MovingFigure):
     0.01
     """
 
-    kind = 'nine_numbers'
+    kind = "nine_numbers"
     sheet = (-180, -165, 180, 165)
     room = (524, 941)
     matrix = Numbers(((0.98, 0.43, -0.2), (-0.31, 0.8, 0.7), (0.08, -0.4, 0.74)), (3, 3), 10).tag(sync=True, state=True)
@@ -41,4 +43,4 @@ class NineNumbersFigure(MovingFigure):
             check_dcm(self.matrix)
         except ValueError as error:
             return str(error)
-        return ''
+        return ""

@@ -1,4 +1,5 @@
 """The quaternion and its double, and three ways from one orientation to another."""
+
 import math
 
 import traitlets
@@ -7,10 +8,11 @@ from orientation.axis_angle import axis_angle_from_dcm, quaternion_from_axis_ang
 from orientation.direction_cosines import nearest_dcm
 from orientation.euler_angles import dcm_from_body_fixed
 from orientation.quaternions import dcm_from_quaternion, interpolate_quaternions, quaternion_from_dcm
+
 from .figure import MovingFigure
 from .state import Direction, Numbers
 
-SECONDS = 4   # as in js/quaternion.js
+SECONDS = 4  # as in js/quaternion.js
 FULL = 4 * math.pi
 STEP = 1e-4
 
@@ -49,31 +51,33 @@ class QuaternionFigure(MovingFigure):
     [-1.0, 0.0, 0.0, 0.0]
     """
 
-    kind = 'quaternion'
-    view = traitlets.Enum(('double', 'way'), 'double').tag(sync=True, state=True)
+    kind = "quaternion"
+    view = traitlets.Enum(("double", "way"), "double").tag(sync=True, state=True)
     axis = Direction((-1, 2, 4)).tag(sync=True, state=True)
     angle = Numbers(math.radians(60), largest=FULL).tag(sync=True, state=True)
     first = Numbers(tuple(map(math.radians, (-70, -30, 70))), (3,), largest=math.pi).tag(sync=True, state=True)
     second = Numbers(tuple(map(math.radians, (90, 80, -120))), (3,), largest=math.pi).tag(sync=True, state=True)
-    unit_vector = traitlets.Enum(('x', 'y', 'z'), 'y').tag(sync=True, state=True)
+    unit_vector = traitlets.Enum(("x", "y", "z"), "y").tag(sync=True, state=True)
     share = Numbers(0.3, largest=1.0).tag(sync=True, state=True)
 
-    @traitlets.validate('angle', 'share')
+    @traitlets.validate("angle", "share")
     def _not_negative(self, proposal):
-        name, value = proposal['trait'].name, proposal['value']
+        name, value = proposal["trait"].name, proposal["value"]
         if value < 0:
-            raise traitlets.TraitError(f'{name} is {value:.6g}: it must be from 0 to {"1" if name == "share" else "4 pi"}')
+            raise traitlets.TraitError(
+                f"{name} is {value:.6g}: it must be from 0 to {'1' if name == 'share' else '4 pi'}"
+            )
         return value
 
     @property
     def sheet(self):
         """Left, top, right and bottom of the drawing, in pixels from its origin."""
-        return (-118, -142, 242, 222) if self.view == 'double' else (-180, -142, 180, 222)
+        return (-118, -142, 242, 222) if self.view == "double" else (-180, -142, 180, 222)
 
     @property
     def room(self):
         """Height of the figure in pixels with its controls beside and below it."""
-        return (614, 842) if self.view == 'double' else (691, 888)
+        return (614, 842) if self.view == "double" else (691, 888)
 
     @property
     def quaternion(self):
@@ -93,10 +97,15 @@ class QuaternionFigure(MovingFigure):
         """
         first, second = self._ends()
         angles = [(1 - share) * start + share * end for start, end in zip(self.first, self.second)]
-        return (_or_none(lambda: dcm_from_quaternion(interpolate_quaternions(
-                    quaternion_from_dcm(first), quaternion_from_dcm(second), share))),
-                dcm_from_body_fixed(angles, 'zxy'),
-                _or_none(lambda: nearest_dcm(self.blend(share)).dcm))
+        return (
+            _or_none(
+                lambda: dcm_from_quaternion(
+                    interpolate_quaternions(quaternion_from_dcm(first), quaternion_from_dcm(second), share)
+                )
+            ),
+            dcm_from_body_fixed(angles, "zxy"),
+            _or_none(lambda: nearest_dcm(self.blend(share)).dcm),
+        )
 
     def blend(self, share):
         """Return the matrix whose entries lie part of the way between those of the ends; its rows are too short."""
@@ -106,11 +115,13 @@ class QuaternionFigure(MovingFigure):
     def speeds(self, share):
         """Return the three angular speeds part of the way, radians per second for a way of four seconds."""
         early, late = max(0, share - STEP), min(1, share + STEP)
-        return tuple(angle_between(before, after) / (SECONDS * (late - early))
-                     for before, after in zip(self.ways(early), self.ways(late)))
+        return tuple(
+            angle_between(before, after) / (SECONDS * (late - early))
+            for before, after in zip(self.ways(early), self.ways(late))
+        )
 
     def _ends(self):
-        return dcm_from_body_fixed((self.first, self.second), 'zxy')
+        return dcm_from_body_fixed((self.first, self.second), "zxy")
 
 
 def angle_between(before, after):

@@ -1,4 +1,5 @@
 """What the attributes of a moving figure accept: numbers of one shape, checked, never repaired."""
+
 import math
 
 import traitlets
@@ -19,10 +20,10 @@ class Numbers(traitlets.TraitType):
         No number may be larger than this, or smaller than its negative.
     """
 
-    info_text = 'real numbers'
+    info_text = "real numbers"
 
     def __init__(self, default, shape=(), largest=math.inf, **more):
-        super().__init__(number_tuples(default, shape, 'default'), **more)
+        super().__init__(number_tuples(default, shape, "default"), **more)
         self.shape, self.largest = shape, largest
 
     def validate(self, obj, value):
@@ -33,9 +34,10 @@ class Numbers(traitlets.TraitType):
         worst = max(map(abs, _entries(numbers)))
         # A slider's end, converted from degrees, may be a rounding beyond.
         if worst > self.largest + 1e-12:
-            cause = '. Angles are in radians, not degrees' if (self.largest / math.pi).is_integer() else ''
-            raise traitlets.TraitError(f'{self.name} is {value!r}: numbers from -{self.largest:.6g} to '
-                                       f'{self.largest:.6g} were expected{cause}')
+            cause = ". Angles are in radians, not degrees" if (self.largest / math.pi).is_integer() else ""
+            raise traitlets.TraitError(
+                f"{self.name} is {value!r}: numbers from -{self.largest:.6g} to {self.largest:.6g} were expected{cause}"
+            )
         return numbers
 
 
@@ -48,7 +50,7 @@ class Direction(Numbers):
     def validate(self, obj, value):
         vector = super().validate(obj, value)
         if not any(vector):
-            raise traitlets.TraitError(f'{self.name} is {vector}: a zero vector points nowhere')
+            raise traitlets.TraitError(f"{self.name} is {vector}: a zero vector points nowhere")
         return _unit(vector)
 
 
@@ -57,7 +59,7 @@ class Sequence(traitlets.TraitType):
 
     def validate(self, obj, value):
         if value not in SEQUENCES:
-            raise traitlets.TraitError(f'{self.name} is {value!r}; the twelve are {", ".join(SEQUENCES)}')
+            raise traitlets.TraitError(f"{self.name} is {value!r}; the twelve are {', '.join(SEQUENCES)}")
         return value
 
 

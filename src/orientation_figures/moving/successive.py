@@ -1,4 +1,5 @@
 """A chain of simple turns, frame by frame, with the product of their matrices."""
+
 import math
 
 import traitlets
@@ -6,36 +7,44 @@ import traitlets
 from orientation._numbers_and_symbols import number_tuples
 from orientation.axis_angle import axis_angle_from_dcm
 from orientation.direction_cosines import simple_dcm
+
 from .figure import MovingFigure
 from .state import Numbers
 
-COMPARISONS = ('nothing', '1 and 2 exchanged', '2 and 3 exchanged', '3 and 4 exchanged', 'body and space fixed')
+COMPARISONS = ("nothing", "1 and 2 exchanged", "2 and 3 exchanged", "3 and 4 exchanged", "body and space fixed")
 
 
 class Turns(traitlets.TraitType):
     """One to four turns, each an axis and an angle in radians."""
 
     def validate(self, obj, value):
-        turns = tuple(tuple(turn) for turn in value) if isinstance(value, (list, tuple)) and all(
-            isinstance(turn, (list, tuple)) and len(turn) == 2 for turn in value) else ()
+        turns = (
+            tuple(tuple(turn) for turn in value)
+            if isinstance(value, (list, tuple))
+            and all(isinstance(turn, (list, tuple)) and len(turn) == 2 for turn in value)
+            else ()
+        )
         if not 1 <= len(turns) <= 4:
-            raise traitlets.TraitError(f'turns is {value!r}: one to four pairs were expected, each an axis and an '
-                                       "angle in radians, as (('z', 0.7), ('x', 0.5))")
+            raise traitlets.TraitError(
+                f"turns is {value!r}: one to four pairs were expected, each an axis and an "
+                "angle in radians, as (('z', 0.7), ('x', 0.5))"
+            )
         return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
 
     def _axis(self, axis):
-        if axis not in ('x', 'y', 'z'):
+        if axis not in ("x", "y", "z"):
             raise traitlets.TraitError(f"turns holds the axis {axis!r}: 'x', 'y' or 'z' was expected")
         return axis
 
     def _angle(self, angle):
         try:
-            number = number_tuples(angle, (), 'angle')
+            number = number_tuples(angle, (), "angle")
         except (TypeError, ValueError) as error:
-            raise traitlets.TraitError(f'turns: {error}') from None
+            raise traitlets.TraitError(f"turns: {error}") from None
         if abs(number) > math.pi + 1e-12:
-            raise traitlets.TraitError(f'turns holds the angle {number:.6g}: it must be from -pi to pi. Angles are in '
-                                       'radians, not degrees')
+            raise traitlets.TraitError(
+                f"turns holds the angle {number:.6g}: it must be from -pi to pi. Angles are in radians, not degrees"
+            )
         return number
 
 
@@ -72,28 +81,33 @@ class SuccessiveFigure(MovingFigure):
     ((3, 3), 0.449655)
     """
 
-    kind = 'successive'
+    kind = "successive"
     sheet = (-180, -142, 180, 222)
     room = (685, 1001)
-    turns = Turns((('z', math.radians(30)), ('x', math.radians(50)), ('y', math.radians(40)))).tag(sync=True, state=True)
-    fixed = traitlets.Enum(('body', 'space'), 'body').tag(sync=True, state=True)
-    compare = traitlets.Enum(COMPARISONS, 'nothing').tag(sync=True, state=True)
+    turns = Turns((("z", math.radians(30)), ("x", math.radians(50)), ("y", math.radians(40)))).tag(
+        sync=True, state=True
+    )
+    fixed = traitlets.Enum(("body", "space"), "body").tag(sync=True, state=True)
+    compare = traitlets.Enum(COMPARISONS, "nothing").tag(sync=True, state=True)
     share = Numbers(1.0, largest=1.0).tag(sync=True, state=True)
 
-    @traitlets.validate('share')
+    @traitlets.validate("share")
     def _not_negative(self, proposal):
-        if proposal['value'] < 0:
-            raise traitlets.TraitError(f'share is {proposal["value"]!r}: a number from 0 to 1 was expected')
-        return proposal['value']
+        if proposal["value"] < 0:
+            raise traitlets.TraitError(f"share is {proposal['value']!r}: a number from 0 to 1 was expected")
+        return proposal["value"]
 
-    @traitlets.validate('turns', 'compare')
+    @traitlets.validate("turns", "compare")
     def _has_both_turns(self, proposal):
-        turns, compare = (proposal['value'] if proposal['trait'].name == name else getattr(self, name)
-                          for name in ('turns', 'compare'))
+        turns, compare = (
+            proposal["value"] if proposal["trait"].name == name else getattr(self, name)
+            for name in ("turns", "compare")
+        )
         if 1 <= COMPARISONS.index(compare) <= 3 and len(turns) <= COMPARISONS.index(compare):
-            raise traitlets.TraitError(f'compare is {compare!r}, but the chain has only {len(turns)} '
-                                       f'turn{"s" * (len(turns) > 1)}')
-        return proposal['value']
+            raise traitlets.TraitError(
+                f"compare is {compare!r}, but the chain has only {len(turns)} turn{'s' * (len(turns) > 1)}"
+            )
+        return proposal["value"]
 
     @property
     def dcms(self):
@@ -108,7 +122,7 @@ class SuccessiveFigure(MovingFigure):
     @property
     def other(self):
         """Direction cosine matrix of E with respect to N, or None where nothing is compared."""
-        return None if self.compare == 'nothing' else chain(*second_chain(self.turns, self.fixed, self.compare))[-1]
+        return None if self.compare == "nothing" else chain(*second_chain(self.turns, self.fixed, self.compare))[-1]
 
     @property
     def angle_between(self):
@@ -122,16 +136,17 @@ def second_chain(turns, kind, compare):
     if k < 4:
         turns[k - 1], turns[k] = turns[k], turns[k - 1]
     else:
-        kind = 'space' if kind == 'body' else 'body'
+        kind = "space" if kind == "body" else "body"
     return turns, kind
 
 
 def chain(turns, kind):
     """Return the direction cosine matrices of N and of every further frame with respect to N."""
-    import numpy as np   # only now: the figure itself does without
+    import numpy as np  # only now: the figure itself does without
+
     frames = [np.eye(3)]
     for axis, angle in turns:
         turn = simple_dcm(axis, angle)
         # A turn about the frame's own unit vector multiplies from the left, one about N's from the right.
-        frames.append(turn @ frames[-1] if kind == 'body' else frames[-1] @ turn)
+        frames.append(turn @ frames[-1] if kind == "body" else frames[-1] @ turn)
     return np.array(frames)

@@ -1,8 +1,10 @@
 """A triad turned in a frame about an axis, with every description of its orientation beside it."""
+
 import math
 
 from orientation.axis_angle import dcm_from_axis_angle, quaternion_from_axis_angle
 from orientation.euler_angles import body_fixed_from_dcm
+
 from .figure import MovingFigure
 from .state import Direction, Numbers, Sequence
 
@@ -32,12 +34,12 @@ class TriadFigure(MovingFigure):
     ((0.0, 0.0, 1.0), 0.479426)
     """
 
-    kind = 'triad'
+    kind = "triad"
     sheet = (-180, -172, 180, 172)
     room = (512, 884)
     axis = Direction((1, 2, 2)).tag(sync=True, state=True)
     angle = Numbers(math.radians(50), largest=math.pi).tag(sync=True, state=True)
-    sequence = Sequence('zxy').tag(sync=True, state=True)
+    sequence = Sequence("zxy").tag(sync=True, state=True)
 
     @property
     def dcm(self):

@@ -1,32 +1,37 @@
 """The integration of a body that tumbles without torque, in three descriptions of its orientation."""
+
 from functools import lru_cache
 
 import numpy as np
 
+from orientation.angular_velocity import angular_velocity_matrix, dcm_rate, quaternion_rate
 from orientation.axis_angle import axis_angle_from_dcm
 from orientation.direction_cosines import nearest_dcm
 from orientation.euler_angles import dcm_from_body_fixed
-from orientation.angular_velocity import angular_velocity_matrix, dcm_rate, quaternion_rate
 from orientation.quaternions import dcm_from_quaternion
 
-SPIN = 4.0        # rad/s
-FINER = 10        # the reference takes so many steps for one
-LARGEST = 1e6     # numbers beyond this end a run
+SPIN = 4.0  # rad/s
+FINER = 10  # the reference takes so many steps for one
+LARGEST = 1e6  # numbers beyond this end a run
 
 
 # The results are kept: an unchanged figure draws the same run again and again.
 @lru_cache(maxsize=8)
 def run(moments, axis, disturbance, method, step, restored, count):
     """Return the arrays of so many steps, as :meth:`MotionFigure.run` gives them."""
-    start = np.where([axis == other for other in 'xyz'], SPIN, disturbance)
+    start = np.where([axis == other for other in "xyz"], SPIN, disturbance)
     rows = [(start, np.eye(3), np.eye(4)[0], np.zeros(3))]
 
     def rates(omega, matrix, quaternion, angles):
-        return (np.array(_angular_acceleration(omega, moments)), dcm_rate(matrix, omega),
-                quaternion_rate(quaternion, omega), np.linalg.solve(angular_velocity_matrix(angles, 'zxy'), omega))
+        return (
+            np.array(_angular_acceleration(omega, moments)),
+            dcm_rate(matrix, omega),
+            quaternion_rate(quaternion, omega),
+            np.linalg.solve(angular_velocity_matrix(angles, "zxy"), omega),
+        )
 
     for _ in range(count):
-        with np.errstate(all='ignore'):
+        with np.errstate(all="ignore"):
             omega, matrix, quaternion, angles = _step(rates, rows[-1], step, method)
         largest = max(abs(omega).max(), abs(matrix).max(), abs(quaternion).max())
         if not largest < LARGEST or not np.isfinite(angles).all():
@@ -34,9 +39,12 @@ def run(moments, axis, disturbance, method, step, restored, count):
         if restored:
             matrix, quaternion = nearest_dcm(matrix).dcm, quaternion / np.linalg.norm(quaternion)
         rows.append((omega, matrix, quaternion, angles))
-    names = 'angular_velocity', 'matrix', 'quaternion', 'angles'
-    return {'time': step * np.arange(len(rows)), 'reference': _reference(start, moments, step / FINER, FINER * (len(rows) - 1))[::FINER],
-            **{name: np.array(column) for name, column in zip(names, zip(*rows))}}
+    names = "angular_velocity", "matrix", "quaternion", "angles"
+    return {
+        "time": step * np.arange(len(rows)),
+        "reference": _reference(start, moments, step / FINER, FINER * (len(rows) - 1))[::FINER],
+        **{name: np.array(column) for name, column in zip(names, zip(*rows))},
+    }
 
 
 def _angular_acceleration(omega, moments):
@@ -51,6 +59,7 @@ def _reference(start, moments, step, count):
     The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4 matrix,
     and those of all steps are found together, which is ten times as fast as one after the other.
     """
+
     def beyond(length, slope):
         return [value + length * change for value, change in zip(omega, slope)]
 
@@ -78,11 +87,12 @@ def _reference(start, moments, step, count):
 
 def _step(rates, state, step, method):
     """Return the ``state``, a tuple of arrays, one step later."""
+
     def beyond(length, slopes):
         return tuple(value + length * slope for value, slope in zip(state, slopes))
 
     first = rates(*state)
-    if method == 'Euler':
+    if method == "Euler":
         return beyond(step, first)
     second = rates(*beyond(step / 2, first))
     third = rates(*beyond(step / 2, second))
@@ -92,15 +102,16 @@ def _step(rates, state, step, method):
 
 # What the numbers of a run say.
 
+
 def matrices(run, description, which):
     """Return the direction cosine matrices of a description; that of a quaternion is |q|^2 times orthogonal."""
     values = run[description][which]
-    if description == 'matrix':
+    if description == "matrix":
         return values
-    if description == 'angles':
-        return dcm_from_body_fixed(values, 'zxy')
+    if description == "angles":
+        return dcm_from_body_fixed(values, "zxy")
     lengths = np.linalg.norm(values, axis=-1, keepdims=True)
-    return dcm_from_quaternion(values / lengths) * lengths[..., None]**2
+    return dcm_from_quaternion(values / lengths) * lengths[..., None] ** 2
 
 
 def fault_of(dcms):
@@ -116,11 +127,11 @@ def error_of(dcms, references):
 def momentum(run, moments):
     """Return the direction of the angular momentum along N."""
     # At the start A is N, and the components along both are the same.
-    momentum = moments * run['angular_velocity'][0]
+    momentum = moments * run["angular_velocity"][0]
     return momentum / np.linalg.norm(momentum)
 
 
 def flips(run, moments, axis):
     """Return how often the axis has turned over against the angular momentum."""
-    row = dcm_from_quaternion(run['reference'])[:, 'xyz'.index(axis)]
+    row = dcm_from_quaternion(run["reference"])[:, "xyz".index(axis)]
     return int((np.diff(np.sign(row @ momentum(run, moments))) != 0).sum())

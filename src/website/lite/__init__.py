@@ -147,7 +147,9 @@ def write(site):
 def add_link(app, pagename, templatename, context, doctree):
     """Give a page with a notebook the address that opens it."""
     if is_notebook(app, pagename, doctree):
-        context["notebook_interface"] = context["pathto"](f"{FOLDER}/{APPS[0]}/index.html", 1) + f"?path={pagename}.ipynb"
+        context["notebook_interface"] = (
+            context["pathto"](f"{FOLDER}/{APPS[0]}/index.html", 1) + f"?path={pagename}.ipynb"
+        )
 
 
 def setup(app):

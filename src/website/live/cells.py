@@ -56,9 +56,7 @@ json.dump(told, sys.__stdout__)
 
 def write_python(folder):
     """Write what the page's Python starts from: our files, and IPython's way of writing values as text."""
-    shutil.copytree(
-        PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True
-    )
+    shutil.copytree(PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
     (folder / "IPython" / "lib").mkdir(exist_ok=True)
     (folder / "IPython" / "lib" / "__init__.py").touch()
     root = find_spec("IPython").submodule_search_locations[0]
@@ -177,6 +175,7 @@ def kinds_of_cells():
     )  # fmt: skip
     kept = RESULTS / f"cells-{inputs}.json"
     if not kept.exists():
+
         def classify_page(path):
             notebook = nbformat.read(path, as_version=4)
             try:

@@ -67,9 +67,7 @@ def compile_wheels(wheels):
     """Return the compiled form of each of ``wheels``, made now or kept from before."""
     program = b"".join(path.read_bytes() for path in COMPILER)
     program += (PYODIDE / "package.json").read_bytes()
-    compiled = {
-        wheel: COMPILED / sha256(program + wheel.read_bytes())[:12] / wheel.name for wheel in wheels
-    }
+    compiled = {wheel: COMPILED / sha256(program + wheel.read_bytes())[:12] / wheel.name for wheel in wheels}
     missing = {wheel: target for wheel, target in compiled.items() if not target.exists()}
     if missing:
         with tempfile.TemporaryDirectory() as folder:

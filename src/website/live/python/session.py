@@ -214,9 +214,7 @@ class Shell:
         for number in plt.get_fignums():
             picture = io.StringIO()
             with plt.rc_context({"svg.hashsalt": "orientation", "svg.fonttype": "path"}):
-                plt.figure(number).savefig(
-                    picture, format="svg", bbox_inches="tight", metadata={"Date": None}
-                )
+                plt.figure(number).savefig(picture, format="svg", bbox_inches="tight", metadata={"Date": None})
             self.send({"type": "display", "data": {"image/svg+xml": picture.getvalue()}})
             plt.close(number)
 
