@@ -31,7 +31,7 @@ $(VENV)/ready: constraints.txt pyproject.toml
 	@echo "Setting up Python in $(VENV) (about a minute) ..."
 	@test -x $(RUN) || $(PYTHON) -m venv $(VENV)
 	@$(PIP) setuptools
-	@$(PIP) --editable '.[book,grading,print,test,benchmark]'
+	@$(PIP) --editable '.[book,grading,print,test]'
 	@touch $@
 
 node_modules/ready: package-lock.json $(VENV)/ready

@@ -2,16 +2,23 @@
 
 import base64
 import json
+import os
 import re
+import shlex
+import subprocess
+import sys
+import venv
 import zipfile
+from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
 import pytest
 
-from coursework.authoring import release
+from coursework.authoring import packing, release
 from coursework.authoring.author import AuthorError
 from coursework.authoring.selftest import leaks, released_texts, secrets_of
+from coursework.checking.update import OlderArchive, update
 
 SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("theta")'
 SOLUTION = (
@@ -157,12 +164,12 @@ def test_there_is_a_notebook_of_exercises_for_every_chapter():
 
 
 def test_the_archive_is_the_same_each_time_and_installs_what_it_says(tmp_path):
-    first, second = (release.archive(tmp_path / name / "exercises.zip") for name in "ab")
+    first, second = (packing.archive(tmp_path / name / "exercises.zip") for name in "ab")
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as box:
         names = {Path(name).name for name in box.namelist()}
         wheel = next(name for name in names if name.endswith(".whl"))
-        assert wheel in box.read("exercises/README.txt").decode()
+        assert f"./{wheel}" in box.read("exercises/requirements.txt").decode().splitlines()
     assert {path.name for path in release.EXERCISES.glob("*.ipynb")} < names
 
 
@@ -175,13 +182,117 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
 
     work = tmp_path / "work"
     work.mkdir()
-    release.update(pack("one.zip", a="a", b="b"), work)
+    update(pack("one.zip", a="a", b="b"), work)
     (work / "a.ipynb").write_text("my answer")
     for _ in range(2):
-        release.update(pack("two.zip", a="a, mended", b="b", c="c"), work)
+        update(pack("two.zip", a="a, mended", b="b", c="c"), work)
     assert {path.name: path.read_text() for path in work.iterdir()} == {
         "a.ipynb": "my answer",
         "a-new-1.ipynb": "a, mended",
         "b.ipynb": "b",
         "c.ipynb": "c",
     }
+
+
+def fake_wheel(folder, version, digest):
+    """A package that holds one file, made without any tool."""
+    name = f"sealed_trial-{version}-py3-none-any.whl"
+    about = f"sealed_trial-{version}.dist-info"
+    with zipfile.ZipFile(folder / name, "w") as box:
+        box.writestr("sealed_trial.py", f"DIGEST = {digest!r}\n")
+        box.writestr(f"{about}/METADATA", f"Metadata-Version: 2.1\nName: sealed-trial\nVersion: {version}\n")
+        box.writestr(
+            f"{about}/WHEEL", "Wheel-Version: 1.0\nGenerator: a test\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+        )
+        box.writestr(f"{about}/RECORD", f"sealed_trial.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n")
+    return folder / name
+
+
+def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, monkeypatch):
+    """Followed to the letter, in an environment of its own: pip takes the new questions and nobody's work is lost."""
+    python = tmp_path / "venv" / "bin" / "python"
+    venv.create(tmp_path / "venv", symlinks=True)
+    work = tmp_path / "my work"
+    work.mkdir()
+
+    def pack(version, notebook):
+        wheel = fake_wheel(tmp_path, version, f"sealed in {version}")
+        with zipfile.ZipFile(tmp_path / f"{version}.zip", "w") as box:
+            box.write(wheel, f"exercises/{wheel.name}")
+            box.writestr("exercises/requirements.txt", f"./{wheel.name}\njupyterlab\n")
+            box.writestr("exercises/a.ipynb", notebook)
+        return tmp_path / f"{version}.zip"
+
+    def install(said):
+        (line,) = [line.strip() for line in "\n".join(said).splitlines() if " -m pip install " in line]
+        arguments = shlex.split(line)[3:]
+        pip = [sys.executable, "-m", "pip", "--python", python, *arguments, "--quiet", "--no-deps", "--no-index"]
+        subprocess.run([*pip, "--disable-pip-version-check"], check=True, cwd=tmp_path)
+        return subprocess.check_output([python, "-c", "import sealed_trial; print(sealed_trial.DIGEST)"], text=True)
+
+    old, new = pack("1.1.0.post20261122093000", "first"), pack("1.1.0.post20261201080000", "second")
+    assert install(update(old, work)) == "sealed in 1.1.0.post20261122093000\n"
+    (work / "a.ipynb").write_text("my answer")
+    (work / "requirements.txt").write_text((work / "requirements.txt").read_text() + "pandas\n")
+    said = update(new, work)
+    assert install(said) == "sealed in 1.1.0.post20261201080000\n"
+    assert {path.name for path in work.iterdir()} == {
+        "sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb", "a-new-1.ipynb",
+    }  # fmt: skip
+    assert (work / "a.ipynb").read_text() == "my answer"
+    assert (work / "requirements.txt").read_text().splitlines() == [
+        "./sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "jupyterlab", "pandas",
+    ]  # fmt: skip
+    # Nothing new: nothing to install. An older archive: refused before anything is written.
+    assert any("pip install" in line for line in update(new, work))  # not in the Python that runs this
+    monkeypatch.setattr("coursework.checking.update.version", lambda name: "1.1.0.post20261201080000")
+    assert not any("pip install" in line for line in update(new, work))
+    before = {path: path.read_bytes() for path in work.iterdir()}
+    with pytest.raises(OlderArchive, match="post20261122093000.*post20261201080000"):
+        update(old, work)
+    assert {path: path.read_bytes() for path in work.iterdir()} == before
+
+
+def test_a_version_follows_from_the_sources(tmp_path):
+    def git(*arguments, when="2026-11-22T09:30:00Z"):
+        about = {"GIT_COMMITTER_DATE": when, "GIT_AUTHOR_DATE": when, "HOME": str(tmp_path), "PATH": os.environ["PATH"]}
+        name = ["-c", "user.name=An author", "-c", "user.email=author@example.org"]
+        subprocess.run(["git", *name, *arguments], cwd=book, env=about, check=True, capture_output=True)
+
+    def version():
+        packing.version.cache_clear()
+        return packing.version(book).partition(".post")[2]
+
+    def touch(name, text, moment):
+        path = book / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        os.utime(path, (moment, moment))
+
+    def at(*moment):
+        return datetime(*moment, tzinfo=UTC).timestamp()
+
+    book = tmp_path / "book"
+    for name in (*packing.ABOUT, "src/orientation/a.py", "src/coursework/grading/grade.py"):
+        touch(name, "", at(2026, 11, 1))
+    assert version() == "20261101000000"  # no repository: when the newest file was written
+    git("init", "--quiet")
+    git("add", ".")
+    git("commit", "-m", "first")
+    assert version() == "20261122093000"
+    touch("chapters/a.ipynb", "{}", at(2026, 12, 1))
+    touch("src/coursework/grading/grade.py", "# mended", at(2026, 12, 1))
+    git("add", ".")
+    git("commit", "-m", "what students do not get", when="2026-12-01T00:00:00Z")
+    assert version() == "20261122093000"
+    touch("src/orientation/a.py", "# mended", at(2026, 12, 2, 10))
+    assert version() == "20261202100000"  # not committed yet
+    git("commit", "-am", "mended", when="2026-12-02T11:00:00Z")
+    assert version() == "20261202110000"
+    git("clone", "--quiet", "--no-local", "--depth=1", f"file://{book}", str(tmp_path / "shallow"))
+    packing.version.cache_clear()
+    assert packing.version(tmp_path / "shallow").endswith("20261202110000")
+    os.remove(book / "src/orientation/a.py")
+    os.utime(book / "src/orientation", (at(2026, 12, 3), at(2026, 12, 3)))
+    assert version() == "20261203000000"
+    packing.version.cache_clear()

@@ -1,8 +1,10 @@
 """Every question of the book, tried as students will try it."""
 
 import pytest
+from test_release import CELLS, write_source
 
-from coursework.authoring import release
+from coursework.__main__ import main
+from coursework.authoring import packing, release
 from coursework.authoring.selftest import leaks, released_texts, selftest, try_question, write_page
 
 SOURCES = {path.stem: path for path in sorted(release.SOURCES.glob("*.ipynb"))}
@@ -20,14 +22,21 @@ def test_every_question_passes_and_names_its_mistakes(name):
 
 
 def test_nothing_leaks_into_the_archive(tmp_path):
-    archive = release.archive(tmp_path / "exercises.zip")
+    archive = packing.archive(tmp_path / "exercises.zip")
     sources = [release.read_source(path) for path in SOURCES.values()]
     assert leaks(sources, released_texts(archive=archive)) == []
 
 
-def test_a_question_with_a_fault_is_found(tmp_path):
-    from test_release import CELLS, write_source
+def test_nothing_to_try_is_not_a_pass(tmp_path):
+    with pytest.raises(SystemExit, match="no notebook with solutions in .*empty"):
+        main(["selftest", "--sources", str(tmp_path / "empty"), "--page", str(tmp_path / "page.html")])
+    write_source(tmp_path / "text", ("markdown", "# Nothing is asked here"))
+    with pytest.raises(SystemExit, match="ask no question"):
+        main(["selftest", "--sources", str(tmp_path / "text"), "--page", str(tmp_path / "page.html")])
+    assert not (tmp_path / "page.html").exists()
 
+
+def test_a_question_with_a_fault_is_found(tmp_path):
     cells = [
         (kind, text.replace("worth=2,", "worth=2, mistakes={'A wrong remark.': A_C_N},"), *tags)
         for kind, text, *tags in CELLS

@@ -5,7 +5,7 @@ import os
 import shutil
 import subprocess
 import tomllib
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 
 import yaml
@@ -40,7 +40,7 @@ def moment_of_sources():
     if seconds is None and shutil.which("git"):
         command = ["git", "-C", REPOSITORY, "log", "-1", "--format=%ct"]
         seconds = subprocess.run(command, capture_output=True, text=True).stdout.strip()
-    return datetime.fromtimestamp(int(seconds), timezone.utc) if seconds else datetime.now(timezone.utc)
+    return datetime.fromtimestamp(int(seconds), UTC) if seconds else datetime.now(UTC)
 
 
 def fingerprint(*paths):

@@ -15,8 +15,10 @@ from urllib.parse import urldefrag
 import pikepdf
 from bs4 import BeautifulSoup, Comment, NavigableString
 
+import orientation
+
 from .browser import open_browser
-from .paths import NODE_MODULES, WEBSITE, moment_of_sources, package, parts
+from .paths import NODE_MODULES, WEBSITE, moment_of_sources, parts
 
 FACES = (
     # The typefaces of the site that are variable fonts, here in fixed weights: a PDF holds variable ones as
@@ -205,11 +207,10 @@ def title_page(front, title):
     question, beginning = words[0].extract(), words[1].extract()
     front.h1.string = "About this book"
     front.section.append(BeautifulSoup(f"<p>{NOTE}</p>", "html.parser"))
-    project = package()
     return (
         f'<header class="title-page"><h1>{escape(title)}</h1><p class="question">{question.get_text()}</p>'
         f"{figure}{beginning}"
-        f"<p class='edition'>Version {project['version']}, {moment_of_sources():%B %Y}<br>"
+        f"<p class='edition'>Version {orientation.__version__}, {moment_of_sources():%B %Y}<br>"
         "Text: CC BY 4.0. Code: BSD 3-Clause.</p></header>"
     )
 

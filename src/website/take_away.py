@@ -12,15 +12,15 @@ from pathlib import Path
 import jupytext
 import nbformat
 
-from coursework.authoring import release
+from coursework.authoring import packing
+from coursework.authoring.packing import wheel_name
 
 from .markdown import MarkdownWriter
-from .paths import REPOSITORY, package, pages
+from .paths import REPOSITORY, pages
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
 EXERCISES = REPOSITORY / "exercises"
-PACKAGES = ("orientation", "orientation_figures", "coursework")
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
 
@@ -34,10 +34,15 @@ def is_notebook(app, pagename, doctree):
     return doctree is not None and str(app.env.doc2path(pagename)).endswith(".ipynb")
 
 
+def first_words(title):
+    """The beginning of :func:`introduction`, by which it is found again."""
+    return f"> This is a page of *{title}*."
+
+
 def introduction(title):
-    """What the notebook of a page says first, below its title."""
+    """What the notebook of a page says first, below its title, in a paragraph of one line."""
     return (
-        f"> This is a page of *{title}*. To run it, install the package that it "
+        f"{first_words(title)} To run it, install the package that it "
         f"imports: download `{wheel_name()}` from the page's menu and run "
         f"`python -m pip install {wheel_name()}`. Text: CC BY 4.0. Code: BSD-3-Clause."
     )
@@ -72,11 +77,6 @@ def make_notebook(app, docname, doctree):
     for position, cell in enumerate(cells):
         cell["id"] = f"cell-{position}"  # not random, so that builds are the same
     return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
-
-
-def wheel_name():
-    project = package()
-    return f"{project['name'].replace('-', '_')}-{project['version']}-py3-none-any.whl"
 
 
 def write_page(app, pagename, templatename, context, doctree):
@@ -119,30 +119,31 @@ def pack_exercises(app, exception):
     if exception or app.builder.format != "html":
         return
     archive = Path(app.outdir) / FOLDER / ARCHIVE
-    newest = max(path.stat().st_mtime for path in [*wheel_sources(), *EXERCISES.glob("*.ipynb")])
+    newest = max(path.stat().st_mtime for path in [*packing.wheel_sources(), *EXERCISES.glob("*.ipynb")])
     if not archive.exists() or archive.stat().st_mtime < newest:
-        release.archive(archive)
+        packing.archive(archive)
 
 
 def build_wheel(app, exception):
-    """Build our packages into the site, as one wheel, from a copy: setuptools leaves files behind."""
-    wheel = Path(app.outdir) / FOLDER / wheel_name()
+    """Build our packages into the site, as one wheel; its name tells what it was built from."""
     if exception or app.builder.format != "html":
         return
-    newest = max(path.stat().st_mtime for path in wheel_sources())
-    if wheel.exists() and wheel.stat().st_mtime > newest:
-        return
-    release.build_wheel(wheel.parent)
+    wheel = Path(app.outdir) / FOLDER / wheel_name()
+    for outdated in wheel.parent.glob("*.whl"):
+        if outdated != wheel:
+            outdated.unlink()
+    if not wheel.exists():
+        packing.build_wheel(wheel.parent)
 
 
-def wheel_sources():
-    """The files that the wheel is made of."""
-    sources = [REPOSITORY / name for name in ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")]
-    packages = [REPOSITORY / "src" / name for name in PACKAGES]
-    return sources + [path for package in packages for path in package.rglob("*") if "__pycache__" not in path.parts]
+def note_wheel_name(app, config):
+    """Write every page anew that names the package, when it gets another version."""
+    config.take_away_wheel = wheel_name()
 
 
 def setup(app):
+    app.add_config_value("take_away_wheel", "", "html", str)
+    app.connect("config-inited", note_wheel_name)
     app.connect("html-page-context", write_page)
     app.connect("build-finished", build_wheel)
     app.connect("build-finished", pack_exercises)

@@ -23,9 +23,20 @@ import math
 from typing import NamedTuple
 
 from ..checking import sealing
-from ..checking.check import calls_for
 from ..checking.evaluate import MP
-from ..checking.kinds import ENTRIES, WORDS, Blank, Fault, Undecidable, canonical, cell_of, cells, fingerprint, read
+from ..checking.kinds import (
+    ENTRIES,
+    WORDS,
+    Blank,
+    Fault,
+    Undecidable,
+    calls_for,
+    canonical,
+    cell_of,
+    cells,
+    fingerprint,
+    read,
+)
 from ..checking.mistakes import Mistake, product_of
 from ..checking.mistakes import mistakes as catalogued_mistakes
 from ..checking.plain import NotPlain, to_plain

@@ -19,8 +19,11 @@ from ..checking.mistakes import message
 from ..checking.plain import NotPlain
 from ..checking.questions import compare, judge, notebook_questions
 from ..checking.reply import Reply, to_html
+from .author import AuthorError
 from .forms import another_answer, equivalent_forms
-from .release import ARCHIVE, CHAPTERS, EXERCISES, HIDDEN, SEALED, SOLUTION, SOURCES, blank, read_source
+from .packing import ARCHIVE
+from .release import EXERCISES, SEALED
+from .source import CHAPTERS, HIDDEN, SOLUTION, SOURCES, blank, notebooks_in, read_source
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
 SECONDS_PER_TRY = 0.015
@@ -254,9 +257,16 @@ def selftest(sources=SOURCES, page=None):
     -------
     list of str
         All faults; empty if the exercises can be given to students.
+
+    Raises
+    ------
+    AuthorError
+        There is nothing to try, or a notebook cannot be read.
     """
-    read = [read_source(path) for path in sorted(Path(sources).glob("*.ipynb"))]
+    read = [read_source(path) for path in notebooks_in(sources)]
     findings = [try_question(question) for source in read for question in source.questions.values()]
+    if not findings:
+        raise AuthorError(f"The notebooks in {sources} ask no question.")
     found = leaks(read, released_texts())
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)

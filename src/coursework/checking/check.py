@@ -5,8 +5,9 @@ import os
 import random
 from pathlib import Path
 
+from .kinds import calls_for
 from .plain import NotPlain, to_plain
-from .questions import NoSuchQuestion, find_question, judge, opened
+from .questions import find_question, judge, opened
 from .reply import Reply
 
 #: Where progress is kept: beside the notebook, and nowhere else.
@@ -51,20 +52,6 @@ def check(name, answer):
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome != "correct":
         raise NotCorrect(repr(reply))
     return reply
-
-
-def calls_for(question):
-    """The arguments of each call to a function that is asked for, made anew: it may change them."""
-    if question["kind"] != "function":
-        return None
-    if question["takes"] == "arrays":
-        import numpy
-
-        return [
-            [numpy.array(part) if isinstance(part, list) else part for part in arguments]
-            for arguments in question["calls"]
-        ]
-    return [json.loads(json.dumps(arguments)) for arguments in question["calls"]]
 
 
 def hint(name):

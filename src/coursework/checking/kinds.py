@@ -9,6 +9,7 @@ The same reading serves the student's check, which compares fingerprints through
 grading, which compares them as they are. It sees only the plain data of :mod:`coursework.checking.plain`.
 """
 
+import json
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -45,6 +46,20 @@ class Reading(NamedTuple):
 
     numbers: list
     text: str | None = None
+
+
+def calls_for(question):
+    """The arguments of each call to a function that is asked for, made anew: it may change them."""
+    if question["kind"] != "function":
+        return None
+    if question["takes"] == "arrays":
+        import numpy
+
+        return [
+            [numpy.array(part) if isinstance(part, list) else part for part in arguments]
+            for arguments in question["calls"]
+        ]
+    return [json.loads(json.dumps(arguments)) for arguments in question["calls"]]
 
 
 def read(question, plain):

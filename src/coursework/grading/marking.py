@@ -11,7 +11,7 @@ import json
 from pathlib import Path
 from types import SimpleNamespace
 
-from ..authoring import release
+from ..authoring.source import checked_names, read_source
 from ..checking.evaluate import MP
 from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
 from ..checking.plain import NotPlain, read_plain
@@ -35,12 +35,12 @@ def names_asked(path):
         SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
         for cell in json.loads(Path(path).read_text("utf8"))["cells"]
     ]
-    return release._checked_names(SimpleNamespace(cells=cells))
+    return checked_names(SimpleNamespace(cells=cells))
 
 
 def questions_of(path):
     """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
-    return {name: about(question) for name, question in release.read_source(path).questions.items()}
+    return {name: about(question) for name, question in read_source(path).questions.items()}
 
 
 def about(question):

@@ -15,7 +15,8 @@ import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
-from ..authoring import release
+from ..authoring.release import KERNEL, exercise_notebook
+from ..authoring.source import CHAPTERS, SOURCES, answered_in, checked_names, read_source, solved
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
 #: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
@@ -53,31 +54,26 @@ class _Exercise:
     def __init__(self, stems, folder):
         import nbformat
 
-        sources = [release.read_source(Path(folder) / f"{stem}.ipynb") for stem in stems]
+        sources = [read_source(Path(folder) / f"{stem}.ipynb") for stem in stems]
         self.questions = {name: question for source in sources for name, question in source.questions.items()}
         self.cells, self.parts, self.solved = [], [], {}
         self.names = {}
         for source in sources:
-            notebook = release.exercise_notebook(source)
-            checked = release._checked_names(source.notebook)
+            notebook = exercise_notebook(source)
+            checked = checked_names(source.notebook)
             owners = {variable: name for name, variable in checked.items()}
             for number, (cell, original) in enumerate(zip(notebook.cells, source.notebook.cells)):
                 cell = copy.deepcopy(cell)
                 if cell.cell_type == "code":
-                    regions = release.SOLUTION.findall(original.source)
-                    answered = [owners[variable] for region in regions for variable in release._bound(region, owners)]
+                    answered = [owners[variable] for variable in answered_in(original.source, owners)]
                     if answered:
                         self.parts.append(Part(len(self.cells), list(dict.fromkeys(answered))))
-                        self.solved[len(self.cells)] = release.HIDDEN.sub(
-                            "", release.SOLUTION.sub(lambda region: region[1], original.source)
-                        ).rstrip()
+                        self.solved[len(self.cells)] = solved(original.source)
                     self.names.update(_symbols(original.source))
                 self.cells.append(cell)
         for number, cell in enumerate(self.cells):
             cell["id"] = f"cell-{number}"
-        self.metadata = nbformat.v4.new_notebook(
-            metadata={"kernelspec": release.KERNEL, "language_info": {"name": "python"}}
-        )
+        self.metadata = nbformat.v4.new_notebook(metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
 
     def notebook(self, cells):
         made = copy.deepcopy(self.metadata)
@@ -357,10 +353,8 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     layout : {'folders', 'canvas', 'moodle', 'brightspace', 'nbgrader'}
         How the submissions are handed out.
     """
-    folder = Path(solutions or release.SOURCES)
-    stems = list(notebooks) or [
-        sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != release.CHAPTERS)[0]
-    ]
+    folder = Path(solutions or SOURCES)
+    stems = list(notebooks) or [sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != CHAPTERS)[0]]
     dice = random.Random(f"class {seed}")
     exercise = _Exercise(stems, folder)
     answers = _Answers(exercise, dice)

@@ -19,7 +19,7 @@ from ..live import runtime
 from ..live.cells import kinds_of_cells
 from ..paths import BUILD, fingerprint, moment_of_sources
 from ..take_away import FOLDER as TAKE_AWAY
-from ..take_away import introduction, is_notebook, notebook_pages
+from ..take_away import first_words, is_notebook, notebook_pages
 
 HERE = Path(__file__).parent
 FOLDER = "lite"
@@ -77,10 +77,10 @@ def notebook_for(site, page, settings):
         return (site / TAKE_AWAY / f"{page}.ipynb").read_text("utf8")
     notebook = nbformat.read(site / TAKE_AWAY / f"{page.rsplit('/', 1)[-1]}.ipynb", as_version=4)
     first = notebook.cells[0]
-    note = introduction(settings["title"])
-    if note not in first.source:
+    notes = [line for line in first.source.splitlines() if line.startswith(first_words(settings["title"]))]
+    if len(notes) != 1:
         raise RuntimeError(f"the notebook of {page} does not say how to run it, or says it in other words")
-    first.source = first.source.replace(note, NOTE.format(title=settings["title"]))
+    first.source = first.source.replace(notes[0], NOTE.format(title=settings["title"]))
     setting = settings["sphinx"]["config"]["numpy_in_the_page"]
     if setting not in (False, "off"):
         announce_numpy(notebook, kinds_of_cells()[page], PLACES.get(setting, PLACES["folder"]))

@@ -1,0 +1,174 @@
+"""A notebook with solutions: what its author wrote between nbgrader's marks, and what its cells compute.
+
+``### BEGIN SOLUTION`` and ``### BEGIN HIDDEN TESTS`` mark what students do not get.
+"""
+
+import ast
+import contextlib
+import re
+import textwrap
+from pathlib import Path
+from typing import NamedTuple
+
+import coursework
+
+from . import author
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+SOURCES = REPOSITORY / "tests" / "solutions"
+#: The source whose questions stand inside the chapters: only its sealed file is made.
+CHAPTERS = "chapters"
+
+SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
+HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
+
+
+class Source(NamedTuple):
+    """A notebook with solutions, after its cells were run."""
+
+    name: str
+    notebook: dict
+    questions: dict
+    figures: dict
+
+
+def notebooks_in(folder):
+    """The notebooks with solutions of a folder.
+
+    Raises
+    ------
+    AuthorError
+        There is none.
+    """
+    found = sorted(Path(folder).glob("*.ipynb"))
+    if not found:
+        raise author.AuthorError(f"There is no notebook with solutions in {folder}.")
+    return found
+
+
+def read_source(path):
+    """Run a notebook with solutions and give its questions.
+
+    Raises
+    ------
+    AuthorError
+        A question has no check, a check has no question, or a cell fails.
+    """
+    import nbformat
+
+    path = Path(path)
+    notebook = nbformat.read(path, as_version=4)
+    answers, questions, figures = {}, {}, {}
+
+    def record_check(name, answer):
+        answers[name] = answer
+
+    def record_question(name, **about):
+        if name not in answers:
+            raise author.AuthorError(f"{name}: the question stands before its check.")
+        if name in questions:
+            raise author.AuthorError(f"{name}: there are two questions of this name.")
+        if name.partition("/")[0] != path.stem:
+            raise author.AuthorError(f"{name}: a question of this notebook is named '{path.stem}/...'.")
+        questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
+
+    namespace = {"__name__": "__main__", "question": record_question}
+    with _replaced(coursework, "check", record_check):
+        for number, cell in enumerate(notebook.cells):
+            if cell.cell_type != "code":
+                continue
+            try:
+                value = _run(cell.source, namespace, f"{path.name}, cell {number}")
+            except author.AuthorError:
+                raise
+            except Exception as error:
+                raise author.AuthorError(f"{path.name}, cell {number}: {type(error).__name__}: {error}") from error
+            if "figure" in cell.metadata.get("tags", []):
+                figures[number] = value
+    unasked = sorted(set(answers) - set(questions))
+    if unasked:
+        raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
+    variables = checked_names(notebook)
+    if len(set(variables.values())) < len(variables):
+        raise author.AuthorError(f"{path.name}: two questions have an answer of the same name.")
+    for name, question in questions.items():
+        question.variable = variables[name]
+    return Source(path.stem, notebook, questions, figures)
+
+
+@contextlib.contextmanager
+def _replaced(module, name, value):
+    before = getattr(module, name)
+    setattr(module, name, value)
+    try:
+        yield
+    finally:
+        setattr(module, name, before)
+
+
+def _run(source, namespace, where):
+    """Run a cell and give the value of its last line, as a notebook shows it."""
+    tree = ast.parse(source, where)
+    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+    exec(compile(tree, where, "exec"), namespace)
+    if last is not None:
+        return eval(compile(ast.Expression(last.value), where, "eval"), namespace)
+    return None
+
+
+def checked_names(notebook):
+    """The name of the answer of each question, from the calls of ``check``."""
+    found = {}
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            for node in ast.walk(ast.parse(cell.source)):
+                if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
+                    name, answer = node.args
+                    if not isinstance(answer, ast.Name):
+                        raise author.AuthorError(f"{ast.unparse(node)}: the answer of a check is a plain name.")
+                    found[name.value] = answer.id
+    return found
+
+
+def bound(region, owners):
+    """The answers that a solution binds, in order."""
+    names = []
+    for node in ast.parse(textwrap.dedent(region)).body:
+        if isinstance(node, ast.FunctionDef):
+            names.append(node.name)
+        elif isinstance(node, ast.Assign):
+            names += [target.id for target in node.targets if isinstance(target, ast.Name)]
+    return [name for name in names if name in owners]
+
+
+def answered_in(text, owners):
+    """The answers that the solutions in a cell bind, in order."""
+    return [name for region in SOLUTION.findall(text) for name in bound(region, owners)]
+
+
+def solved(text):
+    """A cell with its solution, without the marks around it and without hidden tests."""
+    return HIDDEN.sub("", SOLUTION.sub(lambda region: region[1], text)).rstrip()
+
+
+def posed(text, owners):
+    """The same cell as students get it: with blanks, and without hidden tests."""
+    return HIDDEN.sub("", SOLUTION.sub(lambda region: blank(region[1], owners), text)).rstrip()
+
+
+def blank(region, owners):
+    """What stands in place of a solution."""
+    functions = {
+        node.name: node for node in ast.parse(textwrap.dedent(region)).body if isinstance(node, ast.FunctionDef)
+    }
+    lines = []
+    for name in dict.fromkeys(bound(region, owners)):
+        if name not in functions:
+            lines.append(f"{name} = ...  # your answer\n")
+            continue
+        function = functions[name]
+        lines.append(f"def {name}({ast.unparse(function.args)}):\n")
+        if ast.get_docstring(function):
+            lines.append(f'    """{ast.get_docstring(function)}"""\n')
+        lines.append("    ...  # your code\n")
+    return "".join(lines)
