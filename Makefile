@@ -10,15 +10,18 @@ PIP := $(RUN) -m pip install --quiet --disable-pip-version-check --no-build-isol
 # Kernels see this book's settings and nobody's own.
 export IPYTHONDIR := $(CURDIR)/_build/ipython
 export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
+# Python keeps what it has compiled, whatever is set outside: hundreds of processes load the same modules.
+unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve test take-away notebooks release benchmark clean
+.PHONY: help setup book serve test test-all take-away notebooks release benchmark clean
 
 help:
 	@echo "make book       build the site into _build/html"
 	@echo "make serve      build it, serve it on a local address and print that"
 	@echo "make take-away  build it with the whole book as a PDF and as a zip to read offline"
-	@echo "make test       run every test"
+	@echo "make test       try every part of the book and its software (minutes)"
+	@echo "make test-all   run every test, as continuous integration does"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them"
 	@echo "make benchmark  compare with other libraries"
@@ -61,10 +64,14 @@ serve: book
 take-away: book
 	@$(RUN) -m website.whole_book
 
-# The PDF is printed by a browser; where there is none, the tests that need one are skipped.
+# As many tests side by side as there are cores. What takes long and rarely breaks is left to `make test-all`.
 test: book
+	@$(RUN) -m pytest -n logical -m "not long"
+
+# The PDF is printed by a browser; where there is none, the tests that need one are skipped.
+test-all: book
 	@if $(RUN) -m website.browser; then $(RUN) -m website.whole_book; fi
-	@$(RUN) -m pytest -n 3
+	@$(RUN) -m pytest -n logical
 
 notebooks: setup
 	@$(RUN) -m website.notebooks

@@ -1,10 +1,14 @@
-"""What the tests share: the built site, a server for it, and a browser."""
+"""What the tests share: which of them run, the built site, a server for it, and a browser."""
 
+import datetime
 import os
+import random
 import threading
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
+import warm_kernels
 from xdist.scheduler import LoadFileScheduling
 
 from website.browser import FLAGS, find
@@ -31,6 +35,39 @@ def pytest_xdist_make_scheduler(config, log):
             return nodeid if nodeid.startswith(APART) else super()._split_scope(nodeid)
 
     return ByFile(config, log)
+
+
+# What is drawn by lot in this run is drawn from this; another day draws another lot, and the same seed the same.
+SEED = os.environ.setdefault("BOOK_TEST_SEED", datetime.date.today().isoformat())
+
+
+def pytest_configure(config):
+    warm_kernels.use()
+    config.addinivalue_line(
+        "markers", "sampled(number): of the test's cases only so many, drawn by lot, run every time; the rest is long"
+    )
+
+
+def pytest_report_header():
+    return f"drawn by lot from BOOK_TEST_SEED={SEED}, which draws the same again"
+
+
+@pytest.hookimpl(tryfirst=True)  # before those that are marked as long are left out
+def pytest_collection_modifyitems(items):
+    cases = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("sampled"):
+            cases[item.nodeid.partition("[")[0]].append(item)
+    for name, found in cases.items():
+        number = min(found[0].get_closest_marker("sampled").args[0], len(found))
+        chosen = random.Random(f"{SEED} {name}").sample(found, number)
+        for item in found:
+            if item not in chosen:
+                item.add_marker(pytest.mark.long)
+
+
+def pytest_unconfigure():
+    warm_kernels.warm.end()
 
 
 def html_pages():

@@ -217,6 +217,7 @@ def test_nothing_is_written_sent_or_left_running(aftermath):
 UNPROTECTED = sorted({attack.without for attack in ATTACKS if attack.without})
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("layers", UNPROTECTED, ids=" and ".join)
 def test_attacks_succeed_without_their_layers(layers, surroundings):
     """The same cells take the loot when the layers against them are off: what stops them is known."""

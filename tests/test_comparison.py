@@ -54,7 +54,7 @@ EQUAL = [
     (simple_dcm("z", psi) * simple_dcm("z", theta) * simple_dcm("z", phi), simple_dcm("z", psi + theta + phi)),
     (composed(SYMBOLS, "zxy"), composed(SYMBOLS, "zxy").expand()),
     (sum_form(composed(SYMBOLS, "zxy")), composed(SYMBOLS, "zxy")),
-    (composed(SYMBOLS, "zxy").inv(), composed(SYMBOLS, "zxy").T),
+    (composed(SYMBOLS, "zxy").adjugate() / composed(SYMBOLS, "zxy").det(), composed(SYMBOLS, "zxy").T),
     (
         dcm_from_quaternion(
             multiply_quaternions(

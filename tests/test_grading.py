@@ -410,7 +410,7 @@ def test_a_notebook_that_kills_sandbox_after_sandbox_costs_only_itself(course, m
 # ---- the same wherever it is run
 
 
-@pytest.mark.parametrize("workers", [1, 4])
+@pytest.mark.parametrize("workers", [1, pytest.param(4, marks=pytest.mark.long)])
 def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
     grade(
         course / "submissions",
@@ -423,6 +423,7 @@ def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
     assert contents(prepared) == contents(course / "out")
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_a_cluster_that_loses_a_worker_changes_no_byte(course, prepared):
     distributed = pytest.importorskip("distributed")

@@ -31,6 +31,7 @@ def test_every_attempt_is_stopped_and_the_result_says_by_what():
     assert {NAMESPACES, LANDLOCK} & set(result["isolation"]["layers"])
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("without", [[SECCOMP], [LIMITS], [NAMESPACES, LANDLOCK]], ids=" and ".join)
 def test_no_student_code_runs_where_isolation_is_weak(without):
     with pytest.raises(WeakIsolation) as refused:
@@ -45,6 +46,7 @@ def test_no_student_code_runs_where_isolation_is_weak(without):
     assert not set(without) & set(result["isolation"]["layers"])
 
 
+@pytest.mark.long
 def test_each_layer_alone_stops_what_it_is_for():
     """Every layer is tried by itself; here with all the others off, so that nothing else can have helped."""
     with Sandbox() as sandbox:
@@ -107,15 +109,19 @@ def tried(makers, nobody):
     return json.loads(run.stdout)
 
 
-def skip_unless_there(makers, report):
+def skip_unless_installed(makers):
     if makers == ["bubblewrap"] and shutil.which("bwrap") is None:
         pytest.skip("bubblewrap is not installed")
+
+
+def skip_unless_there(makers, report):
     if makers and not report["layers"][NAMESPACES]["in force"]:
         pytest.skip(f"no namespaces on this machine: {report['layers'][NAMESPACES]['why not']}")
 
 
 @pytest.mark.parametrize("makers", MAKERS, ids=lambda makers: " ".join(makers) or "no namespaces")
 def test_an_ordinary_user_is_as_safe(makers):
+    skip_unless_installed(makers)
     nobody = os.geteuid() == 0
     if nobody and ctypes.CDLL(None).prctl(23, 21, 0, 0, 0) != 1:
         pytest.skip("root without the right to mount cannot lay out Python for another user")
@@ -130,6 +136,7 @@ def test_an_ordinary_user_is_as_safe(makers):
 @pytest.mark.parametrize("makers", MAKERS[:2], ids="".join)
 @pytest.mark.skipif(os.geteuid() != 0, reason="this is not root")
 def test_root_is_as_safe(makers):
+    skip_unless_installed(makers)
     _, report, result = tried(makers, False)
     skip_unless_there(makers, report)
     assert isolation.lacking(report) == []
