@@ -14,7 +14,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve test test-all take-away notebooks release benchmark clean
+.PHONY: help setup book serve test test-all times take-away notebooks release benchmark clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -22,6 +22,7 @@ help:
 	@echo "make take-away  build it with the whole book as a PDF and as a zip to read offline"
 	@echo "make test       try every part of the book and its software (minutes)"
 	@echo "make test-all   run every test, as continuous integration does"
+	@echo "make times      the same, and write down what each part costs in tests/TIMES.md"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them"
 	@echo "make benchmark  compare with other libraries"
@@ -71,7 +72,10 @@ test: book
 # The PDF is printed by a browser; where there is none, the tests that need one are skipped.
 test-all: book
 	@if $(RUN) -m website.browser; then $(RUN) -m website.whole_book; fi
-	@$(RUN) -m pytest -n logical
+	@$(RUN) -m pytest -n logical $(TABLE)
+
+times: TABLE := --write-times
+times: test-all
 
 notebooks: setup
 	@$(RUN) -m website.notebooks

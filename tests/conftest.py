@@ -8,6 +8,7 @@ from collections import defaultdict
 from pathlib import Path
 
 import pytest
+import times
 import warm_kernels
 from xdist.scheduler import LoadFileScheduling
 
@@ -20,7 +21,13 @@ BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
 
 
 # Tests that take long, each by itself, and share nothing with the others of their file.
-APART = ("tests/test_site.py::test_page_in_", "tests/test_live.py::test_results_equal_the_stored_ones[")
+APART = (
+    "tests/test_site.py::test_page_in_",
+    "tests/test_live.py::test_results_equal_the_stored_ones[",
+    "tests/test_release.py::test_what_is_committed_is_what_the_source_makes[",
+    "tests/test_selftest.py::test_every_question_passes_and_names_its_mistakes[",
+    "tests/test_takeaway.py::test_script_runs[",
+)
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -41,8 +48,13 @@ def pytest_xdist_make_scheduler(config, log):
 SEED = os.environ.setdefault("BOOK_TEST_SEED", datetime.date.today().isoformat())
 
 
+def pytest_addoption(parser):
+    parser.addoption("--write-times", action="store_true", help="write the table of tests/TIMES.md")
+
+
 def pytest_configure(config):
     warm_kernels.use()
+    config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(
         "markers", "sampled(number): of the test's cases only so many, drawn by lot, run every time; the rest is long"
     )

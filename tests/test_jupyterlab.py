@@ -125,6 +125,7 @@ RUN_ALL = """async () => {
 DRAWN = "cell => [...cell.querySelectorAll('.marks path')].map(mark => mark.getAttribute('d')).join()"
 
 
+@pytest.mark.long
 def test_python_and_every_figure_move_together(browser, laboratory):
     folder, address = laboratory
     context = browser.new_context(viewport={"width": 1300, "height": 1000})

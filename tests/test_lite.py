@@ -193,6 +193,7 @@ def test_exercise_is_solved_kept_and_downloaded(browser, site):
     context.close()
 
 
+@pytest.mark.long
 def test_chapter_runs_and_its_figure_moves(browser, site):
     context = browser.new_context(viewport={"width": 1300, "height": 900})
     interface = Interface(context, site, CHAPTER)

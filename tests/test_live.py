@@ -158,6 +158,7 @@ def test_every_notebook_is_a_page_with_code():
 
 
 # The build has run all cells with the same Python code; pages of exercises are alike in a browser.
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", [name for name in PAGES if not name.startswith(STORED)])
 def test_results_equal_the_stored_ones(context, site, name):
     """Every cell that needs SymPy only gives what is printed; the others say why they did not run."""
@@ -312,6 +313,7 @@ def numpy_page(context, site, lock, wheel):
     return page
 
 
+@pytest.mark.long
 def test_numpy_is_fetched_and_checked(context, site, made_wheels):
     folder, made = made_wheels
     lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
@@ -358,6 +360,7 @@ def test_typo(shared):
     assert "error" in shared.words()
 
 
+@pytest.mark.long
 def test_failing_cell_keeps_its_printed_result(context, site):
     """Beside an error stands what the book has printed; it comes back alone with the book's code."""
     page = Page(context, site, QUIET)

@@ -42,6 +42,7 @@ def test_weight():
     assert sum(weights) < HEAVIEST, dict(zip(["shared", *KINDS], weights))
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("theme", THEMES)
 @pytest.mark.parametrize("viewport", [WIDE, NARROW], ids=["wide", "narrow"])
 @pytest.mark.parametrize("kind", KINDS)
@@ -56,6 +57,7 @@ def test_figure_on_the_page(open_figure, kind, viewport, theme):
     assert not page.is_visible(".moving .still")
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
     """The still stands where the drawing will stand, in the room that the figure will need."""
@@ -88,6 +90,7 @@ def test_both_languages_draw_the_same_arrows(open_figure, kind):
         assert frame == twin and line == pytest.approx(place, abs=0.11)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_without_scripts_and_on_paper_there_is_the_still(open_figure, kind):
     page = open_figure(kind, java_script_enabled=False)
@@ -118,6 +121,7 @@ FOCUSED = """() => {
 }"""
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_keys_alone(open_figure, kind):
     """Tab reaches every control in turn, each shows the focus and has a name, and each does what it says."""
@@ -159,6 +163,7 @@ def test_keys_alone(open_figure, kind):
     assert len(stops) == controls and "svg" in {tag.lower() for tag in tags}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_targets_are_large_enough_for_a_finger(open_figure, kind):
     page = open_figure(kind, viewport=NARROW)
@@ -171,6 +176,7 @@ def test_targets_are_large_enough_for_a_finger(open_figure, kind):
     assert [box for box in boxes if min(box[1:]) < SMALLEST_TARGET - 0.5] == []
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_touch(open_figure, kind):
     """A finger turns the view sideways, and up and down it still scrolls the page."""
@@ -199,6 +205,7 @@ DRAGS = [("triad", "1", None, (10, 45)), ("triad", "axis", None, (-20, 50)), ("g
          ("gimbal", "C", 12, (15, -45)), ("gimbal", "D", None, (10, 35)), ("nine_numbers", "0", None, (-10, 45))]  # fmt: skip
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("touch", [False, True], ids=["mouse", "touch"])
 @pytest.mark.parametrize("kind, part, corner, way", DRAGS)
 def test_parts_follow_the_pointer(open_figure, kind, part, corner, way, touch):
@@ -292,6 +299,7 @@ def test_numbers_are_reached_by_arrow_keys_and_read_aloud(open_figure):
     assert page.locator(".sheet .faded").count() == 0
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("sequence", module.SEQUENCES)
 def test_gimbal_shows_the_matrix_of_the_module(open_figure, sequence):
     page = open_figure("gimbal")
@@ -305,6 +313,7 @@ def test_gimbal_shows_the_matrix_of_the_module(open_figure, sequence):
         assert float(page.get_attribute("[role=meter]", "aria-valuenow")) == pytest.approx(margin, abs=0.06)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("sequence", module.SEQUENCES)
 def test_two_sliders_do_the_same_thing_at_lock(open_figure, sequence):
     page = open_figure("gimbal", reduced_motion="reduce")  # so that the buttons jump to the end
@@ -392,6 +401,7 @@ MOVES = """async ({ pictures, moves }) => {
 }"""
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(open_figure, kind):
     page = open_figure(kind)
@@ -404,6 +414,7 @@ def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(op
     assert np.median([count["made"] for count in counts]) == 0, "elements are made anew"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_moves_unasked(open_figure, kind):
     """Once it is drawn, a figure asks for no further picture."""

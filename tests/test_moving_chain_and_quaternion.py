@@ -360,6 +360,7 @@ EVERY = [
 ]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("make", EVERY)
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_accessible_in_both_themes_and_not_wider_than_a_phone(open_figure, make, theme):
@@ -379,6 +380,7 @@ STEADY = """() => {
 }"""
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 @pytest.mark.parametrize(
     "figure, start, end",

@@ -56,6 +56,7 @@ def run(*command, folder):
     return done.stdout + done.stderr
 
 
+@pytest.mark.long
 def test_nbgrader_grades_a_submission_by_our_checks(tmp_path):
     """One question right, one wrong, the rest untouched: the points are those of the right one."""
     from nbgrader.api import Gradebook

@@ -10,6 +10,7 @@ from coursework.authoring.selftest import leaks, released_texts, selftest, try_q
 SOURCES = {path.stem: path for path in sorted(release.SOURCES.glob("*.ipynb"))}
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SOURCES)
 def test_every_question_passes_and_names_its_mistakes(name):
     source = release.read_source(SOURCES[name])
@@ -21,6 +22,7 @@ def test_every_question_passes_and_names_its_mistakes(name):
         assert leaks([source], released_texts(archive="none")) == []
 
 
+@pytest.mark.long
 def test_nothing_leaks_into_the_archive(tmp_path):
     archive = packing.archive(tmp_path / "exercises.zip")
     sources = [release.read_source(path) for path in SOURCES.values()]

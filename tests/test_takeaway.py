@@ -161,11 +161,13 @@ def test_students_have_the_command_that_updates_and_no_other(readers_python, rea
 
 
 # All scripts run, and each notebook has the code of its script: two show that a notebook runs as one.
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["reference-frames", "convention-card"])
 def test_notebook_runs(name, tmp_path, readers_python, readers_variables):
     run_notebook(readers_python, name, tmp_path, readers_variables)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SOURCES)
 def test_script_runs(name, tmp_path, readers_python, readers_variables):
     run_script(readers_python, name, tmp_path, readers_variables)
