@@ -487,6 +487,7 @@ def test_stop_ends_what_does_not_listen(shared):
     assert "here again" in shared.try_code(3, "print('here again')")
 
 
+@pytest.mark.long
 def test_stop_in_a_page_without_shared_memory(context, not_isolated):
     page = Page(context, not_isolated, QUIET)
     assert not page.page.evaluate("crossOriginIsolated")
@@ -499,6 +500,7 @@ def test_stop_in_a_page_without_shared_memory(context, not_isolated):
     assert "new" in text and page.errors == []
 
 
+@pytest.mark.long
 def test_start_afresh(context, site):
     page = Page(context, site, QUIET)
     before = page.page.evaluate(RESULTS)
@@ -512,6 +514,7 @@ def test_start_afresh(context, site):
 # --- the reader's edits ---------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_edits_survive_a_reload_and_can_be_undone(browser, site):
     context = browser.new_context()
     page = Page(context, site, QUIET)
