@@ -82,6 +82,9 @@ def pytest_unconfigure():
     warm_kernels.warm.end()
 
 
+PATIENCE = 180_000  # milliseconds, for a busy machine; nothing waits longer than it must
+
+
 def html_pages():
     """The addresses of all pages of the built site, relative to its root; notebooks in ``lite`` are not pages."""
     found = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
@@ -113,5 +116,13 @@ def browser():
         pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=found, args=list(FLAGS))
+        open_context = chromium.new_context
+
+        def open_patient_context(**options):
+            context = open_context(**options)
+            context.set_default_timeout(PATIENCE)
+            return context
+
+        chromium.new_context = open_patient_context
         yield chromium
         chromium.close()

@@ -81,10 +81,10 @@ def test_equal_in_other_forms_quickly_and_without_simplifying(pair, monkeypatch)
     monkeypatch.setattr(sm.Matrix, "simplify", refuse)
     seconds = []
     for _ in range(3):
-        start = time.perf_counter()
+        start = time.process_time()
         assert same_orientation(*pair) is True
         assert same_orientation(*reversed(pair)) is True
-        seconds.append(time.perf_counter() - start)
+        seconds.append(time.process_time() - start)
     assert min(seconds) < 0.3
 
 

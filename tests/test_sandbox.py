@@ -294,7 +294,8 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
         "print('x' * 10_000_000)",
     ],
 )
-def test_honest_cells_run(sandbox, source):
+def test_honest_cells_run(sandbox, source, monkeypatch):
+    monkeypatch.setattr(sandbox, "limits", Limits())  # they are to come to their end, also on a slow machine
     if "scipy" in source:
         pytest.importorskip("scipy")
     result = sandbox.run(notebook("x = 1", source, "check('q', x)", questions={"q": None}))
@@ -369,7 +370,8 @@ def test_who_stops_listening_leaves_nothing_running():
     results = run_notebooks([notebook("1"), *[sleeping] * 5], workers=2, limits=LIMITS)
     next(results)
     results.close()
-    assert {process.pid for process in psutil.Process().children(recursive=True)} == before
+    # Another test's process may have ended meanwhile.
+    assert {process.pid for process in psutil.Process().children(recursive=True)} <= before
 
 
 KILLED = """
@@ -396,7 +398,7 @@ def test_a_grader_that_is_killed_leaves_nothing_running(tmp_path, without):
     grader.kill()
     grader.wait()
     grader.stdout.close()
-    _, alive = psutil.wait_procs(below, timeout=60)
+    _, alive = psutil.wait_procs(below, timeout=300)
     assert alive == []
     assert os.listdir(tmp_path) == []
 

@@ -106,7 +106,7 @@ def readers_variables(tmp_path):
 
 def run_script(python, name, folder, variables):
     path = FOLDER / f"{name}.py"
-    done = subprocess.run([python, path], cwd=folder, env=variables, capture_output=True, text=True, timeout=300)
+    done = subprocess.run([python, path], cwd=folder, env=variables, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stderr
 
 
@@ -117,7 +117,7 @@ def run_notebook(python, name, folder, variables):
 
     client = NotebookClient(
         deepcopy(notebook(name)),  # running it adds outputs
-        timeout=120,
+        timeout=600,
         kernel_name="python3",
         kernel_manager_class=Kernel,
         resources={"metadata": {"path": folder}},
