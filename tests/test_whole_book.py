@@ -26,10 +26,10 @@ MARGIN = 20  # millimetres at either side that nothing may enter
 MILLIMETRE = 72 / 25.4
 
 
-@pytest.fixture(scope="module", autouse=True)
-def made():
-    """Both files, made by `make take-away` from the site as it stands."""
-    if not (PDF.exists() and ZIP.exists()):
+@pytest.fixture(autouse=True)
+def made(request):
+    """Both files, made by `make take-away` from the site as it stands; `make test` does not look at them."""
+    if request.node.get_closest_marker("long") and not (PDF.exists() and ZIP.exists()):
         reason = "the whole book was not made: run `make take-away`"
         pytest.fail(reason) if browser_module.find() or BROWSER_REQUIRED else pytest.skip(reason)
 
@@ -84,6 +84,7 @@ def chapter_texts(places, texts):
     return {name: " ".join(texts[start:end]) for (name, start), end in zip(starts, ends)}
 
 
+@pytest.mark.long
 def test_it_says_what_it_is(book):
     assert str(book.docinfo.Title) == "Orientation of Reference Frames"
     assert str(book.Root.Lang).startswith("en")
@@ -91,6 +92,7 @@ def test_it_says_what_it_is(book):
     assert book.Root.PageMode == pikepdf.Name.UseOutlines
 
 
+@pytest.mark.long
 def test_bookmarks_are_the_parts_chapters_and_sections(book):
     with book.open_outline() as outline:
         found = {item.title: item.children for item in outline.root}
@@ -103,6 +105,7 @@ def test_bookmarks_are_the_parts_chapters_and_sections(book):
     assert list(found) == ["Orientation of Reference Frames", "Contents", "About this book"]
 
 
+@pytest.mark.long
 def test_links_lead_somewhere(book, places):
     """Each link of the pages is a link of the PDF, and each of those has a place to go."""
     inside, outside = set(), set()
@@ -122,6 +125,7 @@ def test_links_lead_somewhere(book, places):
                 assert target in inside, f"{name}: {link}"
 
 
+@pytest.mark.long
 def test_contents_list_has_the_right_page_numbers(places, texts):
     listed = " ".join(texts[1 : places[pdf.place(pages()[1])]])
     for name in pages()[1:]:
@@ -132,6 +136,7 @@ def test_contents_list_has_the_right_page_numbers(places, texts):
         assert re.search(rf"(^|\D){number}(\D|$)", texts[number - 1]), "the page bears another number"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", pages()[1:])
 def test_chapter_is_whole(name, chapter_texts):
     """Its sentences can be searched for; its equations, figures and exercises have their numbers."""
@@ -157,6 +162,7 @@ def structure(node):
             yield from structure(node.K)
 
 
+@pytest.mark.long
 def test_every_figure_is_there_and_says_what_it_shows(book):
     said = [str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node]
     shown = [svg["aria-label"] for name in pages() for svg in article(name).select("svg[aria-label]")]
@@ -165,6 +171,7 @@ def test_every_figure_is_there_and_says_what_it_shows(book):
     assert sum(text in set(shown) for text in said) == len(shown)
 
 
+@pytest.mark.long
 def test_formulas_are_there_and_are_read_as_tex(book):
     said = {str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node}
     for name in pages():
@@ -172,6 +179,7 @@ def test_formulas_are_there_and_are_read_as_tex(book):
             assert re.sub(r"\s+", " ", formula.get_text()) in said
 
 
+@pytest.mark.long
 def test_no_glyph_comes_from_elsewhere(book):
     """Where our typefaces have no glyph, the browser would take one from the machine, or draw a box."""
     fonts = {}
@@ -184,6 +192,7 @@ def test_no_glyph_comes_from_elsewhere(book):
         assert "/FontFile2" in font.DescendantFonts[0].FontDescriptor
 
 
+@pytest.mark.long
 def test_nothing_reaches_into_the_margins():
     document = pdfium.PdfDocument(PDF)
     scale = 0.4
@@ -199,7 +208,7 @@ def test_nothing_reaches_into_the_margins():
 def test_too_wide_a_line_stops_the_printing(browser):
     katex = '<div class="math-box"><span class="katex" style="white-space: nowrap">{}</span></div>'
     style = "<style>.katex { display: inline-block; font-size: 16px }</style>"
-    page = browser.new_page(viewport={"width": pdf.WIDTH, "height": 900})
+    page = browser.new_context(viewport={"width": pdf.WIDTH, "height": 900}).new_page()
 
     def faults(inside):
         page.set_content(f'{style}<body style="margin: 0"><article id="a">{inside}</article>')
@@ -213,7 +222,7 @@ def test_too_wide_a_line_stops_the_printing(browser):
     assert "px too wide: mmm" in fault
     (fault,) = faults('<table><tr><td style="min-width: 900px">cell</td></tr></table>')[:1]
     assert "too wide" in fault
-    page.close()
+    page.context.close()
 
 
 def test_without_a_browser_it_says_so(monkeypatch):
@@ -223,6 +232,7 @@ def test_without_a_browser_it_says_so(monkeypatch):
             pass
 
 
+@pytest.mark.long
 def test_front_page_offers_both():
     front = (HTML / "index.html").read_text("utf8")
     (place,) = whole_book.PLACE.findall(front)
@@ -253,6 +263,7 @@ def unpacked(tmp_path_factory):
     return inside
 
 
+@pytest.mark.long
 def test_zip_holds_the_site_once():
     with zipfile.ZipFile(ZIP) as archive:
         entries = archive.infolist()
@@ -271,6 +282,7 @@ def test_same_files_give_the_same_zip(monkeypatch):
     assert one == other
 
 
+@pytest.mark.long
 def test_front_page_in_the_zip_offers_the_pdf_alone(unpacked):
     front = (unpacked / "index.html").read_text("utf8")
     (place,) = whole_book.PLACE.findall(front)
@@ -304,6 +316,7 @@ def settled(page):
     return page
 
 
+@pytest.mark.long
 def test_pages_open_from_disk(from_disk, unpacked):
     for name in pages()[::4]:
         from_disk.goto((unpacked / f"{name}.html").as_uri())
@@ -315,6 +328,7 @@ def test_pages_open_from_disk(from_disk, unpacked):
         assert from_disk.evaluate(SIDEWAYS) <= 0
 
 
+@pytest.mark.long
 def test_reader_goes_through_the_book_from_disk(from_disk, unpacked):
     page = settled(from_disk)
     page.click("article .sd-card a >> nth=0")
@@ -327,6 +341,7 @@ def test_reader_goes_through_the_book_from_disk(from_disk, unpacked):
     assert page.evaluate("document.documentElement.dataset.mode") != "auto"
 
 
+@pytest.mark.long
 def test_moving_figure_moves_from_disk(from_disk, unpacked):
     name = next(name for name in CHAPTERS if 'data-figure="gimbal"' in (HTML / f"{name}.html").read_text("utf8"))
     from_disk.goto((unpacked / f"{name}.html").as_uri())
@@ -341,6 +356,7 @@ def test_moving_figure_moves_from_disk(from_disk, unpacked):
     )
 
 
+@pytest.mark.long
 def test_search_finds_a_word_from_disk(from_disk):
     page = settled(from_disk)
     page.keyboard.press("Control+k")
@@ -353,12 +369,14 @@ def test_search_finds_a_word_from_disk(from_disk):
     page.wait_for_selector("article h1")
 
 
+@pytest.mark.long
 def test_run_says_what_to_do_from_disk(from_disk, unpacked):
     from_disk.goto((unpacked / f"{CHAPTERS[1]}.html").as_uri())
     from_disk.click("button.run-page")
     from_disk.wait_for_selector("text=python serve.py")
 
 
+@pytest.mark.long
 def test_small_server_of_the_zip(unpacked, tmp_path):
     """Started from anywhere, it serves its own folder, with the types that modules and WebAssembly need."""
     process = subprocess.Popen(
