@@ -19,7 +19,9 @@ from .euler_angles import (
     gimbal_lock_margin,
     space_fixed_from_dcm,
 )
+from .filters import MultiplicativeKalmanFilter
 from .frames import Frames
+from .observations import dcm_from_directions, dcm_from_two_directions, directions_covariance
 from .quaternions import dcm_from_quaternion, interpolate_quaternions, multiply_quaternions, quaternion_from_dcm
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 from .scipy_border import dcm_from_scipy_rotation, scipy_rotation_from_dcm
@@ -29,6 +31,7 @@ __version__ = "1.1.0"
 __all__ = [
     "Diagnosis",
     "Frames",
+    "MultiplicativeKalmanFilter",
     "NearestDCM",
     "PROPER_EULER",
     "SEQUENCES",
@@ -39,6 +42,9 @@ __all__ = [
     "body_fixed_from_dcm",
     "check_dcm",
     "dcm_from_axis_angle",
+    "dcm_from_directions",
+    "dcm_from_two_directions",
+    "directions_covariance",
     "dcm_from_body_fixed",
     "dcm_from_quaternion",
     "dcm_from_rotation_vector",

@@ -1,0 +1,114 @@
+"""A filter that follows an orientation: gyroscope in, directions in, orientation and its uncertainty out."""
+
+from ._numbers_and_symbols import number_array
+from .direction_cosines import check_dcm
+from .rotation_vector import dcm_from_rotation_vector
+
+
+class MultiplicativeKalmanFilter:
+    r"""Multiplicative extended Kalman filter of an orientation and of the gyroscope's bias.
+
+    The orientation itself is a direction cosine matrix and is turned, never added to. What has a covariance is the
+    small rotation vector :math:`\boldsymbol\delta` from the estimated body to the true one, along the body,
+
+    .. math::
+
+       {}^B\mathbf{C}^N = \exp\left(-[\boldsymbol\delta]_\times\right)\,{}^{\hat B}\mathbf{C}^N ,
+
+    followed by the error of the bias :math:`\mathbf{b}`. Everything works for one orientation and for a batch.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(..., 3, 3)``
+        The first estimate of :math:`{}^B\mathbf{C}^N`.
+    covariance : array of shape ``(6, 6)`` or ``(..., 6, 6)``
+        Of :math:`\boldsymbol\delta` (square radians) and the bias (squares of radians per second).
+    gyroscope_noise : float
+        Angle random walk, radians per square root of a second.
+    bias_noise : float
+        Random walk of the bias, radians per second per square root of a second.
+
+    Attributes
+    ----------
+    dcm : array of shape ``(..., 3, 3)``
+    bias : array of shape ``(..., 3)``
+        Radians per second.
+    covariance : array of shape ``(..., 6, 6)``
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orientation import MultiplicativeKalmanFilter
+    >>> estimate = MultiplicativeKalmanFilter(np.eye(3), 0.01 * np.eye(6), 0.001, 0.0001)
+    >>> estimate.turn((0, 0, 1.0), 0.01)
+    >>> estimate.observe((0, 0, 1.0), (0, 0, 1.0), 0.01)
+    >>> bool(estimate.covariance[0, 0] < 0.0002 < estimate.covariance[2, 2])  # up says nothing of the heading
+    True
+
+    Notes
+    -----
+    Source: Lefferts, Markley and Shuster (1982); Markley (2003).
+    """
+
+    def __init__(self, dcm, covariance, gyroscope_noise, bias_noise):
+        import numpy
+
+        self.dcm = number_array(dcm, (3, 3), "dcm")
+        check_dcm(self.dcm)
+        batch = self.dcm.shape[:-2]
+        self.bias = numpy.zeros((*batch, 3))
+        self.covariance = numpy.broadcast_to(number_array(covariance, (6, 6), "covariance"), (*batch, 6, 6)).copy()
+        self.gyroscope_noise, self.bias_noise = float(gyroscope_noise), float(bias_noise)
+
+    def turn(self, angular_velocity, step):
+        r"""Turn with the gyroscope for one step.
+
+        Parameters
+        ----------
+        angular_velocity : array of shape ``(..., 3)``
+            What the gyroscope says, bias and noise included, along the body; radians per second.
+        step : float
+            Seconds.
+        """
+        import numpy
+
+        turned = dcm_from_rotation_vector((number_array(angular_velocity, (3,), "rate") - self.bias) * step)
+        self.dcm = turned @ self.dcm
+        carried = numpy.zeros_like(self.covariance) + numpy.eye(6)
+        carried[..., :3, :3] = turned
+        carried[..., :3, 3:] = -step * numpy.eye(3)
+        noise = numpy.repeat([self.gyroscope_noise**2 * step, self.bias_noise**2 * step], 3)
+        self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + numpy.diag(noise)
+
+    def observe(self, observed, reference, deviation):
+        r"""Correct the estimate with one direction that was measured.
+
+        Parameters
+        ----------
+        observed : array of shape ``(..., 3)``
+            The direction along the body, of any length.
+        reference : array of shape ``(..., 3)``
+            The same direction along :math:`N`, of any length.
+        deviation : float or array of shape ``(...)``
+            Standard deviation across the direction, radians.
+        """
+        import numpy
+
+        observed, reference = (
+            value / numpy.linalg.norm(value, axis=-1, keepdims=True)
+            for value in (number_array(observed, (3,), "observed"), number_array(reference, (3,), "reference"))
+        )
+        expected = (self.dcm @ reference[..., None])[..., 0]
+        # A body turned by delta sees expected + expected x delta.
+        slope = numpy.zeros((*expected.shape, 6))
+        slope[..., :3] = numpy.cross(expected[..., None, :], numpy.eye(3)).swapaxes(-1, -2)
+        spread = self.covariance @ slope.swapaxes(-1, -2)
+        variance = numpy.asarray(deviation, dtype=float)[..., None, None] ** 2
+        gain = spread @ numpy.linalg.inv(slope @ spread + variance * numpy.eye(3))
+        change = (gain @ (observed - expected)[..., None])[..., 0]
+        self.dcm = dcm_from_rotation_vector(change[..., :3]) @ self.dcm
+        self.bias = self.bias + change[..., 3:]
+        # Joseph's form keeps the covariance symmetric and positive where rounding would not.
+        kept = numpy.eye(6) - gain @ slope
+        gain_squared = gain @ gain.swapaxes(-1, -2)
+        self.covariance = kept @ self.covariance @ kept.swapaxes(-1, -2) + variance * gain_squared

@@ -1,0 +1,208 @@
+"""Orientation from observed directions: two vectors, or many with weights.
+
+A direction that is known in a frame :math:`N` (up, north, a star) is measured along a body :math:`B`. Two
+directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two are fitted.
+"""
+
+from ._numbers_and_symbols import number_array
+
+#: Sine of the angle below which two directions count as one.
+PARALLEL = 1e-6
+
+
+def dcm_from_two_directions(observed, reference):
+    r"""Direction cosine matrix that two observed directions fix: the TRIAD method.
+
+    The first direction is trusted entirely, the second only for what it says about the turn around the
+    first. From each pair a right-handed triad is made, :math:`\hat{t}_1 = \hat{u}_1`,
+    :math:`\hat{t}_2 \parallel \hat{u}_1 \times \hat{u}_2`, :math:`\hat{t}_3 = \hat{t}_1 \times \hat{t}_2`; with
+    the triads as rows of :math:`\mathbf{T}_B` (observed) and :math:`\mathbf{T}_N` (reference),
+
+    .. math::
+
+       {}^B\mathbf{C}^N = \mathbf{T}_B^T\,\mathbf{T}_N .
+
+    Parameters
+    ----------
+    observed : array of shape ``(2, 3)`` or ``(..., 2, 3)``
+        The two directions along :math:`B`, of any length.
+    reference : array of shape ``(2, 3)`` or ``(..., 2, 3)``
+        The same two directions along :math:`N`, in the same order.
+
+    Returns
+    -------
+    array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^B\mathbf{C}^N`.
+
+    Raises
+    ------
+    ValueError
+        If a direction is zero, or two directions that should differ are parallel.
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_two_directions, same_orientation, simple_dcm
+    >>> B_C_N = simple_dcm('y', 0.4)
+    >>> up_and_north = [[0, 0, 1], [1, 0, 0]]
+    >>> same_orientation(dcm_from_two_directions(up_and_north @ B_C_N.T, up_and_north), B_C_N)
+    True
+
+    Notes
+    -----
+    Source: Black (1964); Shuster and Oh (1981).
+    """
+    body, fixed = (
+        _triad(number_array(pair, (2, 3), name), name)
+        for pair, name in ((observed, "observed"), (reference, "reference"))
+    )
+    return body.swapaxes(-1, -2) @ fixed
+
+
+def _triad(pair, name):
+    import numpy
+
+    first, second = (_unit(pair[..., k, :], name) for k in (0, 1))
+    across = numpy.cross(first, second)
+    sine = numpy.linalg.norm(across, axis=-1, keepdims=True)
+    if not numpy.all(sine > PARALLEL):
+        raise ValueError(
+            f"the two {name} directions are parallel or opposite (the sine of their angle is {sine.min():.1e}): "
+            "the turn around them cannot be found. Take a second direction well away from the first."
+        )
+    across = across / sine
+    return numpy.stack([first, across, numpy.cross(first, across)], axis=-2)
+
+
+def _unit(directions, name):
+    import numpy
+
+    length = numpy.linalg.norm(directions, axis=-1, keepdims=True)
+    if not numpy.all(length > 0):
+        raise ValueError(f"{name} holds a direction of length zero: was a measurement missing, and written as 0?")
+    return directions / length
+
+
+def dcm_from_directions(observed, reference, deviations=None):
+    r"""Direction cosine matrix that fits many observed directions best: Wahba's problem.
+
+    Finds the :math:`{}^B\mathbf{C}^N` with the least
+
+    .. math::
+
+       \tfrac12 \sum_k \frac{1}{\sigma_k^2}\,\bigl|\hat{b}_k - {}^B\mathbf{C}^N\,\hat{n}_k\bigr|^2 ,
+
+    by the singular value decomposition of :math:`\sum_k \hat{b}_k \hat{n}_k^T / \sigma_k^2 =
+    \mathbf{U}\mathbf{S}\mathbf{V}^T`: it is :math:`\mathbf{U}\,\mathrm{diag}(1, 1, \det\mathbf{U}\mathbf{V}^T)\,
+    \mathbf{V}^T`, the direction cosine matrix nearest to that sum, as in :func:`nearest_dcm`.
+
+    Parameters
+    ----------
+    observed : array of shape ``(count, 3)`` or ``(..., count, 3)``
+        Directions :math:`\hat{b}_k` along :math:`B`, of any length.
+    reference : array of shape ``(count, 3)`` or ``(..., count, 3)``
+        The same directions :math:`\hat{n}_k` along :math:`N`.
+    deviations : array of shape ``(count,)``, optional
+        Standard deviation :math:`\sigma_k` of each direction in radians, across it. Without them all count alike.
+
+    Returns
+    -------
+    array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^B\mathbf{C}^N`.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a deviation is not positive, or the directions lie along one line.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orientation import dcm_from_body_fixed, dcm_from_directions, same_orientation
+    >>> B_C_N = dcm_from_body_fixed((0.3, -1.1, 2.0), 'zxy')
+    >>> stars = np.array([[1, 0, 0], [0.8, 0.6, 0], [0.7, 0.1, 0.7]])
+    >>> same_orientation(dcm_from_directions(stars @ B_C_N.T, stars), B_C_N)
+    True
+
+    Notes
+    -----
+    Source: Wahba (1965); Markley (1988).
+    """
+    import numpy
+
+    observed, reference, weights = _weighted(observed, reference, deviations)
+    left, sizes, right = numpy.linalg.svd((weights * observed).swapaxes(-1, -2) @ reference)
+    sign = numpy.linalg.det(left @ right)
+    # How far the least of the three turns would have to be wrong before another orientation fits as well.
+    margin = (sizes[..., 1] + sign * sizes[..., 2]) / sizes[..., 0]
+    if not numpy.all(margin > PARALLEL):
+        raise ValueError(
+            f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie along one line, or "
+            "observed and reference are mirror images of each other. Is one of the two frames left-handed?"
+        )
+    left = left.copy()
+    left[..., :, 2] *= numpy.round(sign)[..., None]
+    return left @ right
+
+
+def directions_covariance(observed, deviations):
+    r"""Covariance of the error of an orientation that was fitted to directions.
+
+    The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the true one, along
+    :math:`B`, with :math:`{}^B\mathbf{C}^N = \exp(-[\boldsymbol\delta]_\times)\,{}^{\hat B}\mathbf{C}^N`. Each
+    direction tells of the turns across it and nothing of the turn around it:
+
+    .. math::
+
+       \mathbf{P}^{-1} = \sum_k \frac{1}{\sigma_k^2}\left(\mathbf{I} - \hat{b}_k \hat{b}_k^T\right) .
+
+    Parameters
+    ----------
+    observed : array of shape ``(count, 3)`` or ``(..., count, 3)``
+        Directions along :math:`B`, of any length.
+    deviations : array of shape ``(count,)``
+        Standard deviation of each in radians, in every direction across it.
+
+    Returns
+    -------
+    array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        Square radians.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, a deviation is not positive, or the directions lie along one line.
+
+    Examples
+    --------
+    >>> from orientation import directions_covariance
+    >>> directions_covariance([[1, 0, 0], [0, 1, 0]], [0.01, 0.01]).round(6).tolist()
+    [[0.0001, 0.0, 0.0], [0.0, 0.0001, 0.0], [0.0, 0.0, 5e-05]]
+
+    Notes
+    -----
+    Source: Shuster and Oh (1981).
+    """
+    import numpy
+
+    observed, _, weights = _weighted(observed, observed, deviations)
+    information = numpy.sum(weights) * numpy.eye(3) - (weights * observed).swapaxes(-1, -2) @ observed
+    if not numpy.all(numpy.linalg.eigvalsh(information)[..., 0] > PARALLEL**2 * numpy.sum(weights)):
+        raise ValueError("the directions lie along one line: nothing is known of the turn around it")
+    return numpy.linalg.inv(information)
+
+
+def _weighted(observed, reference, deviations):
+    import numpy
+
+    observed, reference = numpy.asarray(observed, dtype=float), numpy.asarray(reference, dtype=float)
+    if observed.ndim < 2 or observed.shape[-1] != 3 or observed.shape[-2:] != reference.shape[-2:]:
+        raise ValueError(
+            f"observed and reference are lists of as many directions with three components each; "
+            f"these have the shapes {observed.shape} and {reference.shape}"
+        )
+    if deviations is None:
+        deviations = numpy.ones(observed.shape[-2])
+    deviations = number_array(deviations, (observed.shape[-2],), "deviations")
+    if not numpy.all(deviations > 0):
+        raise ValueError(f"a standard deviation is a positive number of radians; one of these is {deviations.min():g}")
+    return _unit(observed, "observed"), _unit(reference, "reference"), deviations[:, None] ** -2.0

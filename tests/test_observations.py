@@ -1,0 +1,98 @@
+"""Orientation from observed directions: against SciPy, Davenport's method, and Monte Carlo."""
+
+import numpy as np
+import pytest
+from orientations import random_dcms, random_unit_vectors, rotation_error
+from scipy.spatial.transform import Rotation
+
+from orientation import (
+    dcm_from_directions,
+    dcm_from_rotation_vector,
+    dcm_from_two_directions,
+    directions_covariance,
+    rotation_vector_from_dcm,
+)
+
+
+def seen(dcm, directions):
+    """Directions of N along the body: each is the matrix times the direction."""
+    return np.einsum("...ij,kj->...ki", dcm, directions)
+
+
+def davenport(observed, reference, weights):
+    """Davenport's q-method, as a second way: the eigenvector of the largest eigenvalue of a 4 by 4 matrix."""
+    profile = np.einsum("k,ki,kj->ij", weights, observed, reference)
+    z = sum(w * np.cross(b, n) for w, b, n in zip(weights, observed, reference, strict=True))
+    K = np.block([[profile + profile.T - np.trace(profile) * np.eye(3), z[:, None]], [z[None, :], np.trace(profile)]])
+    x, y, z, w = np.linalg.eigh(K)[1][:, -1]
+    # The eigenvector is the quaternion in the convention of the attitude matrix: its matrix is Shuster's (1993) A(q).
+    return Rotation.from_quat([x, y, z, w]).as_matrix().T
+
+
+def test_two_directions_give_the_orientation_back():
+    dcms = random_dcms(500, 1)
+    reference = random_unit_vectors(2, 3)
+    assert rotation_error(dcm_from_two_directions(seen(dcms, reference), reference), dcms) < 1e-14
+    assert rotation_error(dcm_from_directions(seen(dcms, reference), reference), dcms) < 1e-14
+
+
+def test_the_first_of_two_directions_is_met_exactly():
+    reference = np.array([[0, 0, 1.0], [1, 0, 0.4]])
+    for dcm, wrong in zip(random_dcms(50, 2), random_unit_vectors(50, 4), strict=True):
+        observed = seen(dcm, reference)
+        observed[1] += 0.2 * wrong
+        found = dcm_from_two_directions(observed, reference)
+        assert np.allclose(found @ reference[0], observed[0], atol=1e-14)
+
+
+@pytest.mark.parametrize("count", [2, 3, 8])
+def test_many_directions_fit_as_scipy_and_davenport_fit_them(count):
+    source = np.random.default_rng(count)
+    for dcm in random_dcms(40, count):
+        reference = random_unit_vectors(count, source.integers(10**6))
+        deviations = source.uniform(0.001, 0.1, count)
+        observed = seen(dcm, reference) + deviations[:, None] * source.normal(size=(count, 3))
+        observed /= np.linalg.norm(observed, axis=1, keepdims=True)
+        found = dcm_from_directions(observed, reference, deviations)
+        scipy = Rotation.align_vectors(observed, reference, weights=deviations**-2.0)[0].as_matrix()
+        assert rotation_error(found, scipy) < 1e-7
+        assert rotation_error(found, davenport(observed, reference, deviations**-2.0)) < 1e-7
+
+
+def test_batches_are_single_ones_together():
+    dcms, reference = random_dcms(20, 5), random_unit_vectors(4, 6)
+    observed = seen(dcms, reference) + 0.05 * np.random.default_rng(7).normal(size=(20, 4, 3))
+    together = dcm_from_directions(observed, reference)
+    assert np.allclose(together, [dcm_from_directions(one, reference) for one in observed], atol=1e-14)
+
+
+def test_covariance_is_what_many_noisy_measurements_show():
+    """10,000 noisy sightings: the covariance of their errors is the one that is promised, within 5 per cent."""
+    source = np.random.default_rng(11)
+    dcm = dcm_from_rotation_vector((0.4, -0.9, 1.3))
+    reference = np.array([[1, 0, 0], [0.9, 0.3, 0.2], [0.7, -0.5, 0.5]])
+    reference /= np.linalg.norm(reference, axis=1, keepdims=True)
+    deviations = np.array([0.002, 0.004, 0.003])
+    exact = seen(dcm, reference)
+    noisy = exact + deviations[:, None] * source.normal(size=(10_000, 3, 3))
+    errors = rotation_vector_from_dcm(dcm @ dcm_from_directions(noisy, reference, deviations).swapaxes(-1, -2))
+    promised = directions_covariance(exact, deviations)
+    scale = np.sqrt(np.outer(np.diag(promised), np.diag(promised)))
+    assert np.abs(np.cov(errors.T) / scale - promised / scale).max() < 0.05
+
+
+def test_what_does_not_fix_an_orientation_is_refused():
+    with pytest.raises(ValueError, match="parallel"):
+        dcm_from_two_directions([[1, 0, 0], [2, 0, 0]], np.eye(3)[:2])
+    with pytest.raises(ValueError, match="length zero"):
+        dcm_from_two_directions([[1, 0, 0], [0, 0, 0]], np.eye(3)[:2])
+    with pytest.raises(ValueError, match="one line"):
+        dcm_from_directions([[1, 0, 0], [-1, 0, 0]], [[1, 0, 0], [-1, 0, 0]])
+    with pytest.raises(ValueError, match="left-handed"):
+        dcm_from_directions(np.diag([1, 1, -1]), np.eye(3))
+    with pytest.raises(ValueError, match="positive"):
+        dcm_from_directions(np.eye(3), np.eye(3), [0.1, 0, 0.1])
+    with pytest.raises(ValueError, match="one line"):
+        directions_covariance([[1, 0, 0], [1, 0, 0]], [0.1, 0.1])
+    with pytest.raises(ValueError, match="as many directions"):
+        dcm_from_directions(np.eye(3), np.eye(3)[:2])
