@@ -19,7 +19,7 @@ STORED = "exercises/"
 
 def name_cache(app, config):
     folder = Path(app.outdir).parent / "jupyter_cache"
-    packages = (REPOSITORY / "src" / name for name in ("orientation", "orientation_figures", "coursework"))
+    packages = (REPOSITORY / "src" / name for name in ("orientation", "orientation_figures", "orientation_recordings", "coursework"))
     inputs = fingerprint(*packages, REPOSITORY / "constraints.txt")
     config.nb_execution_cache_path = str(folder / inputs)
     for outdated in folder.glob("*"):

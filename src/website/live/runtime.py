@@ -27,7 +27,7 @@ COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 
 FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
-OUR_IMPORTS = ("orientation", "orientation_figures", "coursework")
+OUR_IMPORTS = ("orientation", "orientation_figures", "orientation_recordings", "coursework")
 DISTRIBUTION = "orientation-of-reference-frames"
 DEPENDS = {"sympy": ["mpmath"], DISTRIBUTION: ["sympy"]}
 NUMERICAL = ("numpy", "matplotlib")  # not on PyPI for browsers; see the setting numpy_in_the_page

@@ -1,0 +1,189 @@
+"""What real instruments recorded: five small boxes with gyroscopes, carried by hands and by a walking leg.
+
+The files in ``data/`` are excerpts from the recordings that come with *scikit-kinematics* 0.10.4 by Thomas
+Haslwanter (BSD licence; its text is in ``data/LICENSE.txt``). :mod:`orientation_recordings.excerpts` cuts them out;
+every digit is the instrument's. The functions here give them with times in seconds, angular velocities in radians
+per second and specific forces in multiples of standard gravity; quaternions and angles stay as they were printed.
+"""
+
+from importlib import resources
+from typing import NamedTuple
+
+import numpy as np
+
+#: Metres per second squared.
+STANDARD_GRAVITY = 9.80665
+#: Samples per second. The x-IMU's follows from its register ``InertialAndMagneticDataRate``, 9, which stands for 256.
+X_IMU_RATE, XSENS_RATE, WALKING_RATE = 256, 50, 120
+
+
+class Recording(NamedTuple):
+    """What one instrument measured, sample by sample, and the orientation that it worked out itself.
+
+    Attributes
+    ----------
+    time : array of shape ``(n,)``
+        Seconds since the first sample.
+    angular_velocity : array of shape ``(n, 3)``
+        Of the instrument, along its own axes, radians per second.
+    specific_force : array of shape ``(n, 3)``
+        What the accelerometer feels, along its own axes, in multiples of standard gravity: at rest, up.
+    magnetic_field : array of shape ``(n, 3)`` or ``None``
+        Along the instrument's axes, in the unit that it prints.
+    quaternion_time : array of shape ``(m,)``
+        Seconds.
+    quaternion : array of shape ``(m, 4)``
+        As the instrument prints it, divided by its length; empty where it prints none.
+    """
+
+    time: np.ndarray
+    angular_velocity: np.ndarray
+    specific_force: np.ndarray
+    magnetic_field: np.ndarray | None
+    quaternion_time: np.ndarray
+    quaternion: np.ndarray
+
+
+def table(name):
+    """Give the rows of a file of ``data/`` as an array, without the line of column names."""
+    with resources.files(__package__).joinpath("data", f"{name}.csv").open(encoding="utf8") as file:
+        return np.loadtxt(file, delimiter=",", skiprows=1)
+
+
+def x_imu():
+    """Give sixteen seconds of an x-IMU: on a table, carried about, held still. It printed on memory card.
+
+    Returns
+    -------
+    Recording
+        256 samples a second; the magnetic field in gauss.
+    """
+    sensors, quaternion = table("x_imu_sensors"), table("x_imu_quaternion")
+    time = np.arange(len(sensors)) / X_IMU_RATE
+    return Recording(
+        time,
+        np.radians(sensors[:, 1:4]),
+        sensors[:, 4:7],
+        sensors[:, 7:10],
+        x_imu_time(quaternion[:, 0]),
+        _unit(quaternion[:, 1:]),
+    )
+
+
+def x_imu_time(packets):
+    """Give the time of packets of the x-IMU: that of the last sample of its sensors before each.
+
+    Parameters
+    ----------
+    packets : array of shape ``(n,)``
+        Packet numbers.
+
+    Returns
+    -------
+    array of shape ``(n,)``
+        Seconds.
+    """
+    return (np.searchsorted(table("x_imu_sensors")[:, 0], packets) - 1) / X_IMU_RATE
+
+
+def x_imu_euler_angles():
+    """Give the angles that the x-IMU printed beside each of its quaternions.
+
+    Returns
+    -------
+    array of shape ``(m, 3)``
+        Its columns *Roll*, *Pitch* and *Yaw*, in degrees.
+    """
+    return table("x_imu_euler_angles")[:, 1:]
+
+
+def x_imu_rotation_matrix():
+    """Give a second of the nine numbers that the x-IMU printed as its rotation matrix.
+
+    Returns
+    -------
+    tuple of arrays of shape ``(k,)`` and ``(k, 3, 3)``
+        Times in seconds, and matrices, row by row as printed.
+    """
+    rows = table("x_imu_rotation_matrix")
+    return x_imu_time(rows[:, 0]), rows[:, 1:].reshape(-1, 3, 3)
+
+
+def x_imu3():
+    """Give ten seconds of an x-IMU3, a later instrument of the same maker, turned quickly by hand.
+
+    Returns
+    -------
+    Recording
+        50 samples a second, without the magnetic field.
+    """
+    sensors, quaternion = table("x_imu3_sensors"), table("x_imu3_quaternion")
+    start = sensors[0, 0]
+    return Recording(
+        (sensors[:, 0] - start) / 1e6,
+        np.radians(sensors[:, 1:4]),
+        sensors[:, 4:7],
+        None,
+        (quaternion[:, 0] - start) / 1e6,
+        _unit(quaternion[:, 1:]),
+    )
+
+
+def ngimu():
+    """Give ten seconds of an NGIMU, turned by hand.
+
+    Returns
+    -------
+    Recording
+        50 samples a second; the magnetic field in microtesla.
+    """
+    sensors, quaternion = table("ngimu_sensors"), table("ngimu_quaternion")
+    return Recording(
+        sensors[:, 0],
+        np.radians(sensors[:, 1:4]),
+        sensors[:, 4:7],
+        sensors[:, 7:10],
+        quaternion[:, 0],
+        _unit(quaternion[:, 1:]),
+    )
+
+
+def xsens():
+    """Give nineteen seconds of an instrument of Xsens.
+
+    Returns
+    -------
+    Recording
+        50 samples a second; the magnetic field in the maker's unit, about 1 for the Earth's.
+    """
+    rows = table("xsens")
+    time = np.arange(len(rows)) / XSENS_RATE
+    return Recording(time, rows[:, 4:7], rows[:, 1:4] / STANDARD_GRAVITY, rows[:, 7:10], time, _unit(rows[:, 10:14]))
+
+
+def walking_leg():
+    """Give fourteen seconds of two instruments on one leg: two seconds of standing, then walking.
+
+    Returns
+    -------
+    tuple of two :class:`Recording`
+        Thigh and shank, 120 samples a second, sample for sample at the same times, without quaternions.
+    """
+    recordings = []
+    for name in ("upper_leg", "lower_leg"):
+        rows = table(name)
+        recordings.append(
+            Recording(
+                np.arange(len(rows)) / WALKING_RATE,
+                rows[:, 4:7],
+                rows[:, 1:4] / STANDARD_GRAVITY,
+                None,
+                np.empty(0),
+                np.empty((0, 4)),
+            )
+        )
+    return tuple(recordings)
+
+
+def _unit(quaternions):
+    return quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True)

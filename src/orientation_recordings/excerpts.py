@@ -1,0 +1,60 @@
+"""Cut the excerpts in ``data/`` out of the recordings they come from: ``python -m orientation_recordings.excerpts WHEEL``.
+
+``WHEEL`` is the file ``scikit_kinematics-0.10.4-py3-none-any.whl``. Lines are taken as they stand, so that
+every digit is the instrument's; only columns that the book does not use are left out.
+"""
+
+import io
+import sys
+import zipfile
+from pathlib import Path
+
+DATA = Path(__file__).parent / "data"
+SOURCE = "tests/data"
+
+
+def excerpts(wheel):
+    """Give the text of each file of ``data/``, by its name."""
+    archive = zipfile.ZipFile(wheel)
+
+    def lines(name):
+        with archive.open(f"{SOURCE}/{name}") as file:
+            return io.TextIOWrapper(file, "utf8").read().splitlines()
+
+    def rows(name, first, last, separator=",", columns=None, head=1):
+        """The column names and the rows whose first number lies between two values."""
+        text = lines(name)
+        kept = [text[head - 1], *(line for line in text[head:] if first <= float(line.split(separator)[0]) < last)]
+        cells = ([cell.strip() for cell in line.split(separator)] for line in kept)
+        return "".join(",".join([row[k] for k in columns] if columns else row) + "\n" for row in cells)
+
+    # The first 16 s: at rest, carried about, strapped on, at rest.
+    x_imu = (115, 6355)
+    leg = (37328, 37328 + 14 * 120)
+    sensors = range(7)  # counter, accelerometer, gyroscope
+    return {
+        "x_imu_sensors.csv": rows("data_xio/00033_CalInertialAndMag.csv", *x_imu),
+        "x_imu_quaternion.csv": rows("data_xio/00033_Quaternion.csv", *x_imu),
+        "x_imu_euler_angles.csv": rows("data_xio/00033_EulerAngles.csv", *x_imu),
+        # A second is enough of what follows from the quaternion.
+        "x_imu_rotation_matrix.csv": rows("data_xio/00033_RotationMatrix.csv", 2845, 3235),
+        "x_imu_registers.csv": "\n".join(lines("data_xio/00033_Registers.csv")) + "\n",
+        "x_imu3_sensors.csv": rows("data_xio3/Inertial.csv", 0, float("inf")),
+        "x_imu3_quaternion.csv": rows("data_xio3/Quaternion.csv", 0, float("inf")),
+        "ngimu_sensors.csv": rows("data_ngimu/sensors.csv", 0, float("inf"), columns=range(10)),
+        "ngimu_quaternion.csv": rows("data_ngimu/quaternion.csv", 0, float("inf")),
+        "xsens.csv": rows("data_xsens.txt", 0, float("inf"), "\t", range(14), head=5),
+        "upper_leg.csv": rows("walking_xsens_upperLeg.txt", *leg, "\t", sensors, head=5),
+        "lower_leg.csv": rows("walking_xsens_lowerLeg.txt", *leg, "\t", sensors, head=5),
+    }
+
+
+def main(wheel):
+    DATA.mkdir(exist_ok=True)
+    for name, text in excerpts(wheel).items():
+        (DATA / name).write_text(text, "utf8")
+        print(f"{name}: {text.count(chr(10)) - 1} rows")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
