@@ -468,3 +468,15 @@ def test_bad_input():
         diagnose(dcm.T, dcm, NUMBERS, "zzx")
     with pytest.raises(ValueError, match="expected is not the body fixed orientation yxz of these angles"):
         diagnose(dcm.T, dcm, NUMBERS, "yxz")
+
+
+def test_numbers_from_a_file_are_diagnosed_with_the_tolerance_of_their_digits():
+    from orientation import dcm_from_body_fixed
+
+    expected = dcm_from_body_fixed((0.3, -0.8, 1.9), "zyx")
+    printed = expected.T + np.random.default_rng(1).uniform(-5e-7, 5e-7, (3, 3))
+    assert diagnose(printed, expected, tolerance=1e-6).causes == (
+        "it is the transpose, the orientation the other way round",
+    )
+    assert diagnose(expected + 5e-7, expected, tolerance=1e-6).same
+    assert not diagnose(expected + 5e-7, expected).same

@@ -5,6 +5,7 @@ take seconds, or not come back at all. Like the conversions, this works on compo
 no NumPy.
 """
 
+import functools
 import itertools
 import math
 import random
@@ -155,7 +156,7 @@ class Diagnosis(NamedTuple):
         )
 
 
-def diagnose(given, expected, angles=None, sequence=None):
+def diagnose(given, expected, angles=None, sequence=None, tolerance=TOLERANCE):
     """Say whether an orientation is the expected one and, if it is not, which mix-up explains it.
 
     A mix-up is named only if it reproduces the given answer at every random value of the symbols. If
@@ -168,6 +169,9 @@ def diagnose(given, expected, angles=None, sequence=None):
     angles, sequence : optional
         The Euler angles and the body fixed sequence that ``expected`` is made of. For a symbolic
         matrix of up to three angles they are recognised without being given.
+    tolerance : float
+        Largest difference between two entries that counts as rounding. Numbers from a file need more than
+        the rounding of a computation: half a unit of their last printed digit, and what follows from it.
 
     Returns
     -------
@@ -206,7 +210,8 @@ def diagnose(given, expected, angles=None, sequence=None):
     points = _draw(names)
     answers, truths = ([_put_in(entries, names, point) for point in points] for entries in (given, expected))
     turns = _turns(expected, truths, names, points, angles, sequence)
-    if all(map(_match, answers, truths)):
+    match = functools.partial(_match, tolerance=tolerance)
+    if all(map(match, answers, truths)):
         return Diagnosis(True, ())
     # A matrix that is no orientation cannot come from a turn: its fault is told alone. Symbols that
     # obey a condition, as a quaternion's four do, miss it at random values: then nothing can be told.
@@ -218,7 +223,7 @@ def diagnose(given, expected, angles=None, sequence=None):
         _substitutions(expected, names, points),
         _sequence_mixups(*turns, given=angles is not None, symbols=bool(names)),
     )
-    causes = [cause for cause, values in mixups if all(map(_match, answers, values))]
+    causes = [cause for cause, values in mixups if all(map(match, answers, values))]
     return Diagnosis(False, tuple(dict.fromkeys(causes)))
 
 
