@@ -23,7 +23,7 @@ from .source import REPOSITORY
 
 ARCHIVE = REPOSITORY / "_build" / "exercises.zip"
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
-PACKAGES = ("orientation", "orientation_figures", "coursework")
+PACKAGES = ("orientation", "orientation_figures", "orientation_recordings", "coursework")
 #: Parts of those packages that students do not get.
 LEFT_OUT = ("src/coursework/authoring", "src/coursework/grading")
 #: Every file of an archive carries this time, so that the same contents are the same bytes.
