@@ -5,6 +5,7 @@ import os
 import random
 import threading
 from collections import defaultdict
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,12 @@ APART = (
     "tests/test_selftest.py::test_every_question_passes_and_names_its_mistakes[",
     "tests/test_takeaway.py::test_script_runs[",
 )
+
+
+def pytest_configure(config):
+    """What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata."""
+    if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
+        raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -159,7 +159,7 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     shutil.copy(release.SOURCES / f"{name}.ipynb", write_to[0])
     release.release(*write_to)
     message = (
-        "Run `make release` and commit exercises/ and src/coursework/checking/sealed/: they are not what this makes."
+        "Run `make release` and commit exercises/ and src/orientation_course/sealed/: they are not what this makes."
     )
     made = release.EXERCISES / f"{name}.ipynb", release.SEALED / f"{name}.json"
     for folder, file in zip(write_to[1:], made, strict=True):

@@ -339,6 +339,17 @@ class Drawing:
             f'role="img" aria-label="{escape(self.alt)}">{inside.replace("@", name + "-")}</svg>'
         )
 
+    def picture(self):
+        """Return the drawing as an SVG file of its own, on white paper, which needs no style of any page."""
+        inner = self.svg()
+        left, top, width, height = inner.partition('viewBox="')[2].partition('"')[0].split()
+        place = f'x="{left}" y="{top}" width="{width}" height="{height}"'
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left} {top} {width} {height}" width="{width}" '
+            f'height="{height}" color="#1d2125"><style>{escape(STYLE, quote=False)}</style><rect {place} fill="#fff"/>'
+            f'<g class="orientation-figure">{inner.replace("<svg ", f"<svg {place} ", 1)}</g></svg>'
+        )
+
 
 def collapsed(mark):
     """Return whether a mark is a path that has shrunk to one point, as the far sides of bodies do."""

@@ -11,7 +11,7 @@ from pathlib import Path
 from jupyter_cache import get_cache
 from jupyter_cache.executors import load_executor
 
-from .paths import REPOSITORY, WEBSITE, fingerprint
+from .paths import PACKAGE_FOLDERS, REPOSITORY, WEBSITE, fingerprint
 
 #: Notebooks that are shown as they were released and run by the tests; see ``execute`` in _config.yml.
 STORED = "exercises/"
@@ -19,8 +19,7 @@ STORED = "exercises/"
 
 def name_cache(app, config):
     folder = Path(app.outdir).parent / "jupyter_cache"
-    packages = (REPOSITORY / "src" / name for name in ("orientation", "orientation_figures", "orientation_recordings", "coursework"))
-    inputs = fingerprint(*packages, REPOSITORY / "constraints.txt")
+    inputs = fingerprint(*PACKAGE_FOLDERS, REPOSITORY / "constraints.txt")
     config.nb_execution_cache_path = str(folder / inputs)
     for outdated in folder.glob("*"):
         if outdated.name != inputs:

@@ -13,6 +13,9 @@ import yaml
 WEBSITE = Path(__file__).resolve().parent
 REPOSITORY = WEBSITE.parent.parent
 NODE_MODULES = REPOSITORY / "node_modules"
+#: What the book's notebooks import: the packages of this repository, without the one that makes the site.
+PACKAGES = ("orientation", "orientation_figures", "orientation_recordings", "orientation_course", "coursework")
+PACKAGE_FOLDERS = [REPOSITORY / "src" / name for name in PACKAGES]
 # Commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"

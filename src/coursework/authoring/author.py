@@ -24,22 +24,11 @@ from typing import NamedTuple
 
 from ..checking import sealing
 from ..checking.evaluate import MP
-from ..checking.kinds import (
-    ENTRIES,
-    WORDS,
-    Blank,
-    Fault,
-    Undecidable,
-    calls_for,
-    canonical,
-    cell_of,
-    cells,
-    fingerprint,
-    read,
-)
-from ..checking.mistakes import Mistake, product_of
+from ..checking.kinds import Blank, Fault, Undecidable, calls_for, canonical, cell_of, cells, fingerprint, read
+from ..checking.mistakes import Mistake
 from ..checking.mistakes import mistakes as catalogued_mistakes
 from ..checking.plain import NotPlain, to_plain
+from ..checking.plugins import kinds
 from ..checking.points import ANGLES
 
 #: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
@@ -144,7 +133,10 @@ class Question:
     def _demand_turns(self):
         if not self.turns:
             return
-        built = self.to_plain(product_of(self.turns, self.public["kind"]))
+        build = kinds()[self.public["kind"]].build
+        if build is None:
+            raise AuthorError(f"{self.name}: an answer of the kind {self.public['kind']!r} is not made of turns.")
+        built = self.to_plain(build(self.turns))
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
             raise AuthorError(f"{self.name}: the turns do not give the right answer.")
 
@@ -282,7 +274,6 @@ def question(
     unit=None,
     shape=None,
     length=None,
-    sequence=None,
     options=None,
     tolerance=None,
     calls=None,
@@ -301,14 +292,14 @@ def question(
     AuthorError
         The question is not well posed.
     """
-    known = {*ENTRIES, *WORDS, "function"}
-    if kind not in known:
-        raise AuthorError(f"{name}: the kind {kind!r} is none of {sorted(known)}.")
+    if kind not in kinds():
+        raise AuthorError(f"{name}: the kind {kind!r} is none of {sorted(kinds())}.")
+    known, values = kinds()[kind], kinds()[result or kind]
     public = {"kind": kind}
     if isinstance(symbols, str):
         symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
     symbols = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}
-    if tolerance is None and not symbols and kind not in WORDS:
+    if tolerance is None and not symbols and not known.text:
         tolerance = TOLERANCE
     for key, value in {
         "frames": list(frames) if frames else None,
@@ -316,30 +307,19 @@ def question(
         "unit": unit,
         "shape": shape and list(shape),
         "length": length,
-        "sequence": sequence,
+        **{argument: rest.pop(argument, None) for argument in values.arguments},
         "options": options and list(options),
         "tolerance": tolerance,
         "calls": calls,
         "takes": takes if kind == "function" else None,
         "result": result,
         "quantity": quantity,
-        "either sign": either_sign if either_sign is not None else (True if "quaternion" in (kind, result) else None),
+        "either sign": either_sign if either_sign is not None else values.either_sign or None,
         "unit vector": unit_vector,
     }.items():
         if value not in (None, {}, []):
             public[key] = value
-    for needed, kinds in NEEDED.items():
-        if kind in kinds and needed not in public:
+    for needed in known.needs:
+        if needed not in public:
             raise AuthorError(f"{name}: a question of kind {kind!r} needs {needed!r}.")
     return Question(name, public, answer, authored=mistakes, **rest)
-
-
-NEEDED = {
-    "frames": ("direction cosine matrix",),
-    "sequence": ("Euler angles",),
-    "options": ("choice", "words"),
-    "length": ("truth values", "words"),
-    "calls": ("function",),
-    "result": ("function",),
-    "shape": ("matrix",),
-}

@@ -7,6 +7,8 @@ import sympy
 from sympy import I, Rational, cos, exp, pi, sin, sqrt, tan
 from sympy.core.function import AppliedUndef
 
+from ..checking.plugins import kinds
+
 #: Ways of writing the sine and the cosine, each a function of the argument.
 SINES = {
     "as a cosine": lambda x: cos(pi / 2 - x, evaluate=False),
@@ -68,9 +70,12 @@ def flat(answer):
 
 def equivalent_forms(public, answer):
     """Give the same answer in several forms, as pairs (name of the form, answer)."""
-    kind = public["kind"]
-    if kind in ("sequence", "choice"):
-        return _forms_of_word(kind, answer)
+    kind, more = public["kind"], kinds()[public["kind"]].forms
+    found = _common_forms(public, kind, answer)
+    return [*found, *more(public, answer)] if more else found
+
+
+def _common_forms(public, kind, answer):
     if kind == "truth values":
         answer = list(answer)
         return [
@@ -92,6 +97,8 @@ def equivalent_forms(public, answer):
             ("wrapped", lambda *arguments: answer(*arguments)),
             ("as lists", lambda *arguments: _as_lists(answer(*arguments))),
         ]
+    if kinds()[kind].text:
+        return [("itself", answer), ("capitals", answer.upper()), ("spaces around", f"  {answer} ")]
     if hasattr(answer, "to_matrix"):
         return [("itself", answer)]
     entries, put = flat(answer)
@@ -105,13 +112,6 @@ def equivalent_forms(public, answer):
 def _as_lists(result):
     entries, put = flat(list(result) if getattr(result, "shape", ())[1:] == (1,) else result)
     return put(entries)
-
-
-def _forms_of_word(kind, answer):
-    forms = [("itself", answer), ("capitals", answer.upper()), ("spaces around", f"  {answer} ")]
-    if kind == "sequence":
-        forms += [("dashes", "-".join(answer)), ("spaces", " ".join(answer)), ("list", list(answer))]
-    return forms
 
 
 def _forms_of_symbols(public, answer, entries, put):
@@ -143,12 +143,6 @@ def _forms_of_symbols(public, answer, entries, put):
             ("immutable", sympy.ImmutableMatrix(answer)),
             ("product", sympy.MatMul(sympy.ImmutableMatrix(answer), sympy.Identity(answer.cols))),
         ]
-        if public["kind"] == "direction cosine matrix":
-            from sympy.physics.mechanics import ReferenceFrame
-
-            target, source = (ReferenceFrame(name) for name in public["frames"])
-            target.orient_explicit(source, sympy.ImmutableMatrix(answer).T)
-            forms.append(("reference frame", target))
     if public.get("either sign"):
         add("other sign", lambda entry: -entry)
     return forms
@@ -193,7 +187,7 @@ def _digits(public):
 def random_form(public, answer, chance):
     """Give the same answer in a form made up by chance, as one who simplifies nothing might write it."""
     kind = public["kind"]
-    if kind in ("sequence", "choice", "truth values", "words", "function"):
+    if kinds()[kind].text or kind == "function":
         return chance.choice(equivalent_forms(public, answer))[1]
     entries, put = flat(answer)
     free = unknowns(entries)
@@ -262,8 +256,8 @@ def another_answer(public, answer, chance=None):
         return lambda *arguments: another_answer(
             {**public, "kind": public["result"]}, answer(*arguments), random.Random(1)
         )
-    if kind in ("sequence",):
-        return next(word for word in ("xyx", "yzy", "zxy") if word not in (answer, answer[::-1]))
+    if kinds()[kind].another:
+        return kinds()[kind].another(public, answer)
     if kind == "choice":
         return next(option for option in public["options"] if option.lower() != answer.lower())
     if kind == "truth values":
@@ -273,16 +267,5 @@ def another_answer(public, answer, chance=None):
         return [another_answer({**public, "kind": "choice"}, part) for part in answer]
     if hasattr(answer, "to_matrix"):
         return answer * Rational(17, 13)
-    if kind in ("direction cosine matrix", "quaternion"):
-        from ..checking.mistakes import product_of
-
-        turn = product_of([((Rational(2, 3), Rational(-1, 3), Rational(2, 3)), Rational(37, 100))], kind)
-        if kind == "quaternion":
-            from orientation import multiply_quaternions
-
-            return multiply_quaternions(sympy.Matrix(list(answer)), turn)
-        if hasattr(answer, "dcm"):
-            answer = answer.dcm(next(iter(answer._dcm_dict)))
-        return turn * sympy.Matrix(answer.tolist() if hasattr(answer, "tolist") else answer)
     entries, put = flat(answer)
     return put([entry * Rational(17, 13) + Rational(11, 37) for entry in map(sympy.sympify, entries)])

@@ -16,16 +16,15 @@ from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
 
-import orientation
-
 from .release import EXERCISES
 from .source import REPOSITORY
 
 ARCHIVE = REPOSITORY / "_build" / "exercises.zip"
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
-PACKAGES = ("orientation", "orientation_figures", "orientation_recordings", "coursework")
+PACKAGES = ("orientation", "orientation_figures", "orientation_recordings", "orientation_course", "coursework")
 #: Parts of those packages that students do not get.
 LEFT_OUT = ("src/coursework/authoring", "src/coursework/grading")
+VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
 #: Every file of an archive carries this time, so that the same contents are the same bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
 
@@ -86,7 +85,13 @@ def version(repository=REPOSITORY):
     # Of a file that is gone, the folder that it stood in tells when.
     written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
     moment = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
-    return f"{orientation.__version__}.post{moment:%Y%m%d%H%M%S}"
+    stated = VERSION.search(_stamped(repository).read_text("utf8"))[1]
+    return f"{stated}.post{moment:%Y%m%d%H%M%S}"
+
+
+def _stamped(repository):
+    """The file that states the version."""
+    return Path(repository, "src", "orientation", "__init__.py")
 
 
 def _git(repository, *arguments):
@@ -110,10 +115,8 @@ def build_wheel(folder):
             target = Path(place, path.relative_to(REPOSITORY))
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, target)
-        stamped = Path(place, "src", "orientation", "__init__.py")
-        text, count = re.subn(
-            r'^__version__ = ".*"$', f'__version__ = "{version()}"', stamped.read_text("utf8"), flags=re.M
-        )
+        stamped = _stamped(place)
+        text, count = VERSION.subn(f'__version__ = "{version()}"', stamped.read_text("utf8"))
         if count != 1:
             raise RuntimeError(f"orientation/__init__.py must set __version__ once; it does {count} times")
         stamped.write_text(text, "utf8")

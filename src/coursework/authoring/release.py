@@ -20,7 +20,7 @@ from ..checking.questions import FORMAT
 from .source import CHAPTERS, REPOSITORY, SOURCES, answered_in, checked_names, notebooks_in, posed, read_source
 
 EXERCISES = REPOSITORY / "exercises"
-SEALED = Path(__file__).resolve().parents[1] / "checking" / "sealed"
+SEALED = REPOSITORY / "src" / "orientation_course" / "sealed"
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
@@ -101,17 +101,8 @@ def _checksum(cell, about):
 
 def _image(drawing):
     """A figure as Markdown: its picture, on white paper of its own, and its text for those who do not see it."""
-    from orientation_figures.drawing import STYLE
-
-    inner = drawing.svg()
-    view = re.search(r'viewBox="(\S+) (\S+) (\S+) (\S+)"', inner)
-    left, top, width, height = view.groups()
-    picture = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left} {top} {width} {height}" width="{width}" '
-        f'height="{height}" color="#1d2125"><style>{html.escape(STYLE, quote=False)}</style>'
-        f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="#fff"/>'
-        f'<g class="orientation-figure">{inner.replace("<svg ", f"<svg x={chr(34)}{left}{chr(34)} y={chr(34)}{top}{chr(34)} width={chr(34)}{width}{chr(34)} height={chr(34)}{height}{chr(34)} ", 1)}</g></svg>'
-    )
+    picture = drawing.picture()
+    width = re.search(r'width="(\S+)"', picture)[1]
     data = base64.b64encode(picture.encode("utf8")).decode("ascii")
     # As HTML: Markdown readers that are careful refuse this kind of address in an image of their own.
     return f'<p><img alt="{html.escape(drawing.alt)}" width="{width}" src="data:image/svg+xml;base64,{data}"></p>'

@@ -17,6 +17,7 @@ from typing import NamedTuple
 from ..checking.kinds import Fault, Undecidable
 from ..checking.mistakes import message
 from ..checking.plain import NotPlain
+from ..checking.plugins import kinds
 from ..checking.questions import compare, judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from .author import AuthorError
@@ -55,7 +56,7 @@ def try_question(question):
         reply = _judge(question, answer)
         if reply.outcome != "correct":
             faults.append(f'The right answer in the form "{form}" gets "{reply.outcome}": {reply.messages}')
-    words = question.public["kind"] in ("sequence", "choice", "truth values", "words", "function")
+    words = kinds()[question.public["kind"]].text or question.public["kind"] == "function"
     if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
         faults.append(f"The right answer was tried in {len(forms)} forms only.")
     sealed = notebook_questions(question.name.partition("/")[0]).get(question.name)
@@ -143,7 +144,7 @@ def secrets_of(source):
             found.append((f"the worked solution of {name}", line))
         for step in [step for steps in [*question.hints.values(), *question.after.values()] for step in steps]:
             found.append((f"a hint of {name}", step))
-        if question.public["kind"] not in ("function", "choice", "sequence", "words", "truth values"):
+        if kinds()[question.public["kind"]].entries:
             found += [(f"the answer of {name}", text) for text in _writings(question.answer)]
     given = {
         _dense(line)

@@ -1,17 +1,19 @@
-"""The sealed questions that come with this package, found by name.
+"""The sealed questions, found by name.
 
-A name is ``'notebook/question'``; the questions of one notebook lie in one file.
+A name is ``'notebook/question'``; the questions of one notebook lie in one file, ``sealed/notebook.json``. The
+folder ``sealed`` stands beside the notebook, or in the package of a plug-in.
 """
 
 import difflib
 import functools
 import json
 import re
-from importlib import resources
+from pathlib import Path
 
 from . import sealing
 from .kinds import Blank, Fault, Reading, Undecidable, fault, fingerprint, read
 from .mistakes import message
+from .plugins import kind_of_values, sealed_folders
 from .points import TWINS
 from .reply import Reply
 
@@ -30,16 +32,22 @@ def notebook_questions(notebook):
     """The public parts and the lockers of all questions of a notebook, by full name."""
     if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
         return {}
-    file = resources.files(__package__) / "sealed" / f"{notebook}.json"
-    if not file.is_file():
+    file = next((folder / f"{notebook}.json" for folder in places() if (folder / f"{notebook}.json").is_file()), None)
+    if file is None:
         return {}
     data = json.loads(file.read_text("utf8"))
     if data["format"] != FORMAT:
         raise RuntimeError(
-            f"The questions of {notebook} need another version of this package: install the one "
+            f"The questions of {notebook} need another version of coursework: install the one "
             "that came with the notebook."
         )
     return data["questions"]
+
+
+def places():
+    """Where sealed questions may lie: the folder ``sealed`` beside the notebook, and those of plug-ins."""
+    beside = Path("sealed")
+    return [*([beside] if beside.is_dir() else []), *sealed_folders()]
 
 
 def find_question(name):
@@ -53,8 +61,13 @@ def find_question(name):
     questions = notebook_questions(notebook)
     if name in questions:
         return questions[name]
-    folder = resources.files(__package__) / "sealed"
-    notebooks = sorted(file.name.removesuffix(".json") for file in folder.iterdir() if file.name.endswith(".json"))
+    found = [file.name for folder in places() for file in folder.iterdir()]
+    if not found:
+        raise NoSuchQuestion(
+            f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with this notebook is not "
+            f"beside it (in {Path.cwd()}), and no package with sealed questions is installed."
+        )
+    notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json"))
     near = difflib.get_close_matches(name, [*questions, *notebooks], 1, 0.5)
     raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
 
@@ -121,13 +134,7 @@ def opened(question, key, purpose):
 
 def what_can_be_said(question, plain, reading: Reading):
     """What a wrong answer has right, so that its author does not look for the fault there."""
-    kind = question.get("result", question["kind"])
-    said = {
-        "direction cosine matrix": "This is a direction cosine matrix, but not the one that is asked for.",
-        "quaternion": "This is a quaternion of unit length, but not the one that is asked for.",
-        "Euler angles": "These angles give another orientation than the one that is asked for.",
-        "axis and angle": "This axis and angle give another orientation than the one that is asked for.",
-    }.get(kind, "The form is right, the value is not.")
+    said = kind_of_values(question).wrong
     named = {node[1] for node in plain["nodes"] if node[0] == "symbol"}
     missing = [symbol for symbol in question.get("symbols", {}) if not {symbol, TWINS.get(symbol)} & named]
     if question.get("every symbol") and named and missing:

@@ -46,6 +46,7 @@ import sysconfig
 import threading
 from pathlib import Path
 
+from coursework.checking.plugins import folders_of, packages
 from coursework.grading import system_calls
 
 NAMESPACES, LANDLOCK, SECCOMP = "namespaces", "landlock", "seccomp"
@@ -89,7 +90,6 @@ DEVICES = ("/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
 
 def readable_paths():
     """The folders and files that Python and the libraries are loaded from, and no others."""
-    import importlib.util
     import site
 
     wanted = [sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")]
@@ -108,11 +108,9 @@ def readable_paths():
     ]
     # The interpreter itself, for bubblewrap to start.
     wanted += [sys.executable, os.path.realpath(sys.executable), os.path.join(sys.prefix, "pyvenv.cfg")]
-    # The two packages of this repository, also where they are installed from a working copy.
+    # This package and those of the course, also where they are installed from a working copy.
     wanted.append(str(Path(__file__).resolve().parent.parent))
-    found = importlib.util.find_spec("orientation")
-    if found is not None:
-        wanted += list(found.submodule_search_locations)
+    wanted += folders_of(packages())
     existing = sorted({os.path.abspath(path) for path in wanted if path and os.path.exists(path)})
     kept = []
     for path in existing:

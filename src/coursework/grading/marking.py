@@ -15,6 +15,7 @@ from ..authoring.source import checked_names, read_source
 from ..checking.evaluate import MP
 from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
 from ..checking.plain import NotPlain, read_plain
+from ..checking.plugins import folders_of, packages
 from ..checking.questions import compare
 from ..checking.reply import Reply
 from .store import write
@@ -88,11 +89,9 @@ def load_questions(paths, kept):
 def _digest_of_package():
     import sympy
 
-    import orientation
-
     digest = hashlib.sha256(sympy.__version__.encode())
-    for package in (Path(__file__).parents[1], Path(orientation.__file__).parent):
-        for path in sorted(package.rglob("*.py")):
+    for folder in [Path(__file__).parents[1], *folders_of(packages())]:
+        for path in sorted(Path(folder).rglob("*.py")):
             digest.update(path.read_bytes())
     return digest.digest()
 

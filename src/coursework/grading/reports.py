@@ -3,10 +3,12 @@
 Everything here can be made again from the records at any time, and comes out the same.
 """
 
+import functools
 import json
 from collections import Counter
 from statistics import mean, median
 
+from ..checking.plugins import plugins
 from ..checking.reply import OUTCOMES
 from . import pages
 from .pages import text
@@ -17,27 +19,10 @@ DECIDED = ("✓", "Decided by a person")
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
 DEEDS = {
     "transposed": "gave the transpose",
-    "sign of one turn": "gave the angle of the {turn} turn the wrong sign",
-    "sign of two turns": "gave the angles of the {first} and the {second} turn the wrong sign",
-    "sign of every turn": "turned the wrong way round throughout",
-    "other order": "multiplied in the other order (space fixed turns)",
-    "other order, transposed": "multiplied in the other order and gave the transpose",
-    "angles interchanged": "interchanged the angles of the {first} and the {second} turn",
-    "another sequence": "used the sequence {sequence}",
-    "another axis": "made the {turn} turn about {axis}",
-    "turn missing": "left the {turn} turn out",
-    "one factor only": "gave the {turn} turn alone",
-    "sine for cosine": "interchanged sine and cosine in the {turn} turn",
-    "degrees taken for radians": "took degrees for radians",
     "in degrees": "answered in degrees",
     "in radians": "answered in radians where degrees are asked for",
     "sign of a symbol": "gave {symbol} the wrong sign",
     "symbols interchanged": "interchanged {first} and {second}",
-    "conjugate": "gave the conjugate",
-    "scalar last": "put the scalar last",
-    "scalar last, conjugate": "put the scalar last and gave the conjugate",
-    "whole angle": "used the whole angle in place of half of it",
-    "quarter angle": "halved the angle twice",
     "opposite": "gave the opposite",
     "reciprocal": "gave the reciprocal",
     "half": "gave half of it",
@@ -46,15 +31,6 @@ DEEDS = {
     "complement": "gave the complementary angle",
     "not turned": "left the components as they were, along the first frame",
     "turned the wrong way": "multiplied by the transpose",
-    "angles of another sequence": "gave the angles of the sequence {sequence}",
-    "angles of the transpose": "gave the angles of the transposed matrix",
-    "space fixed angles": "gave space fixed angles",
-    "angles in reverse": "gave the angles in reverse order",
-    "sign of one angle": "gave the {turn} angle the wrong sign",
-    "sign of every angle": "gave every angle the wrong sign",
-    "axis reversed": "turned the wrong way round",
-    "sequence reversed": "gave the sequence in reverse",
-    "cosine for sine": "interchanged sine and cosine",
     "stray symbol": "used a symbol that the question does not have",
     "undefined": "gave something without a finite value",
     "too large": "gave something too large to be worked out",
@@ -63,10 +39,6 @@ DEEDS = {
     "frame": "gave another frame than the one asked for",
     "raised an error": "gave a function that stops with an error",
     "returned nothing": "gave a function that returns nothing",
-    "impossible sequence": "gave a sequence that is none",
-    "zero axis": "gave an axis of length zero",
-    "not orthogonal": "gave a matrix that is not orthogonal",
-    "left-handed": "gave a left-handed matrix",
     "not unit length": "gave something that has not unit length",
     "degrees": "gave angles in degrees",
     "unreadable": "gave something that cannot be read as an answer",
@@ -252,7 +224,12 @@ def deed(mark):
     details = {
         name: ORDINALS[value] if isinstance(value, int) else value or "" for name, value in mark["details"].items()
     }
-    return " ".join(DEEDS.get(mark["note"], mark["note"]).format(**details).split())
+    return " ".join(_deeds().get(mark["note"], mark["note"]).format(**details).split())
+
+
+@functools.cache
+def _deeds():
+    return DEEDS | {note: deed for plugin in plugins() for note, deed in getattr(plugin, "DEEDS", {}).items()}
 
 
 def report(classes, refused):

@@ -16,6 +16,7 @@ It speaks with the process that started it in JSON, one message each:
 import contextlib
 import errno
 import gc
+import importlib
 import json
 import os
 import select
@@ -24,6 +25,7 @@ import socket
 import sys
 from pathlib import Path
 
+from coursework.checking.plugins import packages
 from coursework.grading import isolation, scratch
 from coursework.grading.isolation import LAYERS, LIMITS, NAMESPACES, PRIVILEGES, IsolationError
 
@@ -88,8 +90,9 @@ def load_libraries():
 
     from coursework.grading import notebook
 
-    with contextlib.suppress(ImportError):
-        import orientation  # noqa: F401
+    for package in packages():
+        with contextlib.suppress(ImportError):
+            importlib.import_module(package)
     with contextlib.suppress(ImportError):
         import matplotlib.pyplot  # noqa: F401
     # What SymPy and the answers' reader import only when first used.

@@ -22,7 +22,7 @@ from pathlib import Path
 import nbformat
 
 from ..execution import STORED
-from ..paths import REPOSITORY, fingerprint
+from ..paths import PACKAGE_FOLDERS, PACKAGES, REPOSITORY, fingerprint
 
 PYTHON = Path(__file__).parent / "python"
 RESULTS = REPOSITORY / "_build" / "runtime"
@@ -43,7 +43,7 @@ class OnlyThese(dict):
 
 messages = []
 shell = session.start(lambda text: messages.append(json.loads(text)))
-OnlyThese.allowed = {"sympy", "mpmath", "orientation", "orientation_figures", "coursework", "IPython", "session", "__main__"}
+OnlyThese.allowed = {"sympy", "mpmath", *sys.argv[2:], "IPython", "session", "__main__"}
 shell.missing.reasons = OnlyThese()
 told = []
 for number, code in enumerate(json.load(sys.stdin)):
@@ -68,7 +68,7 @@ def run_alone(codes):
     with tempfile.TemporaryDirectory() as folder:
         write_python(Path(folder, "python"))
         done = subprocess.run(
-            [sys.executable, "-c", ALONE, "python"],
+            [sys.executable, "-c", ALONE, "python", *PACKAGES],
             cwd=folder, input=json.dumps(codes), capture_output=True, text=True, check=True,
         )  # fmt: skip
     return json.loads(done.stdout)
@@ -171,7 +171,7 @@ def kinds_of_cells():
     notebooks = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
     inputs = fingerprint(
         Path(__file__), PYTHON, *notebooks, REPOSITORY / "constraints.txt",
-        REPOSITORY / "src" / "orientation", REPOSITORY / "src" / "orientation_figures", REPOSITORY / "src" / "coursework",
+        *PACKAGE_FOLDERS,
     )  # fmt: skip
     kept = RESULTS / f"cells-{inputs}.json"
     if not kept.exists():

@@ -16,7 +16,7 @@ from importlib._bootstrap_external import _code_to_hash_pyc
 from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
-OURS = ("orientation/", "orientation_figures/", "orientation_recordings/", "coursework/")
+OURS = ("orientation/", "orientation_figures/", "orientation_recordings/", "orientation_course/", "coursework/")
 # What nobody needs in a browser: tests, and what Jedi, which completes names, knows of 200 packages.
 LEFT_OUT = ("/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
 THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)  # the same sources give the same bytes

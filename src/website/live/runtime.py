@@ -14,7 +14,7 @@ from pathlib import Path
 from sphinx.errors import ConfigError
 
 from ..page import NODE
-from ..paths import NODE_MODULES, REPOSITORY
+from ..paths import NODE_MODULES, PACKAGES, REPOSITORY
 from ..take_away import FOLDER as TAKE_AWAY
 from ..take_away import wheel_name
 
@@ -27,7 +27,6 @@ COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 
 FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
-OUR_IMPORTS = ("orientation", "orientation_figures", "orientation_recordings", "coursework")
 DISTRIBUTION = "orientation-of-reference-frames"
 DEPENDS = {"sympy": ["mpmath"], DISTRIBUTION: ["sympy"]}
 NUMERICAL = ("numpy", "matplotlib")  # not on PyPI for browsers; see the setting numpy_in_the_page
@@ -113,7 +112,7 @@ def own_packages(wheels, target):
         place = target / "wheels" / sha256(content)[:12]
         place.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(wheel, place / wheel.name)
-        imports = OUR_IMPORTS if wheel.name == wheel_name() else (name,)
+        imports = PACKAGES if wheel.name == wheel_name() else (name,)
         path = str((place / wheel.name).relative_to(target))
         packages[name] = entry(name, version, imports, path, sha256(content))
     return packages

@@ -1,0 +1,137 @@
+"""What a course brings of its own: kinds of questions, and its sealed questions.
+
+A plug-in is a module that an installed distribution names in its entry points:
+
+.. code-block:: toml
+
+    [project.entry-points."coursework.plugins"]
+    orientation = "orientation_course"
+
+Its folder ``sealed``, if it has one, holds sealed questions. These names in it are read, each if it is there:
+
+``KINDS``
+    A :class:`Kind` for each further kind of question, by its name.
+``DEEDS``
+    What the class did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave the conjugate"``.
+``PACKAGES``
+    Names of the packages that the course's notebooks import, so that grading has them at hand.
+"""
+
+import functools
+import importlib.util
+from collections.abc import Callable
+from importlib import metadata, resources
+from typing import NamedTuple
+
+GROUP = "coursework.plugins"
+
+
+class Kind(NamedTuple):
+    """What is particular to one kind of question.
+
+    Attributes
+    ----------
+    entries : function (question, value) -> list of int
+        For answers that are numbers: the nodes of an answer's entries, in order. Raises a fault of the form.
+    text : function (question, plain) -> str
+        For answers in words: the one way of writing what is meant.
+    unique : function (question, numbers) -> list
+        Turns the many right ways of stating an answer into one: a quaternion and its negative, say.
+    fault : function (question, numbers) -> Fault or None
+        What is wrong with the form of the numbers of an answer.
+    parts : int
+        How many numbers, each off by the tolerance, may make up one number of ``unique``.
+    wrong : str
+        What a wrong answer has right.
+    needs : tuple of str
+        Arguments that an author must give.
+    arguments : tuple of str
+        Arguments that only this kind has; they become public.
+    either_sign : bool
+        Whether an answer and its opposite are both right.
+    mistakes : function (question, answer, turns, turned) -> iterable of Mistake
+        The typical mistakes, carried out on the right answer.
+    messages : dict
+        What a student is told of a mistake, by its note: functions of the question and of the mistake's details.
+    build : function (turns) -> matrix
+        The answer that successive turns lead to, where ``turns`` may be given.
+    forms : function (question, answer) -> list of (str, answer)
+        Further ways of writing a right answer, to try a question with.
+    another : function (question, answer) -> answer
+        An answer of the right form that is another one.
+    """
+
+    entries: Callable | None = None
+    text: Callable | None = None
+    unique: Callable | None = None
+    fault: Callable | None = None
+    parts: int = 1
+    wrong: str = "The form is right, the value is not."
+    needs: tuple = ()
+    arguments: tuple = ()
+    either_sign: bool = False
+    mistakes: Callable | None = None
+    messages: dict = {}
+    build: Callable | None = None
+    forms: Callable | None = None
+    another: Callable | None = None
+
+
+@functools.cache
+def plugins():
+    """The plug-ins of all installed distributions.
+
+    Raises
+    ------
+    RuntimeError
+        One of them cannot be imported; the message says which.
+    """
+    found = []
+    for entry in sorted(metadata.entry_points(group=GROUP)):
+        try:
+            found.append(entry.load())
+        except Exception as error:
+            raise RuntimeError(
+                f"The plug-in {entry.name!r} ({entry.value}), which {entry.dist.name} {entry.dist.version} brings for "
+                f"coursework, cannot be loaded: {type(error).__name__}: {error}"
+            ) from error
+    return found
+
+
+@functools.cache
+def kinds():
+    """All kinds of questions, by name."""
+    from .kinds import KINDS
+
+    found = dict(KINDS)
+    for plugin in plugins():
+        for name, kind in getattr(plugin, "KINDS", {}).items():
+            if name in found:
+                raise RuntimeError(f"{plugin.__name__} brings a kind of question {name!r}; there is one already.")
+            found[name] = kind
+    return found
+
+
+def kind_of_values(question):
+    """The kind of what is compared: for a function, of its results."""
+    return kinds()[question["result"] if question["kind"] == "function" else question["kind"]]
+
+
+def packages():
+    """Names of the packages that the notebooks of the installed courses import, and of the plug-ins."""
+    found = []
+    for plugin in plugins():
+        found += [plugin.__name__.partition(".")[0], *getattr(plugin, "PACKAGES", ())]
+    return list(dict.fromkeys(found))
+
+
+def folders_of(names):
+    """The folders of those packages that are installed."""
+    specs = [importlib.util.find_spec(name) for name in names]
+    return [folder for spec in specs if spec for folder in spec.submodule_search_locations or ()]
+
+
+def sealed_folders():
+    """The folders of sealed questions that plug-ins bring."""
+    folders = [resources.files(plugin) / "sealed" for plugin in plugins()]
+    return [folder for folder in folders if folder.is_dir()]

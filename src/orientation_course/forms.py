@@ -1,0 +1,47 @@
+"""Other ways of writing an orientation, and other orientations, to try questions with."""
+
+
+def of_dcm(question, answer):
+    """A direction cosine matrix of symbols as a SymPy reference frame."""
+    import sympy
+    from sympy.physics.mechanics import ReferenceFrame
+
+    if not isinstance(answer, sympy.MatrixBase) or not question.get("symbols"):
+        return []
+    target, source = (ReferenceFrame(name) for name in question["frames"])
+    target.orient_explicit(source, sympy.ImmutableMatrix(answer).T)
+    return [("reference frame", target)]
+
+
+def of_sequence(question, answer):
+    return [("dashes", "-".join(answer)), ("spaces", " ".join(answer)), ("list", list(answer))]
+
+
+def _a_turn():
+    from sympy import Rational
+
+    return [((Rational(2, 3), Rational(-1, 3), Rational(2, 3)), Rational(37, 100))]
+
+
+def another_dcm(question, answer):
+    import sympy
+
+    from .mistakes import dcm_of
+
+    if hasattr(answer, "dcm"):
+        answer = answer.dcm(next(iter(answer._dcm_dict)))
+    return dcm_of(_a_turn()) * sympy.Matrix(answer.tolist() if hasattr(answer, "tolist") else answer)
+
+
+def another_quaternion(question, answer):
+    import sympy
+
+    from orientation import multiply_quaternions
+
+    from .mistakes import quaternion_of
+
+    return multiply_quaternions(sympy.Matrix(list(answer)), quaternion_of(_a_turn()))
+
+
+def another_sequence(question, answer):
+    return next(word for word in ("xyx", "yzy", "zxy") if word not in (answer, answer[::-1]))

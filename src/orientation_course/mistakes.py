@@ -1,0 +1,284 @@
+"""The typical mistakes with orientations: what each does to a right answer, and what the student is told."""
+
+import itertools
+import math
+
+from coursework.checking.mistakes import Mistake, as_matrix, of_symbols
+
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+
+
+def _name(question):
+    target, source = question.get("frames", ("A", "N"))[:2]
+    return rf"${{}}^{{{target}}}\mathbf{{C}}^{{{source}}}$", rf"${{}}^{{{source}}}\mathbf{{C}}^{{{target}}}$"
+
+
+def _transposed(question):
+    if question["kind"] == "matrix" or "frames" not in question:
+        return "This is the transpose of what is asked for."
+    wanted, given = _name(question)
+    return f"This is {given}, the transpose of {wanted}: its columns are what should be the rows. Transpose it."
+
+
+def _turn(number):
+    return "the turn" if number is None else f"the {ORDINALS[number]} turn"
+
+
+MESSAGES = {
+    "transposed": _transposed,
+    "sign of one turn": lambda question, turn: f"The angle of {_turn(turn)} has the wrong sign.",
+    "sign of two turns": lambda question, first, second: (
+        f"The angles of {_turn(first)} and of {_turn(second)} have the wrong sign."
+    ),
+    "sign of every turn": lambda question: "Every angle has the wrong sign: each turn goes the wrong way round.",
+    "other order": lambda question: (
+        "The factors are multiplied in the other order. The matrix of the first turn stands on the right; in this "
+        "order the same turns are about axes fixed in the first frame (space fixed)."
+    ),
+    "other order, transposed": lambda question: (
+        "The factors are multiplied in the other order, and the product is transposed."
+    ),
+    "angles interchanged": lambda question, first, second: (
+        f"The angles of {_turn(first)} and of {_turn(second)} are interchanged."
+    ),
+    "another sequence": lambda question, sequence: (
+        f"These are body fixed turns in the sequence `{sequence}`, which is another one than is asked for."
+    ),
+    "another axis": lambda question, turn, axis: (
+        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about another one."
+    ),
+    "turn missing": lambda question, turn: f"{_turn(turn).capitalize()} is missing.",
+    "one factor only": lambda question, turn: f"This is {_turn(turn)} alone; the others are missing.",
+    "sine for cosine": lambda question, turn: f"Sine and cosine are interchanged in {_turn(turn)}.",
+    "degrees taken for radians": lambda question: (
+        "Degrees were given to functions that take radians. Convert them first: `sm.rad(30)` or `np.deg2rad(30)`."
+    ),
+    "conjugate": lambda question: (
+        "This is the conjugate, which turns the other way: its vector part has the wrong sign."
+    ),
+    "scalar last": lambda question: (
+        "The scalar part stands last here. In this book it stands first: $(q_0, q_i, q_j, q_k)$."
+    ),
+    "scalar last, conjugate": lambda question: (
+        "The scalar part stands last here, and the vector part has the wrong sign."
+    ),
+    "whole angle": lambda question: (
+        "The whole angle is used. A quaternion holds the sine and cosine of *half* the angle."
+    ),
+    "quarter angle": lambda question: "The angle is halved twice.",
+    "angles of another sequence": lambda question, sequence: (
+        f"These would be the angles in the sequence `{sequence}`; `{question['sequence']}` is asked for."
+    ),
+    "angles of the transpose": lambda question: "These are the angles of the transposed matrix.",
+    "space fixed angles": lambda question: "These are the angles of space fixed turns; body fixed ones are asked for.",
+    "angles in reverse": lambda question: "The three angles are right but in reverse order.",
+    "sign of one angle": lambda question, turn: f"The {ORDINALS[turn]} angle has the wrong sign.",
+    "sign of every angle": lambda question: "All angles have the wrong sign.",
+    "axis reversed": lambda question: "The turn goes the wrong way round: the axis, or the angle, has the wrong sign.",
+    "sequence reversed": lambda question: (
+        "This sequence is the reverse of the right one: it counts the turns from the last to the first, as one "
+        "would for turns about space fixed axes."
+    ),
+    "cosine for sine": lambda question: "Sine and cosine are interchanged.",
+}
+
+
+#: What the class did, by the note of a mistake or of a fault of the form: for the instructor's report.
+DEEDS = {
+    "sign of one turn": "gave the angle of the {turn} turn the wrong sign",
+    "sign of two turns": "gave the angles of the {first} and the {second} turn the wrong sign",
+    "sign of every turn": "turned the wrong way round throughout",
+    "other order": "multiplied in the other order (space fixed turns)",
+    "other order, transposed": "multiplied in the other order and gave the transpose",
+    "angles interchanged": "interchanged the angles of the {first} and the {second} turn",
+    "another sequence": "used the sequence {sequence}",
+    "another axis": "made the {turn} turn about {axis}",
+    "turn missing": "left the {turn} turn out",
+    "one factor only": "gave the {turn} turn alone",
+    "sine for cosine": "interchanged sine and cosine in the {turn} turn",
+    "degrees taken for radians": "took degrees for radians",
+    "conjugate": "gave the conjugate",
+    "scalar last": "put the scalar last",
+    "scalar last, conjugate": "put the scalar last and gave the conjugate",
+    "whole angle": "used the whole angle in place of half of it",
+    "quarter angle": "halved the angle twice",
+    "angles of another sequence": "gave the angles of the sequence {sequence}",
+    "angles of the transpose": "gave the angles of the transposed matrix",
+    "space fixed angles": "gave space fixed angles",
+    "angles in reverse": "gave the angles in reverse order",
+    "sign of one angle": "gave the {turn} angle the wrong sign",
+    "sign of every angle": "gave every angle the wrong sign",
+    "axis reversed": "turned the wrong way round",
+    "sequence reversed": "gave the sequence in reverse",
+    "cosine for sine": "interchanged sine and cosine",
+    "impossible sequence": "gave a sequence that is none",
+    "zero axis": "gave an axis of length zero",
+    "not orthogonal": "gave a matrix that is not orthogonal",
+    "left-handed": "gave a left-handed matrix",
+}
+
+
+# --- what each mistake does to an answer --------------------------------------------------------
+
+
+def dcm_of(turns):
+    """The direction cosine matrix of successive turns."""
+    import sympy
+
+    from orientation import dcm_from_axis_angle
+
+    result = sympy.eye(3)
+    for axis, angle in turns:
+        result = dcm_from_axis_angle(_components(axis), sympy.sympify(angle)) * result
+    return result
+
+
+def quaternion_of(turns):
+    """The quaternion of successive turns."""
+    import sympy
+
+    from orientation import multiply_quaternions, quaternion_from_axis_angle
+
+    result = sympy.Matrix([1, 0, 0, 0])
+    for axis, angle in turns:
+        result = multiply_quaternions(result, quaternion_from_axis_angle(_components(axis), sympy.sympify(angle)))
+    return result
+
+
+def _components(axis):
+    import sympy
+
+    if isinstance(axis, str):
+        sign = -1 if axis.startswith("-") else 1
+        return [sympy.Integer(sign * (letter == axis[-1])) for letter in "xyz"]
+    return [sympy.sympify(part) for part in axis]
+
+
+def _of_turns(build, turns):
+    """Mistakes in building an orientation from successive turns."""
+    import sympy
+
+    from orientation import SEQUENCES
+
+    def changed(*numbers):
+        return [(axis, -angle if order in numbers else angle) for order, (axis, angle) in enumerate(turns)]
+
+    count = len(turns)
+
+    def named(turn):
+        # A single turn is not called the first of its kind.
+        return turn if count > 1 else None
+
+    for turn in range(count):
+        yield Mistake("sign of one turn", {"turn": named(turn)}, build(changed(turn)))
+    if count > 1:
+        yield Mistake("other order", {}, build(turns[::-1]))
+        yield Mistake("sign of every turn", {}, build(changed(*range(count))))
+        for turn in range(count):
+            yield Mistake("turn missing", {"turn": turn}, build(turns[:turn] + turns[turn + 1 :]))
+    for first, second in itertools.combinations(range(count), 2):
+        if count > 2:
+            yield Mistake("sign of two turns", {"first": first, "second": second}, build(changed(first, second)))
+            for turn in range(count):
+                if turn not in (first, second):
+                    yield Mistake("one factor only", {"turn": turn}, build([turns[turn]]))
+        swapped = list(turns)
+        swapped[first] = (turns[first][0], turns[second][1])
+        swapped[second] = (turns[second][0], turns[first][1])
+        yield Mistake("angles interchanged", {"first": first, "second": second}, build(swapped))
+    letters = [axis for axis, _ in turns]
+    plain = all(isinstance(axis, str) and len(axis) == 1 for axis in letters)
+    if plain and count == 3:
+        for sequence in SEQUENCES:
+            if sequence != "".join(letters):
+                yield Mistake(
+                    "another sequence",
+                    {"sequence": sequence},
+                    build([(axis, angle) for axis, (_, angle) in zip(sequence, turns)]),
+                )
+    for turn in range(count):
+        if plain:
+            for axis in "xyz":
+                if axis != letters[turn]:
+                    other = list(turns)
+                    other[turn] = (axis, turns[turn][1])
+                    yield Mistake("another axis", {"turn": named(turn), "axis": axis}, build(other))
+        other = list(turns)
+        other[turn] = (turns[turn][0], sympy.pi / 2 - turns[turn][1])
+        if build is not quaternion_of:
+            yield Mistake("sine for cosine", {"turn": named(turn)}, build(other))
+    if turns and not any(sympy.sympify(angle).free_symbols for _, angle in turns):
+        yield Mistake(
+            "degrees taken for radians", {}, build([(axis, sympy.deg(angle).evalf(20)) for axis, angle in turns])
+        )
+
+
+def of_dcm(question, answer, turns, turned):
+    answer = as_matrix(answer)
+    yield Mistake("transposed", {}, answer.T)
+    yield from _of_turns(dcm_of, turns)
+    if len(turns) > 1:
+        yield Mistake("other order, transposed", {}, dcm_of(turns[::-1]).T)
+    if not turns:
+        yield from of_symbols(question, answer)
+
+
+def of_quaternion(question, answer, turns, turned):
+    import sympy
+
+    answer = as_matrix(answer)
+    scalar, i, j, k = answer
+    yield Mistake("conjugate", {}, sympy.Matrix([scalar, -i, -j, -k]))
+    yield Mistake("scalar last", {}, sympy.Matrix([i, j, k, scalar]))
+    yield Mistake("scalar last, conjugate", {}, sympy.Matrix([-i, -j, -k, scalar]))
+    if len(turns) == 1:
+        axis, angle = turns[0]
+        yield Mistake("whole angle", {}, quaternion_of([(axis, 2 * angle)]))
+        yield Mistake("quarter angle", {}, quaternion_of([(axis, sympy.sympify(angle) / 2)]))
+        cosine, sine = scalar, sympy.sin(sympy.sympify(angle) / 2)
+        direction = sympy.Matrix(_components(axis))
+        direction = direction / sympy.sqrt(direction.dot(direction))
+        yield Mistake("cosine for sine", {}, sympy.Matrix([sine, *(cosine * direction)]))
+    yield from _of_turns(quaternion_of, turns)
+    if not turns:
+        yield from of_symbols(question, answer)
+
+
+def of_angles(question, answer, turns, turned):
+    from orientation import SEQUENCES, body_fixed_from_dcm, dcm_from_body_fixed, space_fixed_from_dcm
+
+    angles = [float(angle) for angle in answer]
+    dcm = dcm_from_body_fixed(angles, question["sequence"])
+    for turn in range(3):
+        yield Mistake(
+            "sign of one angle",
+            {"turn": turn},
+            [-angle if order == turn else angle for order, angle in enumerate(angles)],
+        )
+    yield Mistake("sign of every angle", {}, [-angle for angle in angles])
+    yield Mistake("angles in reverse", {}, angles[::-1])
+    yield Mistake("angles of the transpose", {}, list(body_fixed_from_dcm(dcm.T, question["sequence"])))
+    yield Mistake("in degrees", {}, [math.degrees(angle) for angle in angles])
+    yield Mistake("space fixed angles", {}, list(space_fixed_from_dcm(dcm, question["sequence"])))
+    for sequence in SEQUENCES:
+        if sequence != question["sequence"]:
+            yield Mistake(
+                "angles of another sequence", {"sequence": sequence}, list(body_fixed_from_dcm(dcm, sequence))
+            )
+
+
+def of_axis_and_angle(question, answer, turns, turned):
+    axis, angle = answer
+    axis = list(axis)
+    import sympy
+
+    angle = sympy.sympify(angle)
+    yield Mistake("axis reversed", {}, [axis, -angle])
+    yield Mistake("in degrees", {}, [axis, angle * 180 / sympy.pi])
+    yield Mistake("half", {}, [axis, angle / 2])
+    yield Mistake("double", {}, [axis, 2 * angle])
+
+
+def of_sequence(question, answer, turns, turned):
+    if answer != answer[::-1]:
+        yield Mistake("sequence reversed", {}, answer[::-1])
