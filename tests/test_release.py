@@ -293,6 +293,7 @@ def test_a_version_follows_from_the_sources(tmp_path):
     book = tmp_path / "book"
     for name in (*packing.ABOUT, "src/orientation/a.py", "src/coursework/grading/grade.py"):
         touch(name, "", at(2026, 11, 1))
+    touch("src/orientation/__init__.py", '__version__ = "1.1.0"\n', at(2026, 11, 1))
     assert version() == "20261101000000"  # no repository: when the newest file was written
     git("init", "--quiet")
     git("add", ".")
