@@ -8,6 +8,7 @@ from .figure import MovingFigure
 from .gimbal import GimbalFigure
 from .motion import MotionFigure
 from .nine_numbers import NineNumbersFigure
+from .phone import PhoneFigure
 from .quaternion import QuaternionFigure
 from .successive import SuccessiveFigure
 from .triad import TriadFigure
@@ -17,6 +18,7 @@ __all__ = [
     "MotionFigure",
     "MovingFigure",
     "NineNumbersFigure",
+    "PhoneFigure",
     "QuaternionFigure",
     "SequenceExplorer",
     "SuccessiveFigure",
