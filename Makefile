@@ -5,7 +5,7 @@ PYTHON ?= python3
 PORT ?= 8000
 VENV := .venv
 RUN := $(VENV)/bin/python
-PIP := $(RUN) -m pip install --quiet --disable-pip-version-check --no-build-isolation --constraint constraints.txt
+PIP := $(RUN) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-compile --constraint constraints.txt
 
 # Kernels see this book's settings and nobody's own.
 export IPYTHONDIR := $(CURDIR)/_build/ipython
@@ -28,22 +28,30 @@ help:
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
 
-setup: $(VENV)/ready node_modules/ready $(VENV)/runtime/ready $(KERNEL_SETTINGS)
+# What each command installs, by the extras of pyproject.toml: the book itself needs neither browser nor tests.
+EXTRAS_book := book
+EXTRAS_print := book,print
+EXTRAS_release := book,grading
+EXTRAS_test := book,grading,print,test
 
-$(VENV)/ready: constraints.txt pyproject.toml
+setup: $(VENV)/ready-book node_modules/ready $(VENV)/runtime/ready $(KERNEL_SETTINGS)
+
+$(VENV)/bin/python:
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'The book needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Name one: make PYTHON=python3.12')"
-	@echo "Setting up Python in $(VENV) (about a minute) ..."
-	@test -x $(RUN) || $(PYTHON) -m venv $(VENV)
+	@$(PYTHON) -m venv $(VENV)
+
+$(VENV)/ready-%: constraints.txt pyproject.toml | $(VENV)/bin/python
+	@echo "Setting up Python in $(VENV) for: $(EXTRAS_$*) ..."
 	@$(PIP) setuptools
-	@$(PIP) --editable '.[book,grading,print,test]'
+	@$(PIP) --editable '.[$(EXTRAS_$*)]'
 	@touch $@
 
-node_modules/ready: package-lock.json $(VENV)/ready
+node_modules/ready: package-lock.json | $(VENV)/ready-book
 	@echo "Setting up KaTeX, the typefaces and Python for browsers in node_modules ..."
 	@PATH="$(CURDIR)/$(VENV)/bin:$$PATH" npm ci --silent --ignore-scripts --no-audit --no-fund
 	@touch $@
 
-$(VENV)/runtime/ready: src/website/live/wheels.txt src/website/lite/wheels.txt $(VENV)/ready
+$(VENV)/runtime/ready: src/website/live/wheels.txt src/website/lite/wheels.txt | $(VENV)/ready-book
 	@echo "Setting up Python packages for browsers in $(VENV)/runtime ..."
 	@rm -rf $(@D)
 	@for place in live lite; do \
@@ -62,15 +70,16 @@ book: setup
 serve: book
 	@$(RUN) -m website.serve $(PORT)
 
-take-away: book
+take-away: $(VENV)/ready-print book
 	@$(RUN) -m website.whole_book
 
 # As many tests side by side as there are cores. What takes long and rarely breaks is left to `make test-all`.
-test: book
+test: $(VENV)/ready-test book
+	@$(RUN) -m website.browser || true
 	@$(RUN) -m pytest -n logical -m "not long"
 
 # The PDF is printed by a browser; where there is none, the tests that need one are skipped.
-test-all: book
+test-all: $(VENV)/ready-test book
 	@if $(RUN) -m website.browser; then $(RUN) -m website.whole_book; fi
 	@$(RUN) -m pytest -n logical $(TABLE)
 
@@ -80,11 +89,11 @@ times: test-all
 notebooks: setup
 	@$(RUN) -m website.notebooks
 
-release: setup
+release: $(VENV)/ready-release setup
 	@$(RUN) -m coursework release
 	@$(RUN) -m coursework selftest
 
-benchmark: setup
+benchmark: $(VENV)/ready-test setup
 	@$(RUN) -m benchmarks
 
 clean:

@@ -18,7 +18,8 @@ def main():
     print(f"Python {platform.python_version()}, {packages}, {platform.machine()}.")
     print("The time of orientation, and how many times as long the others take (medians of processor time; below")
     print(
-        "1 they are faster). What exactly is compared is said in benchmarks/conversions.py, symbols.py and imports.py.\n"
+        "1 they are faster). What exactly is compared is said in benchmarks/conversions.py, symbols.py and "
+        "imports.py.\n"
     )
     print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in PEERS)} |")
     print(f"|---|---|---|{'---|' * len(PEERS)}")

@@ -64,18 +64,21 @@ def main():
         )
         print(f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n")
         print(
-            "| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times ours, processor |"
+            "| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times "
+            "ours, processor |"
         )
         print("|---|---|---|---|---|---|---|")
         own = ours[1] / ours[0], ours[2] / ours[0]
         for what, count, clock, processor in rows:
             print(
-                f"| {what} | {count} | {clock:.1f} s | {1000 * clock / count:.0f} ms | {1000 * processor / count:.0f} ms "
+                f"| {what} | {count} | {clock:.1f} s | {1000 * clock / count:.0f} ms | "
+                f"{1000 * processor / count:.0f} ms "
                 f"| {clock / count / own[0]:.2g} | {processor / count / own[1]:.2g} |"
             )
         each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
         print(
-            f"\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor time. Beyond it and beyond the cells "
+            f"\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor time. Beyond it and "
+            "beyond the cells "
             f"a notebook costs {1000 * each:.0f} ms of processor time."
         )
 

@@ -91,7 +91,8 @@ def main():
             ],
         )
         print(
-            f"Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as slow; a picture has {FRAME} ms.\n"
+            f"Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as slow; a picture has "
+            f"{FRAME} ms.\n"
         )
         print("| figure | main thread, ms for each picture of a drag | kB after gzip |")
         print("|---|---|---|")

@@ -13,7 +13,7 @@ import times
 import warm_kernels
 from xdist.scheduler import LoadFileScheduling
 
-from website.browser import FLAGS, find
+from website.browser import FLAGS, MISSING, find
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 HTML = REPOSITORY / "_build" / "html"
@@ -119,7 +119,7 @@ def browser():
 
     found = find()
     if found is None:
-        reason = "no Chromium on this machine: the built pages cannot be opened"
+        reason = MISSING
         pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=found, args=list(FLAGS))

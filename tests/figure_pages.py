@@ -25,7 +25,8 @@ PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><head><meta charse
 html {{ --pst-color-background: #fff; background: #fff; color: #1d2125; font: 16px/1.6 sans-serif; }}
 html[data-theme="dark"] {{ --pst-color-background: #121212; background: #121212; color: #eceff2; }}
 body {{ max-width: 714px; margin: 0 auto; padding: 0 16px; }} figure {{ margin: 0; }}
-</style>{scripts}</head><body><main><h1>A figure</h1>{figures}<p id="after">The text goes on.</p></main></body></html>"""
+</style>{scripts}</head><body><main><h1>A figure</h1>{figures}
+<p id="after">The text goes on.</p></main></body></html>"""
 # Pictures are drawn before the next frame; a run that is still being computed goes on in those that follow.
 SETTLED = """async () => {
   const picture = () => new Promise((done) => requestAnimationFrame(done));

@@ -9,26 +9,31 @@ SOURCES = {
         ("markdown", "# Exercises: turns"),
         (
             "code",
-            "import sympy as sm\n\nfrom coursework import check\n\ntheta, alpha, beta = sm.symbols('theta, alpha, beta')",
+            "import sympy as sm\n\nfrom coursework import check\n\ntheta, alpha, beta = sm.symbols('theta, alpha, "
+            "beta')",
         ),
         (
             "code",
-            "### BEGIN SOLUTION\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]])\n### END SOLUTION",
+            "### BEGIN SOLUTION\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, "
+            "-sm.sin(theta), sm.cos(theta)]])\n### END SOLUTION",
         ),
         (
             "code",
-            "check('turns/about-x', A_C_N)\n### BEGIN HIDDEN TESTS\nquestion('turns/about-x', kind='direction cosine matrix', frames=('A', 'N'), "
+            "check('turns/about-x', A_C_N)\n### BEGIN HIDDEN TESTS\nquestion('turns/about-x', kind='direction "
+            "cosine matrix', frames=('A', 'N'), "
             "symbols='theta', turns=[('x', theta)], worth=2, credit={'transposed': 0.5})\n### END HIDDEN TESTS",
         ),
         ("code", "### BEGIN SOLUTION\nsine = sm.sin(alpha + beta)\n### END SOLUTION"),
         (
             "code",
-            "check('turns/sum', sine)\n### BEGIN HIDDEN TESTS\nquestion('turns/sum', kind='expression', symbols='alpha beta', worth=1)\n### END HIDDEN TESTS",
+            "check('turns/sum', sine)\n### BEGIN HIDDEN TESTS\nquestion('turns/sum', kind='expression', "
+            "symbols='alpha beta', worth=1)\n### END HIDDEN TESTS",
         ),
         ("code", "### BEGIN SOLUTION\ndef doubled(x):\n    return 2*x\n### END SOLUTION"),
         (
             "code",
-            "check('turns/doubled', doubled)\n### BEGIN HIDDEN TESTS\nquestion('turns/doubled', kind='function', calls=[[1.5], [-2.0]], "
+            "check('turns/doubled', doubled)\n### BEGIN HIDDEN TESTS\nquestion('turns/doubled', kind='function', "
+            "calls=[[1.5], [-2.0]], "
             "result='expression', worth=3)\n### END HIDDEN TESTS",
         ),
     ],
@@ -37,17 +42,20 @@ SOURCES = {
         ("code", "### BEGIN SOLUTION\nangle = sm.pi/6\n### END SOLUTION"),
         (
             "code",
-            "check('axes/angle', angle)\n### BEGIN HIDDEN TESTS\nquestion('axes/angle', kind='expression', quantity='angle', worth=1)\n### END HIDDEN TESTS",
+            "check('axes/angle', angle)\n### BEGIN HIDDEN TESTS\nquestion('axes/angle', kind='expression', "
+            "quantity='angle', worth=1)\n### END HIDDEN TESTS",
         ),
         ("code", "### BEGIN SOLUTION\nlength = sm.sqrt(3)*q\n### END SOLUTION"),
         (
             "code",
-            "check('axes/length', length)\n### BEGIN HIDDEN TESTS\nquestion('axes/length', kind='expression', symbols='q', worth=1)\n### END HIDDEN TESTS",
+            "check('axes/length', length)\n### BEGIN HIDDEN TESTS\nquestion('axes/length', kind='expression', "
+            "symbols='q', worth=1)\n### END HIDDEN TESTS",
         ),
     ],
 }
 RIGHT = {
-    "turns/about-x": "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]])",
+    "turns/about-x": "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), "
+    "sm.cos(theta)]])",
     "turns/sum": "sine = sm.sin(alpha)*sm.cos(beta) + sm.cos(alpha)*sm.sin(beta)",
     "turns/doubled": "doubled = lambda x: x + x",
     "axes/angle": "angle = 0.523599",

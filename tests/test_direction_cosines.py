@@ -80,7 +80,7 @@ def test_any_one_wrong_entry_is_found(row, column, change):
 
 def test_triads_that_are_skewed_or_shrunk_in_one_plane_are_found():
     # The third row is the cross product of the first two, so only these two can tell.
-    for first, second, third in random_dcms(20, 9):
+    for first, second, _ in random_dcms(20, 9):
         for x, y in (
             (0.9 * first, second),
             (1.1 * first, second),

@@ -292,7 +292,10 @@ def test_output_is_the_same_in_every_run():
 
 
 def test_the_module_loads_no_pictures_by_itself():
-    code = 'import sys, orientation; print([name for name in ("matplotlib", "orientation_figures.drawing") if name in sys.modules])'
+    code = (
+        'import sys, orientation; print([name for name in ("matplotlib", "orientation_figures.drawing") if name '
+        "in sys.modules])"
+    )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
 
@@ -448,7 +451,10 @@ def test_keyboard_button_and_slider(moving_page):
     assert second.query_selector("input").input_value() == untouched
     # Played from the end, it starts again.
     other.query_selector("button").click()
-    between = 'figure => { const { value, min, max } = figure.querySelector("input"); return +value > +min && +value < +max; }'
+    between = (
+        'figure => { const { value, min, max } = figure.querySelector("input"); return +value > +min && '
+        "+value < +max; }"
+    )
     moving_page.wait_for_function(between, arg=other)
     assert moving_page.errors == []
 

@@ -37,7 +37,8 @@ def students():
     yield (
         "mistaken",
         handed_in(
-            about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, sm.sin(theta), sm.cos(theta)]])",
+            about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, sm.sin(theta), "
+            "sm.cos(theta)]])",
             sum="sine = -sm.sin(alpha + beta)",
         ),
     )
@@ -561,12 +562,14 @@ CANVAS = (
         (CANVAS, "mistaken", 'x,"8",9'),
         (
             'Identifier;"Full name";"ID number";Grade;"Maximum Grade";"Grade can be changed"\n'
-            '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n"Participant 7";D;broken;"";6,00;Yes\n',
+            '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n"Participant '
+            '7";D;broken;"";6,00;Yes\n',
             "right",
             "right;6;6,00",
         ),
         (
-            "OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric MaxPoints:3>\tEnd-of-Line Indicator\r\n"
+            "OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric MaxPoints:3>\tEnd-of-Line "
+            "Indicator\r\n"
             "#1\t#right\tR\tS\t\t#\r\n#2\t#broken\tB\tS\t1\t#\r\n",
             "broken",
             "#broken\tB\tS\t2.5\t#",

@@ -27,7 +27,8 @@ SET = {
 }
 FIRST_CELL = f"""
 from orientation_figures import moving
-figures = {{name: getattr(moving, figure)() for name, figure in { ({kind: FIGURES[kind].__name__ for kind in KINDS})!r}.items()}}
+names = { ({kind: FIGURES[kind].__name__ for kind in KINDS})!r}
+figures = {{name: getattr(moving, figure)() for name, figure in names.items()}}
 heard = []
 for name, figure in figures.items():
     figure.observe(lambda change, name=name: heard.append((name, change.name, change.new)), list(figure.state()))
@@ -64,7 +65,8 @@ def laboratory(tmp_path_factory):
     with (folder / "log").open("w") as log:
         server = subprocess.Popen(
             [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--port=0", "--ip=127.0.0.1",
-             f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={folder}", "--LabApp.expose_app_in_browser=True"],
+             f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={folder}",
+             "--LabApp.expose_app_in_browser=True"],
             env=environment, stdout=log, stderr=log)  # fmt: skip
         try:
             yield folder, wait_for_address(server, folder)
@@ -114,7 +116,8 @@ class Kernel:
 
 # What Lab itself waits for before a reader can run a cell.
 RUN_ALL = """async () => {
-  const picture = () => new Promise((done) => requestAnimationFrame(done)), { shell, commands, restored } = window.jupyterapp;
+  const picture = () => new Promise((done) => requestAnimationFrame(done));
+  const { shell, commands, restored } = window.jupyterapp;
   await restored;
   while (!shell.currentWidget?.sessionContext) await picture();
   const { context, revealed, sessionContext } = shell.currentWidget;

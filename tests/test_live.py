@@ -30,12 +30,16 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   const output = cell.querySelector(':scope > .cell_output');
   if (!output) return '';
   const copy = output.cloneNode(true);
-  copy.querySelectorAll('*').forEach((box) => ['tabindex', 'role', 'aria-label', 'data-name'].forEach((n) => box.removeAttribute(n)));
+  copy.querySelectorAll('*').forEach((box) => 
+    ['tabindex', 'role', 'aria-label', 'data-name'].forEach((n) => box.removeAttribute(n)));
   copy.querySelectorAll('pre > span:empty, button.copybtn').forEach((extra) => extra.remove());
   copy.querySelectorAll('pre').forEach((pre) => pre.removeAttribute('id'));
   return copy.innerHTML.replace(/\s+/g, ' ').replace(/> </g, '><').replace(/ <\/pre>/g, '</pre>').trim();
 })"""
-RAN = "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null && document.querySelector('#live-words')?.textContent !== ''"
+RAN = (
+    "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null && "
+    "document.querySelector('#live-words')?.textContent !== ''"
+)
 
 
 opened = []
@@ -334,6 +338,27 @@ def test_numpy_is_fetched_and_checked(context, site, made_wheels):
     assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
 
 
+def test_hidden_code_runs_before_the_cell_below_it(context, site):
+    """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the next one."""
+
+    def with_hidden_code(route):
+        page = route.fetch()
+        text, count = re.subn(r'"cells":\s*\{', r'"cells":{"0":{"before":"hidden = 6 * 7"},', page.text(), count=1)
+        assert count == 1
+        text = re.sub(r'"hidden = 6 \* 7"\},\s*\}', '"hidden = 6 * 7"}}', text)
+        route.fulfill(response=page, body=text)
+
+    context.route(f"**/{QUIET}", with_hidden_code)
+    try:
+        page = Page(context, site, QUIET)
+    finally:
+        context.unroute(f"**/{QUIET}")
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    assert "42" in page.try_code(3, "hidden")
+    assert page.errors == []
+
+
 # --- what a student would type ------------------------------------------------------------------
 
 
@@ -457,7 +482,10 @@ def test_exercise_is_checked_in_the_page(context, site):
 # --- stopping and starting afresh -----------------------------------------------------------------
 
 ENDLESS = "kept = 'kept'\nprint('begun')\nwhile True:\n    pass"
-HUGE = "print('begun')\nimport sympy as sm\nM = sm.Matrix(60, 60, lambda i, j: sm.Symbol(f'a{i}{j}'))\nM.det(method='berkowitz')"
+HUGE = (
+    "print('begun')\nimport sympy as sm\nM = sm.Matrix(60, 60, lambda i, j: "
+    "sm.Symbol(f'a{i}{j}'))\nM.det(method='berkowitz')"
+)
 ONE_STEP = "print('begun')\nmax(range(10 ** 15))"  # one operation, in which Python does not listen
 
 
@@ -465,7 +493,8 @@ def stop(page, number, code):
     """Run endless code, press Stop once it has begun, and return what stands below the cell then."""
     page.try_code(number, code, wait=False)
     page.page.wait_for_function(
-        "number => document.querySelectorAll('div.cell')[number - 1].querySelector('.cell_output').innerText.includes('begun')",
+        "number => document.querySelectorAll('div.cell')[number - "
+        "1].querySelector('.cell_output').innerText.includes('begun')",
         arg=number,
     )
     page.page.click(".live-bar button:has-text('Stop')")

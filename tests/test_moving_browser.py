@@ -66,7 +66,8 @@ def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
         box = asleep.locator(".sheet").first.bounding_box()
         after = asleep.locator("#after").bounding_box()
         asleep.evaluate(
-            "() => { document.querySelector('.live').remove(); delete document.querySelector('.moving').dataset.ready; }"
+            "() => { document.querySelector('.live').remove(); delete "
+            "document.querySelector('.moving').dataset.ready; }"
         )
         still = asleep.locator(".still svg").first.bounding_box()
         assert [still[side] for side in ("x", "y", "width", "height")] == pytest.approx(
@@ -77,7 +78,8 @@ def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
 
 
 ARROWS = """(box) => [...document.querySelectorAll(box + ' .axis')].map((arrow) => [
-  [...arrow.classList].find((name) => name.length === 1) ?? 'accent', arrow.getAttribute('d').match(/-?[0-9.]+/g).map(Number)])"""
+  [...arrow.classList].find((name) => name.length === 1) ?? 'accent', 
+  arrow.getAttribute('d').match(/-?[0-9.]+/g).map(Number)])"""
 
 
 @pytest.mark.parametrize("kind", ["triad", "gimbal", "nine_numbers"])
@@ -114,7 +116,8 @@ FOCUSED = """() => {
   const now = document.activeElement;
   const box = now.getBoundingClientRect(), style = getComputedStyle(now), label = now.labels?.[0] ?? now;
   const formulas = [...label.querySelectorAll('[aria-label]')].map((one) => one.getAttribute('aria-label'));
-  return { tag: now.tagName, type: now.type ?? '', name: now.getAttribute('aria-label') ?? [label.textContent, ...formulas].join(' '),
+  return { tag: now.tagName, type: now.type ?? '', 
+    name: now.getAttribute('aria-label') ?? [label.textContent, ...formulas].join(' '),
            outlined: style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) > 0,
            seen: box.width > 0 && box.height > 0, inside: Boolean(now.closest('.live')),
            value: now.getAttribute('aria-valuetext') };
@@ -157,7 +160,8 @@ def test_keys_alone(open_figure, kind):
         pytest.fail("the focus is caught in the figure")
     # One stop for each group of radio buttons, and for each table of numbers.
     controls = page.eval_on_selector_all(
-        ".live :is(input:not([type=radio]:not(:checked)), select, [role=application], button:not([tabindex='-1'], :disabled))",
+        ".live :is(input:not([type=radio]:not(:checked)), select, [role=application], button:not([tabindex='-1'], "
+        ":disabled))",
         "all => all.filter(one => one.checkVisibility({ visibilityProperty: true })).length",
     )
     assert len(stops) == controls and "svg" in {tag.lower() for tag in tags}
@@ -202,7 +206,8 @@ HOLD = """([part, corner]) => {
   return [place.x, place.y];
 }"""
 DRAGS = [("triad", "1", None, (10, 45)), ("triad", "axis", None, (-20, 50)), ("gimbal", "B", 4, (10, 50)),
-         ("gimbal", "C", 12, (15, -45)), ("gimbal", "D", None, (10, 35)), ("nine_numbers", "0", None, (-10, 45))]  # fmt: skip
+         ("gimbal", "C", 12, (15, -45)), ("gimbal", "D", None, (10, 35)),
+         ("nine_numbers", "0", None, (-10, 45))]  # fmt: skip
 
 
 @pytest.mark.sampled(4)
@@ -381,7 +386,8 @@ MOVES = """async ({ pictures, moves }) => {
   const counts = [];
   let records = [];
   await picture();
-  new MutationObserver((list) => records.push(...list)).observe(document.querySelector('.live'), { subtree: true, attributes: true, childList: true, characterData: true });
+  new MutationObserver((list) => records.push(...list)).observe(
+    document.querySelector('.live'), { subtree: true, attributes: true, childList: true, characterData: true });
   for (let k = 0; k < pictures; k += 1) {
     let asked = 0;
     records = [];

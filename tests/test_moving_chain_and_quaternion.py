@@ -24,7 +24,7 @@ from test_site import SIDEWAYS, violations
 from traitlets import TraitError
 
 from orientation import angular_velocity_matrix, dcm_from_body_fixed, dcm_from_space_fixed
-from orientation_figures.moving import MotionFigure, QuaternionFigure, SuccessiveFigure, bundle
+from orientation_figures.moving import MotionFigure, QuaternionFigure, SuccessiveFigure
 
 RIGHT_ANGLES = (("z", math.pi / 2), ("x", math.pi / 2))
 FOUR = (("z", 0.5), ("x", -0.6), ("y", 2.7), ("z", -1.9))

@@ -298,7 +298,8 @@ def test_rates_agree_with_the_module(node):
     angles, omegas = random.uniform(-3, 3, (300, 3)), random.normal(size=(300, 3))
     columns = [dcms.reshape(-1, 9), quaternions, angles, omegas]
     answer = node(
-        "data.map(([dcm, q, angles, omega]) => [dcmRate(dcm, omega), quaternionRate(q, omega), angleRates(angles, omega)])",
+        "data.map(([dcm, q, angles, omega]) => [dcmRate(dcm, omega), quaternionRate(q, omega), angleRates(angles, "
+        "omega)])",
         [[entry.tolist() for entry in row] for row in zip(*columns)],
     )
     for row, dcm, quaternion, angle, omega in zip(answer, dcms, quaternions, angles, omegas):

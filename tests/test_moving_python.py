@@ -174,7 +174,10 @@ def test_front_end_is_one_module_that_needs_nothing(figure, tmp_path):
     module_file, script_file = tmp_path / "figure.mjs", tmp_path / "figure.js"
     module_file.write_text(text, "utf8")
     # It must also load where there is no page yet.
-    check = f"import('{module_file.as_uri()}').then((figure) => {{ if (typeof figure.default.render !== 'function') process.exit(1); }})"
+    check = (
+        f"import('{module_file.as_uri()}').then((figure) => "
+        "{ if (typeof figure.default.render !== 'function') process.exit(1); })"
+    )
     subprocess.run([NODE, "-e", check], check=True)
     script_file.write_text(bundle.shared_script() + bundle.script(figure.kind), "utf8")
     subprocess.run([NODE, "--check", script_file], check=True)

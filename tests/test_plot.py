@@ -6,8 +6,8 @@ from xml.dom import minidom
 import matplotlib
 import pytest
 
-from orientation_figures.drawing import LIGHT
 from orientation_figures.plot import Plot
+from orientation_figures.style import LIGHT
 
 ALT = "A line that rises from the origin to the point one, one, and a flat dashed line below it."
 

@@ -5,10 +5,10 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import venv
-import shutil
 import zipfile
 from datetime import UTC, datetime
 from pathlib import Path
@@ -28,7 +28,8 @@ SOLUTION = (
 )
 HIDDEN = (
     "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='direction cosine matrix', frames=('A', 'N'), "
-    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not move.')\n"
+    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not "
+    "move.')\n"
     "### END HIDDEN TESTS"
 )
 FUNCTION = (

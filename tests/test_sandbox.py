@@ -230,7 +230,8 @@ def test_an_earlier_cells_damage_is_undone(sandbox):
     result = sandbox.run(
         notebook(
             "import signal, sys\nsys.setrecursionlimit(50)\nsignal.signal(signal.SIGPROF, signal.SIG_IGN)",
-            "import sympy\ncheck('q', sympy.trigsimp(sympy.sin(sympy.Symbol('x'))**2 + sympy.cos(sympy.Symbol('x'))**2))",
+            "import sympy\ncheck('q', sympy.trigsimp(sympy.sin(sympy.Symbol('x'))**2 + "
+            "sympy.cos(sympy.Symbol('x'))**2))",
             "while True: pass",
             questions={"q": None},
         )
@@ -269,7 +270,8 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
 @pytest.mark.parametrize(
     "source",
     [
-        "%matplotlib inline\n!pip install nothing\nfiles = !ls\nassert files == []\ndisplay(1)\nget_ipython().magic('x')",
+        "%matplotlib inline\n!pip install nothing\nfiles = !ls\nassert files == "
+        "[]\ndisplay(1)\nget_ipython().magic('x')",
         "%%time\nx = 1",
         "%time x = 1",
         "%%capture output\nx = 1",
@@ -281,10 +283,12 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
         "A.orient_body_fixed(N, (a, b, 0), 'zxz'); A.ang_vel_in(N); sm.simplify(A.dcm(N).T * A.dcm(N))",
         "import orientation\norientation.dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy')",
         "import numpy as np\nnp.linalg.eig(np.random.rand(50, 50)); np.save('a', np.eye(3)); np.load('a.npy')",
-        "import sympy as sm, numpy as np\nx = sm.Symbol('x')\nassert sm.lambdify(x, sm.sin(x), 'numpy')(np.zeros(2)).size == 2",
+        "import sympy as sm, numpy as np\nx = sm.Symbol('x')\nassert sm.lambdify(x, sm.sin(x), "
+        "'numpy')(np.zeros(2)).size == 2",
         "from concurrent.futures import ThreadPoolExecutor\nassert list(ThreadPoolExecutor(4).map(abs, [-1])) == [1]",
         "import tempfile\nwith tempfile.TemporaryDirectory() as d: open(d + '/x', 'w').write('x')",
-        "import pathlib, shutil\npathlib.Path('a').write_text('x'); shutil.copyfile('a', 'b'); pathlib.Path('b').unlink()",
+        "import pathlib, shutil\npathlib.Path('a').write_text('x'); shutil.copyfile('a', 'b'); "
+        "pathlib.Path('b').unlink()",
         "from IPython.display import display, HTML, Latex, Math\ndisplay(Math('x'), HTML('<b>'))",
         "from ipywidgets import interact, FloatSlider\n@interact(x=FloatSlider())\ndef f(x=1.0): return x",
         "import dataclasses, enum, pickle, copy\n@dataclasses.dataclass\nclass P: x: int = 1\n"

@@ -28,7 +28,7 @@ MATHEMATICS = r"""() => {
     if (!formula.querySelector("math")) faults.push("no MathML: " + formula.textContent);
     if (!formula.querySelector('.katex-html[aria-hidden="true"]')) faults.push("spoken twice: " + formula.textContent);
   }
-  for (const element of document.querySelectorAll(".bad-tex, .katex-error, mjx-container")) faults.push(element.outerHTML);
+  for (const bad of document.querySelectorAll(".bad-tex, .katex-error, mjx-container")) faults.push(bad.outerHTML);
   const words = document.querySelector("article, .bd-search-container").cloneNode(true);
   words.querySelectorAll(".katex, pre, code, script, style, svg, textarea").forEach((element) => element.remove());
   const raw = words.textContent.match(/\$\S[^$]*\$|\\(?:begin|frac|hat|mathbf|left|theta|psi)\b/);

@@ -21,6 +21,7 @@ from nbclient import NotebookClient
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from coursework.authoring.packing import PACKAGES
 from website.notebooks import all_notebooks
 
 FOLDER = HTML / "take-away"
@@ -144,7 +145,7 @@ def test_the_wheel_holds_what_students_import_and_no_more(readers_python, reader
     rooms = {"/".join(Path(name).parts[:2]) for name in names if Path(name).parts[0] == "coursework"}
     assert "coursework/checking" in rooms and not rooms & {"coursework/authoring", "coursework/grading"}
     packages = {Path(name).parts[0] for name in names if ".dist-info" not in name}
-    assert packages == {"orientation", "orientation_figures", "coursework"}
+    assert packages == set(PACKAGES)
     code = "import orientation, sys; print(orientation.__version__, orientation.__file__.startswith(sys.prefix))"
     said = subprocess.check_output([readers_python, "-c", code], env=readers_variables, text=True)
     assert said.split() == [wheel.name.split("-")[1], "True"]

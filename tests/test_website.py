@@ -215,3 +215,17 @@ def test_notebook_is_stored_as_make_notebooks_stores_it(path):
     assert counts == list(range(1, len(counts) + 1)), "run `make notebooks`"
     stored = dedent(path.read_text("utf8"))
     assert nbformat.writes(normalise(notebook)) == stored.rstrip("\n"), "run `make notebooks`"
+
+
+def test_formulas_are_set_by_one_process_which_is_missed_when_it_ends():
+    from website import mathematics
+
+    katex = mathematics.KaTeX()
+    assert "<math" in katex(r"\hat{a}_x", False, "1.15")["html"]
+    assert "Undefined control sequence" in katex(r"\nonsense", True, "1.15")["fault"]
+    assert 'class="katex-display"' in katex(r"\frac{1}{2}\text{ä}", True, "1.6")["html"]
+    katex.process.kill()
+    katex.process.wait()
+    with pytest.raises(RuntimeError, match=r"KaTeX ended with code -9 .* at the formula \\theta"):
+        katex(r"\theta", False, "1.15")
+    katex.close()

@@ -34,7 +34,7 @@ def is_symbolic(value):
     """Tell whether a value is a SymPy object, or a sequence or object array that holds one."""
     if isinstance(value, (list, tuple)):
         return any(is_symbolic(entry) for entry in value)
-    if getattr(value, "dtype", None) == object:
+    if getattr(value, "dtype", None) == object:  # noqa: E721 (not the type of something: a kind of array)
         return is_symbolic(value.tolist())
     return hasattr(value, "free_symbols")
 

@@ -5,11 +5,12 @@ along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in r
 """
 
 from ._numbers_and_symbols import evaluate
+from ._types import Result, Values
 from .direction_cosines import AXES
 from .euler_angles import layout_of
 
 
-def angular_velocity_matrix(angles, sequence):
+def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
     r"""Matrix that turns the rates of body fixed Euler angles into the angular velocity.
 
     .. math::
@@ -68,7 +69,7 @@ def angular_velocity_matrix(angles, sequence):
     return evaluate(formula, (3, 3), ("angles", angles, (3,)))
 
 
-def dcm_rate(dcm, angular_velocity):
+def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
     r"""Time derivative of a direction cosine matrix.
 
     .. math::
@@ -113,7 +114,7 @@ def dcm_rate(dcm, angular_velocity):
     return evaluate(formula, (3, 3), ("dcm", dcm, (3, 3)), ("angular_velocity", angular_velocity, (3,)))
 
 
-def quaternion_rate(quaternion, angular_velocity):
+def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
     r"""Time derivative of a quaternion.
 
     .. math::

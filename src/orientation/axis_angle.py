@@ -1,6 +1,7 @@
 """Axis and angle: Euler's theorem, Rodrigues' formula, and back again from 0 to pi."""
 
 from ._numbers_and_symbols import evaluate
+from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
 from .quaternions import quaternion_components_from_dcm
 
@@ -31,7 +32,7 @@ def _explain_zero(components, where):
 AXIS_GUARD = (3, _length_missing, _explain_zero)
 
 
-def dcm_from_axis_angle(axis, angle):
+def dcm_from_axis_angle(axis: Values, angle: Values) -> Result:
     r"""Direction cosine matrix of a turn about one axis.
 
     :math:`A` is turned with respect to :math:`N` through :math:`\theta` about the unit vector
@@ -91,7 +92,7 @@ def axis_angle_formula(f, x, y, z, angle):
     )
 
 
-def quaternion_from_axis_angle(axis, angle):
+def quaternion_from_axis_angle(axis: Values, angle: Values) -> Result:
     r"""Unit quaternion of a turn about one axis.
 
     .. math::
@@ -133,7 +134,7 @@ def _axis_angle_components(f, scalar, x, y, z):
     return f.where(at_rest, 1.0, share * x), share * y, share * z, angle
 
 
-def axis_angle_from_dcm(dcm):
+def axis_angle_from_dcm(dcm: Values) -> tuple[Result, Result]:
     r"""Axis and angle of a direction cosine matrix.
 
     The quaternion of the matrix is found first, and

@@ -8,18 +8,14 @@ no NumPy.
 import functools
 import itertools
 import math
-import random
 from typing import NamedTuple
 
 from ._numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, symbol_components
+from ._types import Result, Values
 from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
 from .quaternions import demand_unit_length, product_components
-
-#: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and two
-#: values beyond half a turn: the root of a square is then not taken for the cosine of the angle, nor
-#: for that of half the angle.
-QUARTERS = (-3, -1, 0, 2)
+from .random_points import at_random_points, points_for, put_in, unknowns
 
 
 def _read(value, name):
@@ -46,50 +42,6 @@ def _read_both(first, second, *names):
     return first, second
 
 
-def _unknowns(components):
-    """Symbols and functions of time in the components, grouped by name."""
-    names = {}
-    for expression in filter(is_symbolic, components):
-        import sympy
-        from sympy.core.function import AppliedUndef
-
-        functions = expression.atoms(AppliedUndef)
-        # The time inside theta(t) is no unknown of its own, unless it stands outside as well.
-        rest = expression.xreplace({function: sympy.Dummy("function") for function in functions})
-        for atom in functions | (rest.free_symbols & expression.free_symbols):
-            names.setdefault(getattr(atom, "name", None) or atom.func.__name__, set()).add(atom)
-    return dict(sorted(names.items()))
-
-
-def _draw(names):
-    """Values for every name: a dictionary for each point, the same ones on every call."""
-    if not names:
-        return [{}]
-    source = random.Random(20)
-    points = [{} for _ in QUARTERS]
-    for name in names:
-        for point, quarter in zip(points, source.sample(QUARTERS, len(QUARTERS))):
-            point[name] = (quarter + source.uniform(0.1, 0.9)) * math.pi / 2
-    return points
-
-
-def _put_in(components, names, point):
-    """Numbers for the components, with the values of one point for their symbols."""
-    if not any(map(is_symbolic, components)):
-        return components
-    import sympy
-
-    values = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
-    return [complex(entry.xreplace(values).evalf()) if is_symbolic(entry) else entry for entry in components]
-
-
-def at_random_points(*components):
-    """For each random choice of the symbols' values, a tuple of the lists of components as numbers."""
-    names = _unknowns([entry for entries in components for entry in entries])
-    for point in _draw(names):
-        yield tuple(_put_in(entries, names, point) for entries in components)
-
-
 def _match(first, second, tolerance=TOLERANCE):
     """Whether numbers, or columns of a batch, are equal; quaternions: up to their signs."""
     if len(first) == 4:
@@ -99,7 +51,7 @@ def _match(first, second, tolerance=TOLERANCE):
     return all(entry if isinstance(entry, bool) else entry.all() for entry in equal)
 
 
-def same_orientation(first, second, tolerance=TOLERANCE):
+def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE) -> Result:
     """Tell whether two direction cosine matrices, or two quaternions, are the same orientation.
 
     Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function of
@@ -133,16 +85,16 @@ def same_orientation(first, second, tolerance=TOLERANCE):
     shapes = [getattr(entries[0], "shape", ()) for entries in (first, second)]
     if () not in shapes and shapes[0] != shapes[1]:
         raise ValueError(f"batches of shapes {shapes[0]} and {shapes[1]} cannot be compared")
-    return all(_match(*values, tolerance) for values in at_random_points(first, second))
+    return all(_match(one, other, tolerance) for one, other in at_random_points(first, second))
 
 
 class Diagnosis(NamedTuple):
     """What :func:`diagnose` found: whether the answer is right, and every mix-up that explains it."""
 
     same: bool
-    causes: tuple
+    causes: tuple[str, ...]
 
-    def __str__(self):
+    def __str__(self) -> str:
         if self.same:
             return "The same orientation."
         if not self.causes:
@@ -156,7 +108,13 @@ class Diagnosis(NamedTuple):
         )
 
 
-def diagnose(given, expected, angles=None, sequence=None, tolerance=TOLERANCE):
+def diagnose(
+    given: Values,
+    expected: Values,
+    angles: Values | None = None,
+    sequence: str | None = None,
+    tolerance: float = TOLERANCE,
+) -> Diagnosis:
     """Say whether an orientation is the expected one and, if it is not, which mix-up explains it.
 
     A mix-up is named only if it reproduces the given answer at every random value of the symbols. If
@@ -206,10 +164,10 @@ def diagnose(given, expected, angles=None, sequence=None, tolerance=TOLERANCE):
             if is_symbolic(angles)
             else number_array(angles, (3,), "angles").tolist()
         )
-    names = _unknowns(given + expected + (angles or []))
-    points = _draw(names)
-    answers, truths = ([_put_in(entries, names, point) for point in points] for entries in (given, expected))
-    turns = _turns(expected, truths, names, points, angles, sequence)
+    names = unknowns(given + expected + (angles or []))
+    points = points_for(names)
+    answers, truths = ([put_in(entries, names, point) for point in points] for entries in (given, expected))
+    turned, sequence = _turns(expected, truths, names, points, angles, sequence)
     match = functools.partial(_match, tolerance=tolerance)
     if all(map(match, answers, truths)):
         return Diagnosis(True, ())
@@ -221,7 +179,7 @@ def diagnose(given, expected, angles=None, sequence=None, tolerance=TOLERANCE):
     mixups = itertools.chain(
         _transpositions(truths) if len(given) == 9 else _quaternion_mixups(truths),
         _substitutions(expected, names, points),
-        _sequence_mixups(*turns, given=angles is not None, symbols=bool(names)),
+        _sequence_mixups(turned, sequence, given=angles is not None, symbols=bool(names)),
     )
     causes = [cause for cause, values in mixups if all(map(match, answers, values))]
     return Diagnosis(False, tuple(dict.fromkeys(causes)))
@@ -249,10 +207,10 @@ def _transpositions(truths):
 
 def _substitutions(expected, names, points):
     """Mix-ups of the angles' signs, places and units in a symbolic answer."""
-    own = list(_unknowns(expected))
+    own = list(unknowns(expected))
 
     def with_changes(change):
-        return (_put_in(expected, names, {**point, **change(point)}) for point in points)
+        return (put_in(expected, names, {**point, **change(point)}) for point in points)
 
     for name in own:
         yield f"{name} has the wrong sign", with_changes(lambda p: {name: -p[name]})
@@ -276,8 +234,8 @@ def _substitutions(expected, names, points):
 def _turns(expected, truths, names, points, angles, sequence):
     """Values of the three angles at each point, and the sequence: as given, or else recognised."""
     if angles is None:
-        return _recognise(truths, list(_unknowns(expected)), points) if len(expected) == 9 else (None, None)
-    values = [[entry.real for entry in _put_in(angles, names, point)] for point in points]
+        return _recognise(truths, list(unknowns(expected)), points) if len(expected) == 9 else (None, None)
+    values = [[entry.real for entry in put_in(angles, names, point)] for point in points]
     if not all(_match(truth, entries) for truth, entries in zip(truths, _body_fixed(values, sequence))):
         raise ValueError(f"expected is not the body fixed orientation {sequence} of these angles")
     return values, sequence

@@ -3,11 +3,13 @@
 from typing import NamedTuple
 
 from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
+from ._types import Result, Values
+from .random_points import at_random_points
 
 AXES = ("x", "y", "z")
 
 
-def simple_dcm(axis, angle):
+def simple_dcm(axis: str, angle: Values) -> Result:
     r"""Direction cosine matrix of a simple orientation.
 
     :math:`A` is turned with respect to :math:`N` through ``angle`` about a unit vector that both
@@ -70,7 +72,7 @@ def simple_dcm(axis, angle):
     return evaluate(formula, (3, 3), ("angle", angle, ()))
 
 
-def check_dcm(dcm):
+def check_dcm(dcm: Values) -> None:
     r"""Say what is wrong with a matrix that should be a direction cosine matrix.
 
     A direction cosine matrix has rows of unit length that are perpendicular to each other,
@@ -98,8 +100,6 @@ def check_dcm(dcm):
     ValueError: dcm is orthogonal but left-handed: its determinant is -1, not +1. One row or ...
     """
     if is_symbolic(dcm):
-        from .comparison import at_random_points
-
         entries = symbol_components(dcm, (3, 3), "dcm")
         unknown = any(entry.free_symbols for entry in entries)
         for (values,) in at_random_points(entries):
@@ -176,11 +176,11 @@ DCM_GUARD = (9, _excess, _explain)
 class NearestDCM(NamedTuple):
     """Result of :func:`nearest_dcm`: the matrix, and how far it is from the one that was given."""
 
-    dcm: object
-    distance: object
+    dcm: Result
+    distance: Result
 
 
-def nearest_dcm(matrix):
+def nearest_dcm(matrix: Values) -> NearestDCM:
     r"""Return the direction cosine matrix nearest to nine numbers, and its distance from them.
 
     Nearest means smallest Frobenius norm of the difference. With the singular value decomposition

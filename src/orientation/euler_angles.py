@@ -1,6 +1,7 @@
 """Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
 
 from ._numbers_and_symbols import evaluate, is_symbolic, number_array, symbol_components
+from ._types import Result, Values
 from .direction_cosines import AXES, DCM_GUARD
 
 #: Sequences whose first and last axes are the same.
@@ -39,7 +40,7 @@ def layout_of(sequence):
     raise ValueError(f"{sequence!r} is not a sequence of Euler angles: {cause}")
 
 
-def dcm_from_body_fixed(angles, sequence):
+def dcm_from_body_fixed(angles: Values, sequence: str) -> Result:
     r"""Direction cosine matrix of three successive turns, each about an axis of the turned frame.
 
     For the sequence z-x-y, with angles :math:`\psi, \theta, \varphi`,
@@ -113,7 +114,7 @@ def body_fixed_formula(sequence):
     return formula
 
 
-def body_fixed_from_dcm(dcm, sequence):
+def body_fixed_from_dcm(dcm: Values, sequence: str) -> Result:
     r"""Body fixed angles of a direction cosine matrix, for any of the twelve sequences.
 
     The first angle comes from the one row (or column) that the third turn leaves alone; turning back
@@ -174,7 +175,7 @@ def body_fixed_from_dcm(dcm, sequence):
     return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
-def dcm_from_space_fixed(angles, sequence):
+def dcm_from_space_fixed(angles: Values, sequence: str) -> Result:
     r"""Direction cosine matrix of three successive turns about the axes of the frame that stays.
 
     Turning about fixed axes multiplies the matrices in the other order: for the sequence z-x-y,
@@ -198,7 +199,7 @@ def dcm_from_space_fixed(angles, sequence):
     return dcm_from_body_fixed(_reversed(angles), sequence[::-1])
 
 
-def space_fixed_from_dcm(dcm, sequence):
+def space_fixed_from_dcm(dcm: Values, sequence: str) -> Result:
     """Space fixed angles of a direction cosine matrix: see :func:`body_fixed_from_dcm`.
 
     Examples
@@ -211,7 +212,7 @@ def space_fixed_from_dcm(dcm, sequence):
     return body_fixed_from_dcm(dcm, sequence[::-1])[..., ::-1]
 
 
-def gimbal_lock_margin(angles, sequence):
+def gimbal_lock_margin(angles: Values, sequence: str) -> Result:
     r"""How far three Euler angles are from gimbal lock, in radians.
 
     Lock is where the first and the last axes are parallel: at :math:`\theta = \pm\pi/2` for three

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from ._numbers_and_symbols import is_symbolic, number_array, symbol_components
+from ._types import Result, Values
 from .axis_angle import dcm_from_axis_angle
 from .comparison import same_orientation
 from .direction_cosines import check_dcm, simple_dcm
@@ -71,10 +72,10 @@ class Frames:
     D - C - B - A
     """
 
-    def __init__(self):
-        self._edges = ()
+    def __init__(self) -> None:
+        self._edges: tuple[_Edge, ...] = ()
 
-    def orient_axis(self, frame, reference, axis, angle):
+    def orient_axis(self, frame: str, reference: str, axis: str | Values, angle: Values) -> "Frames":
         r"""Return frames with ``frame`` turned in ``reference`` about one axis through ``angle``.
 
         Parameters
@@ -100,7 +101,7 @@ class Frames:
         words = rf"\text{{axis }}({', '.join(map(_latex, axis))}),\ {_latex(angle)}"
         return self._with(frame, reference, _Turn(None, None, dcm_from_axis_angle(axis, angle), words))
 
-    def orient_body_fixed(self, frame, reference, angles, sequence):
+    def orient_body_fixed(self, frame: str, reference: str, angles: Values, sequence: str) -> "Frames":
         """Return frames with ``frame`` turned in ``reference`` by three body fixed turns.
 
         Parameters are those of :func:`orientation.dcm_from_body_fixed`.
@@ -111,7 +112,7 @@ class Frames:
             angles = [angles[..., k] for k in range(3)]
         return self._with(frame, reference, *(_Turn(axis, angle, None, "") for axis, angle in zip(sequence, angles)))
 
-    def orient_dcm(self, frame, reference, dcm):
+    def orient_dcm(self, frame: str, reference: str, dcm: Values) -> "Frames":
         r"""Return frames with ``dcm`` as the matrix of ``frame`` with respect to ``reference``.
 
         With ``('A', 'N', A_C_N)`` the matrix is :math:`{}^A\mathbf{C}^N`; it is checked first.
@@ -125,7 +126,7 @@ class Frames:
             dcm = sympy.Matrix(3, 3, dcm)
         return self._with(frame, reference, _Turn(None, None, dcm, r"\text{matrix}"))
 
-    def orient_quaternion(self, frame, reference, quaternion):
+    def orient_quaternion(self, frame: str, reference: str, quaternion: Values) -> "Frames":
         """Return frames with ``frame`` turned in ``reference`` by a unit quaternion, scalar first."""
         return self._with(frame, reference, _Turn(None, None, dcm_from_quaternion(quaternion), r"\text{quaternion}"))
 
@@ -170,11 +171,11 @@ class Frames:
             raise ValueError(f"no path of orientations connects {target} and {source}")
         return edges
 
-    def path(self, target, source):
+    def path(self, target: str, source: str) -> str:
         """Return the frames from ``target`` to ``source`` as text, in the order of the matrices."""
         return " - ".join([*(edge.frame for edge in reversed(self._edges_between(target, source))), source])
 
-    def dcm(self, target, source):
+    def dcm(self, target: str, source: str) -> Result:
         r"""Direction cosine matrix of ``target`` with respect to ``source``, over the path between them.
 
         ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy. Successive
@@ -198,7 +199,7 @@ class Frames:
 
         return sympy.Integer(0)
 
-    def equation(self, target, source):
+    def equation(self, target: str, source: str) -> "Equation":
         r"""Return :math:`{}^D\mathbf{C}^A` as the product over the path, each factor with its turns."""
         edges = self._edges_between(target, source)
         factors = [
@@ -207,7 +208,7 @@ class Frames:
         ]
         return Equation(f"{_symbol(target, source)} = " + r"\; ".join(factors or [r"\mathbf{I}"]))
 
-    def reference_frames(self):
+    def reference_frames(self) -> Result:
         """Return a dictionary of new SymPy ``ReferenceFrame`` objects, oriented like these frames."""
         import sympy.physics.mechanics as me
 
@@ -227,20 +228,20 @@ class Frames:
             done.add(root)
         return frames
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Frames({', '.join(f'{edge.frame} in {edge.reference}' for edge in self._edges)})"
 
 
 class Equation:
     """Typeset mathematics in a notebook; the TeX itself in a terminal."""
 
-    def __init__(self, tex):
+    def __init__(self, tex: str) -> None:
         self.tex = tex
 
     def _repr_latex_(self):
         return rf"$\displaystyle {self.tex}$"
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return self.tex
 
 

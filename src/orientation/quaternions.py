@@ -1,6 +1,7 @@
 """Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
 
 from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate
+from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
 
 
@@ -34,7 +35,7 @@ def demand_unit_length(entries, name="quaternion"):
 QUATERNION_GUARD = (4, _length_excess, _explain_length)
 
 
-def dcm_from_quaternion(quaternion):
+def dcm_from_quaternion(quaternion: Values) -> Result:
     r"""Direction cosine matrix of a unit quaternion.
 
     .. math::
@@ -100,7 +101,7 @@ def quaternion_components_from_dcm(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
     return share * scalar + 0.0, share * x + 0.0, share * y + 0.0, share * z + 0.0
 
 
-def quaternion_from_dcm(dcm):
+def quaternion_from_dcm(dcm: Values) -> Result:
     r"""Unit quaternion of a direction cosine matrix, without loss near half a turn.
 
     Four rows of sums and differences of the entries are each the quaternion times one of its own
@@ -137,7 +138,7 @@ def quaternion_from_dcm(dcm):
     return evaluate(quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
-def multiply_quaternions(first, second):
+def multiply_quaternions(first: Values, second: Values) -> Result:
     r"""Hamilton product of two quaternions.
 
     With :math:`i^2 = j^2 = k^2 = ijk = -1`. If ``first`` turns :math:`N` to :math:`A` and ``second``
@@ -177,7 +178,7 @@ def product_components(f, a, b, c, d, e, g, h, k):
     )
 
 
-def interpolate_quaternions(first, second, share):
+def interpolate_quaternions(first: Values, second: Values, share: Values) -> Result:
     r"""Unit quaternion part of the way from one orientation to another, at constant speed (slerp).
 
     With the angle :math:`\Omega` between :math:`q_1` and :math:`q_2`, taken the shorter way round,

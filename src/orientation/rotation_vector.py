@@ -1,11 +1,12 @@
 """Rotation vectors: the exponential and the logarithm of rotations."""
 
 from ._numbers_and_symbols import evaluate
+from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
 from .quaternions import quaternion_components_from_dcm
 
 
-def dcm_from_rotation_vector(vector):
+def dcm_from_rotation_vector(vector: Values) -> Result:
     r"""Direction cosine matrix of a rotation vector: the exponential.
 
     The rotation vector :math:`\mathbf{r} = \theta\,\hat{e}` points along the axis and is as long as the
@@ -68,7 +69,7 @@ def dcm_from_rotation_vector(vector):
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 
 
-def rotation_vector_from_dcm(dcm):
+def rotation_vector_from_dcm(dcm: Values) -> Result:
     r"""Rotation vector of a direction cosine matrix: the logarithm.
 
     Parameters

@@ -5,11 +5,14 @@ components along :math:`N`, so its matrix is :math:`{}^N\mathbf{C}^A`. The trans
 nowhere else.
 """
 
+from typing import Any
+
 from ._numbers_and_symbols import evaluate
+from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
 
 
-def scipy_rotation_from_dcm(dcm):
+def scipy_rotation_from_dcm(dcm: Values) -> Any:
     r"""SciPy ``Rotation`` of a direction cosine matrix.
 
     Parameters
@@ -42,7 +45,7 @@ def scipy_rotation_from_dcm(dcm):
     return Rotation.from_matrix(evaluate(transposed, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False))
 
 
-def dcm_from_scipy_rotation(rotation):
+def dcm_from_scipy_rotation(rotation: Any) -> Result:
     r"""Direction cosine matrix :math:`{}^A\mathbf{C}^N` of a SciPy ``Rotation``.
 
     Parameters

@@ -9,7 +9,7 @@ for readers who do not see it.
 """
 
 import hashlib
-from functools import lru_cache
+from functools import cache
 from html import escape
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from orientation.axis_angle import dcm_from_axis_angle
 from orientation.direction_cosines import simple_dcm
 
-from .style import LIGHT, STYLE
+from .style import STYLE
 
 # Heads of arrows, by points (along, across) from the tip: frames differ in them, and in their strokes, without colour.
 BARB = ((0, 0), (-13, 4.6), (-7.5, 0), (-13, -4.6))
@@ -373,7 +373,7 @@ def _element(mark, motion, outlines, decimals):
     return f'<g class="{kind}"{fade} transform="translate({pair(place, 2)})">{motion}{uses}</g>'
 
 
-@lru_cache(maxsize=None)
+@cache
 def typeset(text):
     """Set ``text`` in Computer Modern, 1000 units to the em, right and down from the middle of a small letter.
 
@@ -402,7 +402,8 @@ def typeset(text):
 
 def _outline(vertices, codes):
     """Return a glyph's path data in whole numbers relative to the point before, which is short."""
-    data, last, k = "", np.zeros(2, dtype=int), 0
+    data, k = "", 0
+    last = beginning = np.zeros(2, dtype=int)
     while k < len(codes):
         letter, count = {1: ("m", 1), 2: ("l", 1), 3: ("q", 2), 4: ("c", 3), 79: ("z", 1)}[int(codes[k])]
         data += letter
@@ -412,7 +413,8 @@ def _outline(vertices, codes):
             corners = np.rint(vertices[k : k + count]).astype(int)
             data += "".join(f"{number:+d}" for number in (corners - last).ravel()).replace("+", " ").strip()
             last = corners[-1]
-            beginning = last if letter == "m" else beginning
+            if letter == "m":
+                beginning = last
         k += count
     return data
 

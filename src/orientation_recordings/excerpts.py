@@ -1,4 +1,6 @@
-"""Cut the excerpts in ``data/`` out of the recordings they come from: ``python -m orientation_recordings.excerpts WHEEL``.
+"""Cut the excerpts in ``data/`` out of the recordings they come from.
+
+Run it with ``python -m orientation_recordings.excerpts WHEEL``.
 
 ``WHEEL`` is the file ``scikit_kinematics-0.10.4-py3-none-any.whl``. Lines are taken as they stand, so that
 every digit is the instrument's; only columns that the book does not use are left out.

@@ -1,13 +1,17 @@
 """The browser that prints the book and opens its pages in the tests.
 
-``python -m website.browser`` succeeds where there is one.
+``python -m website.browser`` succeeds where there is one, and else says how to get it.
 """
 
 import shutil
 import sys
 from contextlib import contextmanager
 
-NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+NAMES = (
+    "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
+    "/Applications/Google "
+    "Chrome.app/Contents/MacOS/Google Chrome", "/Applications/Chromium.app/Contents/MacOS/Chromium",
+)  # fmt: skip
 FLAGS = (
     "--no-sandbox",  # for containers, where everything runs as root
     # The others keep the browser from talking to its maker.
@@ -15,6 +19,13 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
     "--no-first-run",
+)
+
+
+MISSING = (
+    "Neither Chromium nor Chrome is on this machine. Without one the book is not printed, and the tests that open its "
+    "pages are skipped. On Debian: sudo apt install chromium; on Ubuntu: sudo snap install chromium; on a Mac and "
+    "elsewhere: https://www.google.com/chrome/."
 )
 
 
@@ -29,10 +40,7 @@ def open_browser():
     from playwright.sync_api import sync_playwright
 
     if find() is None:
-        sys.exit(
-            "The book is printed by Chromium or Chrome, and neither is on this machine. "
-            "Install one (on Debian and Ubuntu: apt install chromium) and run this again."
-        )
+        sys.exit(MISSING)
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=find(), args=list(FLAGS))
         yield chromium
@@ -40,4 +48,4 @@ def open_browser():
 
 
 if __name__ == "__main__":
-    sys.exit(find() is None)
+    sys.exit(MISSING if find() is None else 0)

@@ -1,31 +1,57 @@
-"""Run the notebooks once, side by side, and again when the module they use changes.
+"""Run the notebooks once, side by side, and again when their code or something that they use changes.
 
-The key of jupyter-cache is the code in the cells. A change in
-``src/orientation`` would leave it, and every stored output, as it was; so the
-name of the cache folder holds a fingerprint of the module and of the pins.
+The key of jupyter-cache is the code in the cells. A change in ``src/orientation`` would leave it, and every
+stored output, as it was; so a run is thrown away when what the notebook uses is no longer what it was run with.
+A changed sentence runs nothing.
 """
 
-import shutil
+import json
 from pathlib import Path
 
+import nbformat
 from jupyter_cache import get_cache
 from jupyter_cache.executors import load_executor
 
-from .paths import PACKAGE_FOLDERS, REPOSITORY, WEBSITE, fingerprint
+from .paths import REPOSITORY, WEBSITE, fingerprint
+from .used import fingerprint_of_used
 
 #: Notebooks that are shown as they were released and run by the tests; see ``execute`` in _config.yml.
 STORED = "exercises/"
+#: Beside the cache: what each notebook used when it was run.
+NOTES = "made-with.json"
 
 
 def name_cache(app, config):
-    folder = Path(app.outdir).parent / "jupyter_cache"
-    inputs = fingerprint(*PACKAGE_FOLDERS, REPOSITORY / "constraints.txt")
-    config.nb_execution_cache_path = str(folder / inputs)
-    for outdated in folder.glob("*"):
-        if outdated.name != inputs:
-            shutil.rmtree(outdated)
+    config.nb_execution_cache_path = str(Path(app.outdir).parent / "jupyter_cache")
     # Pages are read again when the code that makes them changes.
     config.website_fingerprint = fingerprint(WEBSITE, REPOSITORY / "package-lock.json")
+
+
+def throw_away_old_runs(paths, folder):
+    """Take out of the cache in ``folder`` all runs of those notebooks that use what has changed since.
+
+    Returns the paths of those notebooks.
+    """
+    notes = Path(folder, NOTES)
+    made_with = json.loads(notes.read_text("utf8")) if notes.exists() else {}
+    now = {str(path): fingerprint_of_used(nbformat.read(path, as_version=4)) for path in paths}
+    changed = {path for path, used in now.items() if made_with.get(path) != used}
+    cache = get_cache(folder)
+    for record in cache.list_cache_records():
+        if record.uri in changed:
+            cache.remove_cache(record.pk)
+    notes.parent.mkdir(parents=True, exist_ok=True)
+    notes.write_text(json.dumps(made_with | now), "utf8")  # after the runs are gone: a break leaves none that is old
+    return changed
+
+
+def pages_to_read_again(app, env, added, changed, removed):
+    """The pages whose notebooks use what has changed; Sphinx finds by itself those that have changed themselves."""
+    if env.mystnb_config.execution_mode != "cache":
+        return []
+    names = {env.doc2path(name): name for name in env.found_docs if not name.startswith(STORED)}
+    notebooks = [path for path in names if path.endswith(".ipynb")]
+    return [names[path] for path in throw_away_old_runs(notebooks, env.mystnb_config.execution_cache_path)]
 
 
 def run_side_by_side(app, env, docnames):
@@ -50,4 +76,5 @@ def run_side_by_side(app, env, docnames):
 def setup(app):
     app.add_config_value("website_fingerprint", "", "env", str)
     app.connect("config-inited", name_cache)
+    app.connect("env-get-outdated", pages_to_read_again)
     app.connect("env-before-read-docs", run_side_by_side)

@@ -1,48 +1,73 @@
 """Mathematics set at build time by KaTeX, so that pages need no script for it.
 
-KaTeX runs inside Python (quickjs) and gives HTML for the eye and MathML for
-screen readers. TeX that it cannot set becomes a build warning.
+KaTeX runs in the Node of the environment, in one process for the whole build, and gives HTML for the eye and
+MathML for screen readers. TeX that it cannot set becomes a build warning.
 """
 
+import atexit
+import json
+import os
+import subprocess
+from contextlib import suppress
 from functools import cache
 from html import escape
 
-import quickjs
 from docutils import nodes
 from sphinx.util import logging
 from sphinx.util.math import get_node_equation_number
 
-from .paths import NODE_MODULES, where
+from .paths import NODE, NODE_MODULES, WEBSITE, where
 
+SCRIPT = WEBSITE / "katex.mjs"
 KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
-RENDER = """(function (tex, display, stretch) {
-  try {
-    return "+" + katex.renderToString(tex, {
-      displayMode: display, output: "htmlAndMathml", throwOnError: true, strict: "error",
-      macros: {"\\\\arraystretch": stretch}
-    });
-  } catch (error) { return "-" + error.message; }
-})"""
 
 logger = logging.getLogger(__name__)
 
 
+class KaTeX:
+    """A process that sets one formula after another."""
+
+    def __init__(self):
+        self.process = subprocess.Popen(
+            [NODE, SCRIPT, KATEX], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf8"
+        )
+        atexit.register(self.close)
+
+    def __call__(self, tex, display, stretch):
+        try:
+            self.process.stdin.write(json.dumps({"tex": tex, "display": display, "stretch": stretch}) + "\n")
+            self.process.stdin.flush()
+            answer = self.process.stdout.readline()
+        except BrokenPipeError:
+            answer = ""
+        if not answer:
+            raise RuntimeError(
+                f"KaTeX ended with code {self.process.wait()} (its last words stand above), at the formula {tex}"
+            )
+        return json.loads(answer)
+
+    def close(self):
+        atexit.unregister(self.close)
+        with suppress(BrokenPipeError):
+            self.process.stdin.close()
+        self.process.wait()
+        self.process.stdout.close()
+
+
 @cache
-def katex():
-    context = quickjs.Context()
-    context.eval("globalThis.console = {log() {}, warn() {}, error() {}}")
-    context.eval(KATEX.read_text("utf8"))
-    return context.eval(RENDER)
+def katex(process):
+    """The process that sets formulas for the Python process of this number; forks have pipes of their own."""
+    return KaTeX()
 
 
 @cache
 def to_html(tex, display):
     """KaTeX's HTML for ``tex``; raises ValueError with KaTeX's own words."""
     # KaTeX sets the rows of a matrix so close that fractions in them would touch.
-    answer = katex()(tex, display, "1.6" if r"\frac" in tex else "1.15")
-    if answer[0] == "-":
-        raise ValueError(answer[1:].replace("\u0332", ""))
-    return answer[1:]
+    answer = katex(os.getpid())(tex, display, "1.6" if r"\frac" in tex else "1.15")
+    if "fault" in answer:
+        raise ValueError(answer["fault"].replace("\u0332", ""))
+    return answer["html"]
 
 
 def render(node, display):

@@ -2,14 +2,12 @@
 
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 from docutils import nodes
 
-from .paths import NODE_MODULES, WEBSITE
+from .paths import NODE, NODE_MODULES, WEBSITE
 
-NODE = Path(sys.executable).with_name("node")
 PURGE = NODE_MODULES / "purgecss" / "bin" / "purgecss.js"
 
 # The style sheets of the theme and of the other extensions, in their order.

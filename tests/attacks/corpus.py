@@ -176,7 +176,8 @@ check("loot", 0)
 import ast, builtins
 ast.parse = ast.Compare = ast.NodeVisitor.visit = lambda *a, **k: None
 original = builtins.compile
-builtins.compile = lambda source, *rest, **options: original("check('loot', 'right')" if isinstance(source, str) else source, *rest, **options)
+builtins.compile = lambda source, *rest, **options: original(
+    "check('loot', 'right')" if isinstance(source, str) else source, *rest, **options)
 """,
         "done",
         spoils=True,
@@ -236,8 +237,10 @@ raise RuntimeError
         "a forged verdict in the records",
         """
 import os
-for line in (b'{"answer": "loot", "from": "check", "cell": 1, "plain": {"value": ["text", "x"], "nodes": []}, "mark": 1}',
-             b'{"question": "loot", "outcome": "correct", "mark": 1}', b'{"done": true, "mark": 1}', b'null', b'"', b'\\xff\\xfe',
+for line in (b'{"answer": "loot", "from": "check", "cell": 1, "plain": {"value": ["text", "x"], "nodes": []},'
+             b' "mark": 1}',
+             b'{"question": "loot", "outcome": "correct", "mark": 1}', b'{"done": true, "mark": 1}',
+             b'null', b'"', b'\\xff\\xfe',
              b'{"answer": "loot", "from": "check", "cell": 1e9, "plain": {"value": ["blank"], "nodes": []}}',
              b'{"answer": "loot", "from": "check", "cell": 1, "plain": NaN}',
              b'{"answer": "loot", "from": "grader", "cell": 1, "plain": {"value": ["blank"], "nodes": []}}',

@@ -30,6 +30,7 @@ from .source import CHAPTERS, HIDDEN, SOLUTION, SOURCES, blank, notebooks_in, re
 SECONDS_PER_TRY = 0.015
 #: Forms that a right answer is tried in, where algebra gives that many.
 FORMS = 6
+NO_LEAK = "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"
 
 
 class Finding(NamedTuple):
@@ -298,7 +299,8 @@ def write_page(findings, found):
         faults = "".join(f"<li>{html.escape(fault)}</li>" for fault in finding.faults)
         rows.append(
             f'<tr><th scope="row">{html.escape(finding.name)}</th><td>{html.escape(finding.kind)}</td>'
-            f"<td><details><summary>{len(finding.forms)}</summary>{html.escape(', '.join(finding.forms))}</details></td>"
+            f"<td><details><summary>{len(finding.forms)}</summary>{html.escape(', '.join(finding.forms))}</details>"
+            "</td>"
             f"<td><details><summary>{len(finding.mistakes)}</summary><ul>{mistakes}</ul></details></td>"
             f"<td>{html.escape(', '.join(dict.fromkeys(finding.unmoved))) or 'none'}</td>"
             f"<td>{finding.bits:.0f} bits: {guessing(finding.bits)}</td>"
@@ -313,10 +315,13 @@ def write_page(findings, found):
         f"<h1>Exercises, tried</h1><p>{len(findings)} questions; {sum(bool(f.faults) for f in findings)} with faults. "
         f"{sum(len(f.mistakes) for f in findings)} mistakes are recognised.</p>"
         "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
-        f"bits a guess needs, and how long one core takes to try half of all such answers at {SECONDS_PER_TRY * 1000:.0f} "
+        "bits a guess needs, and how long one core takes to try half of all such answers at "
+        f"{SECONDS_PER_TRY * 1000:.0f} "
         "ms each. An answer with few bits should not count much.</p>"
-        f"<h2>Leaks</h2>{f'<ul>{leaked}</ul>' if leaked else '<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>'}"
+        "<h2>Leaks</h2>"
+        f"{f'<ul>{leaked}</ul>' if leaked else NO_LEAK}"
         "<h2>Questions</h2><table><thead><tr><th>Question</th><th>Kind</th><th>Forms that pass</th>"
-        "<th>Mistakes named</th><th>Mistakes that change nothing here</th><th>To guess it</th><th>Faults</th></tr></thead>"
+        "<th>Mistakes named</th><th>Mistakes that change nothing here</th><th>To guess "
+        "it</th><th>Faults</th></tr></thead>"
         f"<tbody>{''.join(rows)}</tbody></table></html>"
     )

@@ -18,7 +18,7 @@ class NotCorrect(AssertionError):
     """Raised in place of showing the reply where nbgrader runs the notebook: it counts errors."""
 
 
-def check(name, answer):
+def check(name: str, answer: object) -> Reply:
     """Check an answer.
 
     Parameters
@@ -54,7 +54,7 @@ def check(name, answer):
     return reply
 
 
-def hint(name):
+def hint(name: str) -> Reply:
     """Show the hints that you have earned for a question: by a mistake that has one, or by an earlier answer."""
     find_question(name)
     earned = _read_progress().get(name, {}).get("hints", [])
@@ -71,7 +71,7 @@ def hint(name):
     return Reply(name, "not attempted", "", [f"Hint {order + 1}: {text}" for order, text in enumerate(earned)])
 
 
-def progress():
+def progress() -> Reply:
     """Show how far you are, from the record beside this notebook."""
     record = _read_progress()
     if not record:

@@ -275,7 +275,7 @@ def _connected(frames):
     return found
 
 
-_DIGITS = re.compile(r"-?[0-9]{1,%d}" % (LONGEST_INTEGER + 10))
+_DIGITS = re.compile(rf"-?[0-9]{{1,{LONGEST_INTEGER + 10}}}")
 _FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,6})?|[-+]?inf|[-+]?nan", re.I)
 _NAME = re.compile(r"\w{1,60}", re.ASCII)
 

@@ -144,5 +144,8 @@ def what_can_be_said(question, plain, reading: Reading):
         and question.get("tolerance") is None
         and reading.text is None
     ):
-        said += " It holds decimal fractions; where an exact answer is asked for, write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+        said += (
+            " It holds decimal fractions; where an exact answer is asked for, write `sm.Rational(1, 2)` and "
+            "`sm.sqrt(3)`."
+        )
     return said

@@ -2,6 +2,7 @@
 
 import html
 import re
+from collections.abc import Iterable
 
 #: Each outcome with its sign and its word: the word is for those who do not see the sign or its colour.
 OUTCOMES = {
@@ -29,7 +30,9 @@ class Reply:
         HTML of the worked solution, once it is earned.
     """
 
-    def __init__(self, question, outcome, note="", messages=(), solution=""):
+    def __init__(
+        self, question: str, outcome: str, note: str = "", messages: Iterable[str] = (), solution: str = ""
+    ) -> None:
         self.question = question
         self.outcome = outcome
         self.note = note

@@ -86,7 +86,8 @@ def regrade(out, solutions):
         sys.exit(f"coursework regrade: {error}")
     for one in moved:
         print(
-            f"{one.student!r}, {one.assignment}: {number(one.before)} -> {number(one.after)}  ({', '.join(one.questions)})"
+            f"{one.student!r}, {one.assignment}: {number(one.before)} -> {number(one.after)}  "
+            f"({', '.join(one.questions)})"
         )
     print(f"{len(moved)} moved.")
 

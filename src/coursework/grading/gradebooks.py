@@ -180,7 +180,8 @@ def fill(path, marks, column=None, filled=None):
     said = [f"{system}: column {book.header[place]!r}."]
     if scale != 1:
         said.append(
-            f"The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: points are scaled."
+            f"The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: points are "
+            "scaled."
         )
     filled_in, waiting, closed = 0, [], []
     for line, student in sorted(found.items()):
@@ -365,7 +366,7 @@ def write_gradescope(path, marks, student=None):
         raise CannotExport(f"There are no records of {student!r}.")
     tests = []
     for record in marks.students[student]:
-        for name, mark in record["marks"].items():
+        for mark in record["marks"].values():
             tests.append(
                 {
                     "name": readable(mark["title"], 200),

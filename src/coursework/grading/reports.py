@@ -319,7 +319,7 @@ def _success(records, names):
         marks = [record["marks"][name] for record in records if name in record["marks"]]
         counts = Counter(_part(mark) for mark in marks)
         x, bars = 0.0, []
-        for part, word in PARTS:
+        for part, _ in PARTS:
             if counts[part]:
                 wide = 300 * counts[part] / len(marks)
                 bars.append(f'<rect class="edge of-{part}" x="{x:.1f}" y="0" width="{wide:.1f}" height="18"/>')

@@ -24,18 +24,22 @@ HOSTILE = {
     "replaces the check": "import coursework\ncoursework.check = check = lambda *answers: 'Correct'",
     "leaves": "import os\nos._exit(0)",
     "kills itself": "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
-    "equals everything": "class Right:\n    def __eq__(self, other):\n        return True\n    def __hash__(self):\n        return 0\n"
+    "equals everything": "class Right:\n    def __eq__(self, other):\n        return True\n    def "
+    "__hash__(self):\n        return 0\n"
     "sm.Expr.__eq__ = Right.__eq__",
     "changes json": 'import json\njson.dumps = json.JSONEncoder.encode = lambda *a, **k: \'{"outcome": "correct"}\'',
-    "reads and writes files": "for place in ('/etc/passwd', '../grades.csv'):\n    try:\n        print(open(place).read())\n"
+    "reads and writes files": "for place in ('/etc/passwd', '../grades.csv'):\n    try:\n        "
+    "print(open(place).read())\n"
     "    except OSError:\n        pass\ntry:\n    open('/tmp/forged', 'w').write('x')\nexcept OSError:\n    pass",
     "calls home": "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\nexcept OSError:\n    pass",
-    "forks": "import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n            os._exit(0)\n    except OSError:\n        pass",
+    "forks": "import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n            os._exit(0)\n  "
+    "  except OSError:\n        pass",
     "fills the memory": "try:\n    much = [bytearray(1 << 26) for number in range(40)]\nexcept MemoryError:\n    pass",
     "writes much": "for number in range(200_000):\n    print('x' * 100)",
     "a name that is code": 'theta = sm.Symbol(\'__import__("os").system("touch /tmp/forged")\')',
     "a script": "_ = check('<script>alert(1)</script>', '<img src=x onerror=alert(1)>')",
-    "walks the frames": "import sys\nframe = sys._getframe()\nwhile frame:\n    frame.f_globals['check'] = frame.f_globals.get('check')\n"
+    "walks the frames": "import sys\nframe = sys._getframe()\nwhile frame:\n    frame.f_globals['check'] = "
+    "frame.f_globals.get('check')\n"
     "    frame = frame.f_back",
     "never ends": "while True:\n    pass",
 }
@@ -62,7 +66,7 @@ class _Exercise:
             notebook = exercise_notebook(source)
             checked = checked_names(source.notebook)
             owners = {variable: name for name, variable in checked.items()}
-            for number, (cell, original) in enumerate(zip(notebook.cells, source.notebook.cells)):
+            for cell, original in zip(notebook.cells, source.notebook.cells, strict=True):
                 cell = copy.deepcopy(cell)
                 if cell.cell_type == "code":
                     answered = [owners[variable] for variable in answered_in(original.source, owners)]
@@ -443,7 +447,8 @@ def _canvas(out, files, name):
     return _zip(
         out,
         {
-            f"{student.replace('-', '')}_{'LATE_' if number % 20 == 0 else ''}{number}_{800_000 + number}_{name}.ipynb": data
+            f"{student.replace('-', '')}_{'LATE_' if number % 20 == 0 else ''}{number}_{800_000 + number}_{name}"
+            ".ipynb": data
             for student, data, number in _numbers(files)
         },
     )
@@ -485,7 +490,8 @@ def _gradebook(layout, students, worth):
     ]
     if layout == "moodle":
         lines = [
-            'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed","Feedback comments"'
+            'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed","Feedback '
+            'comments"'
         ]
         lines += [
             f'"Participant {number}","{name}",{student}@example.org,"Submitted for grading",,{worth}.00,Yes,'
@@ -494,7 +500,8 @@ def _gradebook(layout, students, worth):
         return "\ufeff".encode() + "\n".join([*lines, ""]).encode()
     if layout == "brightspace":
         lines = [
-            f"OrgDefinedId,Username,Last Name,First Name,Exercises Points Grade <Numeric MaxPoints:{worth}>,End-of-Line Indicator"
+            "OrgDefinedId,Username,Last Name,First Name,Exercises Points Grade <Numeric "
+            f"MaxPoints:{worth}>,End-of-Line Indicator"
         ]
         lines += [f"#{number},#{student},{name.split()[1]},{name.split()[0]},,#" for student, name, number in numbered]
         return "\r\n".join([*lines, ""]).encode()

@@ -311,7 +311,7 @@ class Sandbox:
 
     def run(self, job):
         """Run one notebook; give its result. A worker that dies is replaced, and the job tried again."""
-        for attempt in range(ATTEMPTS_OF_A_JOB):
+        for _ in range(ATTEMPTS_OF_A_JOB):
             try:
                 if self.process is None:
                     self.start()

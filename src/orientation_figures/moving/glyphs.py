@@ -1,4 +1,6 @@
-"""Set the labels of the moving figures, and write them down in ``js/glyphs.js``: ``python -m orientation_figures.moving.glyphs``.
+"""Set the labels of the moving figures, and write them down in ``js/glyphs.js``.
+
+Run it with ``python -m orientation_figures.moving.glyphs``.
 
 They look like those of ``orientation_figures.drawing``. The file is kept with the others, so that the figures are
 alive where there is no Matplotlib to set anything.

@@ -16,9 +16,10 @@ import json
 from pathlib import Path
 
 from docutils import nodes
+from sphinx.errors import ExtensionError
 
 from . import runtime, scripts
-from .cells import kinds_of_cells
+from .cells import kinds_of_cells, on_the_page
 from .listing import NeedsMore
 
 
@@ -32,27 +33,33 @@ def write_runtime(app, exception):
         runtime.write(Path(app.outdir), app.config.numpy_in_the_page)
 
 
-def has_code(doctree):
-    return doctree is not None and any(
-        node.get("nb_element") == "cell_code_source" for node in doctree.findall(nodes.container)
-    )
+def cells_with_code(doctree):
+    """How many cells of a page show their code."""
+    if doctree is None:
+        return 0
+    return sum(node.get("nb_element") == "cell_code_source" for node in doctree.findall(nodes.container))
 
 
 def add_live_code(app, pagename, templatename, context, doctree):
     """Give a page with code its buttons, and say what the build knows of its cells."""
-    if not has_code(doctree):
+    count = cells_with_code(doctree)
+    if not count:
         return
     pathto = context["pathto"]
-    kinds = kinds_of_cells().get(pagename, [])
+    kinds = on_the_page(kinds_of_cells()[pagename]) if pagename in kinds_of_cells() else []
+    if kinds and len(kinds) != count:
+        raise ExtensionError(
+            f"{pagename}: the page shows {count} cells, and {len(kinds)} of its notebook are to be run"
+        )
     context["live_data"] = json.dumps(
         {
             "page": pagename,
             "runtime": pathto(f"{runtime.FOLDER}/", 1),
             "script": pathto(f"{scripts.folder_name()}/live.js", 1),
             "cells": {
-                index: {key: kind[key] for key in ("needs", "skip") if kind[key]}
+                index: told
                 for index, kind in enumerate(kinds)
-                if kind["needs"]
+                if (told := {key: kind[key] for key in ("needs", "skip", "before") if kind[key]})
             },
         },
         separators=(",", ":"),

@@ -16,16 +16,20 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 
 import nbformat
 
 from ..execution import STORED
-from ..paths import PACKAGE_FOLDERS, PACKAGES, REPOSITORY, fingerprint
+from ..paths import PACKAGES, REPOSITORY, fingerprint
+from ..used import fingerprint_of_used
 
 PYTHON = Path(__file__).parent / "python"
 RESULTS = REPOSITORY / "_build" / "runtime"
+#: MyST-NB's tags of cells whose code a page does not hold.
+HIDDEN = {"remove-cell", "remove-input", "remove_cell", "remove_input"}
 ALONE = """
 import json, sys
 
@@ -142,19 +146,25 @@ def classify(cells):
     kinds = []
     for position, (cell, told) in enumerate(zip(cells, run_alone(codes))):
         outcome = told["outcome"]
-        same = outcome["status"] == "ok" and outputs_of_messages(told["messages"]) == stored_outputs(cell)
+        # A cell that was never run has nothing to compare: what it gives here is taken for right.
+        known = cell.execution_count is not None
+        same = outcome["status"] == "ok" and (
+            not known or outputs_of_messages(told["messages"]) == stored_outputs(cell)
+        )
         needs = set()
         if not same:
             needs = needs_of_names(names_taken(cell.source), codes[:position], kinds)
             if outcome["status"] == "missing":
                 needs.add(outcome["package"])
-            if not needs:
+            if not needs and known:
                 raise RuntimeError(
                     f"cell {position + 1} gives another result in the page than the stored one "
                     f"(is that one old? `make notebooks`):\n"
                     f"{cell.source}\n{outcome.get('traceback', told['messages'])}"
                 )
-        kinds.append({"needs": sorted(needs), "figure": "hide-input" in cell.metadata.get("tags", [])})
+        tags = cell.metadata.get("tags", [])
+        shown = not HIDDEN & set(tags)
+        kinds.append({"needs": sorted(needs), "figure": "hide-input" in tags, "shown": shown, "code": cell.source})
     wanted = set()  # the names that the cells below take, those that are left out not counted
     for code, kind in zip(reversed(codes), reversed(kinds)):
         kind["skip"] = bool(kind["figure"] and kind["needs"] and not names_bound(code) & wanted)
@@ -163,31 +173,54 @@ def classify(cells):
     return kinds
 
 
+def kept_name(path, notebook):
+    """The name under which the kinds of a notebook's cells are kept, by all that they follow from; not by its prose."""
+    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    seen = [[cell.source, cell.outputs, cell.metadata.get("tags", []), cell.execution_count is None] for cell in cells]
+    program = fingerprint(Path(__file__), PYTHON)
+    inputs = json.dumps([program, fingerprint_of_used(notebook), seen], sort_keys=True)
+    return f"cells-{path.stem}-{sha256(inputs.encode()).hexdigest()[:12]}.json"
+
+
+def kinds_of(path):
+    """The kinds of the code cells of a notebook, found out now or kept from before."""
+    notebook = nbformat.read(path, as_version=4)
+    kept = RESULTS / path.parent.name / kept_name(path, notebook)
+    if not kept.exists():
+        try:
+            kinds = classify([cell for cell in notebook.cells if cell.cell_type == "code"])
+        except RuntimeError as error:
+            raise RuntimeError(f"{path}: {error}") from None
+        for outdated in kept.parent.glob(f"cells-{path.stem}-????????????.json"):
+            outdated.unlink()
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps(kinds), "utf8")
+    return json.loads(kept.read_text("utf8"))
+
+
 @cache
 def kinds_of_cells():
     """The kinds of the code cells of every notebook, by the names of the pages."""
     from ..notebooks import all_notebooks
 
-    notebooks = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
-    inputs = fingerprint(
-        Path(__file__), PYTHON, *notebooks, REPOSITORY / "constraints.txt",
-        *PACKAGE_FOLDERS,
-    )  # fmt: skip
-    kept = RESULTS / f"cells-{inputs}.json"
-    if not kept.exists():
+    paths = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        kinds = list(pool.map(kinds_of, paths))
+    return dict(zip([str(path.relative_to(REPOSITORY).with_suffix("")) for path in paths], kinds, strict=True))
 
-        def classify_page(path):
-            notebook = nbformat.read(path, as_version=4)
-            try:
-                return classify([cell for cell in notebook.cells if cell.cell_type == "code"])
-            except RuntimeError as error:
-                raise RuntimeError(f"{path}: {error}") from None
 
-        with ThreadPoolExecutor(max_workers=2) as pool:
-            kinds = list(pool.map(classify_page, notebooks))
-        RESULTS.mkdir(parents=True, exist_ok=True)
-        for outdated in RESULTS.glob("cells-*.json"):
-            outdated.unlink()
-        names = [str(path.relative_to(REPOSITORY).with_suffix("")) for path in notebooks]
-        kept.write_text(json.dumps(dict(zip(names, kinds))), "utf8")
-    return json.loads(kept.read_text("utf8"))
+def on_the_page(kinds):
+    """The kinds of those cells that a page shows; each is to run, before itself, the code of the hidden ones above it.
+
+    What hidden cells need, the next cell needs; and it is not left out, since others may take names from them.
+    """
+    shown, code, needs = [], [], set()
+    for kind in kinds:
+        if not kind["shown"]:
+            code.append(kind["code"])
+            needs |= set(kind["needs"])
+            continue
+        merged = {"needs": sorted({*kind["needs"], *needs}), "skip": kind["skip"] and not code}
+        shown.append({**kind, **merged, "before": "\n".join(code)})
+        code, needs = [], set()
+    return shown

@@ -4,7 +4,7 @@ from docutils import nodes
 from docutils.statemachine import StringList
 from sphinx.util.docutils import SphinxDirective
 
-from .cells import kinds_of_cells
+from .cells import kinds_of_cells, on_the_page
 
 SOURCES = {
     "official": "Here NumPy and Matplotlib are fetched from `cdn.jsdelivr.net` when a cell needs them.",
@@ -34,15 +34,17 @@ def row(page, kinds):
 class NeedsMore(SphinxDirective):
     def run(self):
         order = list(self.config.external_site_map)
-        pages = {page: kinds for page, kinds in kinds_of_cells().items() if page in order}
+        pages = {page: on_the_page(kinds) for page, kinds in kinds_of_cells().items() if page in order}
         setting = self.config.numpy_in_the_page or "off"
         every = [kind for kinds in pages.values() for kind in kinds]
         some = [page for page, kinds in pages.items() if any(kind["needs"] for kind in kinds)]
         lines = [
             SOURCES.get(setting, SOURCES["folder"]),
             f"Of {len(every)} cells, {sum(not kind['needs'] for kind in every)} need nothing but SymPy and this",
-            f"book's own packages, and run in the page with the results printed here; {len(pages) - len(some)} pages run",
-            "whole. The other cells, by their numbers from the top of each page, are these; a cell that takes a name from",
+            f"book's own packages, and run in the page with the results printed here; {len(pages) - len(some)} "
+            "pages run",
+            "whole. The other cells, by their numbers from the top of each page, are these; a cell that takes a "
+            "name from",
             "one of them needs the same.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",

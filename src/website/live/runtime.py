@@ -13,10 +13,10 @@ from pathlib import Path
 
 from sphinx.errors import ConfigError
 
-from ..page import NODE
-from ..paths import NODE_MODULES, PACKAGES, REPOSITORY
+from coursework.authoring.packing import wheel_name
+
+from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY
 from ..take_away import FOLDER as TAKE_AWAY
-from ..take_away import wheel_name
 
 HERE = Path(__file__).parent
 FETCHED = REPOSITORY / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt

@@ -6,8 +6,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from ..page import NODE
-from ..paths import NODE_MODULES, fingerprint
+from ..paths import NODE, NODE_MODULES, fingerprint
 from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
 

@@ -29,7 +29,8 @@ def drawing(figure):
     )
     drawing = Drawing(
         f"A {figure.body} that spins freely about its {figure.axis} axis, with the moments of inertia "
-        f"{', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, drawn with its triad A as its "
+        f"{', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, drawn with its triad A as "
+        "its "
         f"{DESCRIPTIONS[figure.description]} says after {run['time'][-1]:.1f} seconds, {restored}, with the "
         f"{figure.method} method in steps of {1000 * figure.step:g} milliseconds. It {times}. The unit vectors of A, "
         f"which should be 1 long, are {lengths} long; the matrix is not orthogonal by {_words(fault)}, and the "
@@ -75,7 +76,8 @@ def plot(figure):
         for name, title in DESCRIPTIONS.items()
     )
     drawing = Drawing(
-        f"Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} seconds. Above, on a "
+        f"Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} seconds. Above, "
+        "on a "
         f"logarithmic scale, by how much each description is not orthogonal; in the middle, its error against the "
         f"reference; below, the margin of the Euler angles to gimbal lock, at the least {margin.min():.0f} degrees. "
         f"At the last: {last}."

@@ -80,11 +80,15 @@ def _way(figure):
         f"{speed:.0f}" if math.isfinite(speed) else "not defined" for speed in np.degrees(figure.speeds(figure.share))
     ]
     drawing = Drawing(
-        f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the orientation of A to that of "
-        f"B, a turn of {math.degrees(angle_between(first, second)):.0f} degrees: of C by slerp, an even turn about one axis; "
-        f"of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by the matrix nearest to interpolated entries. A "
+        f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the orientation of A to "
+        "that of "
+        f"B, a turn of {math.degrees(angle_between(first, second)):.0f} degrees: of C by slerp, an even turn about "
+        "one axis; "
+        "of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by the matrix "
+        "nearest to interpolated entries. A "
         f"straight dashed line inside the sphere shows where the blended entries lead before they are repaired. "
-        f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D and E are {now[0]}, {now[1]} and {now[2]} "
+        f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D and E are "
+        f"{now[0]}, {now[1]} and {now[2]} "
         f"degrees per second, and the blended rows have the lengths "
         f"{', '.join(f'{length:.2f}' for length in lengths)}. Below, the three speeds over time.",
         scale=BALL,

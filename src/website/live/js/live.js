@@ -156,7 +156,10 @@ class Page {
     }
     if (this.unreachable && needs.length) return this.leave(cell, this.unreachable);
     if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
-    const outcome = await this.python.run(cell.code, cell.name, needs, cell);
+    // Code that the page hides above this cell; what it puts out belongs to no cell.
+    const { before } = cell.kind;
+    const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }) : { status: "ok" };
+    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, cell) : hidden;
     this.settle(cell, outcome);
   }
 

@@ -1,0 +1,55 @@
+"""Expressions tried at random values of their symbols: numbers decide what algebra decides slowly, or not at all."""
+
+import math
+import random
+
+from ._numbers_and_symbols import is_symbolic
+
+#: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and two
+#: values beyond half a turn: the root of a square is then not taken for the cosine of the angle, nor
+#: for that of half the angle.
+QUARTERS = (-3, -1, 0, 2)
+
+
+def unknowns(components):
+    """Symbols and functions of time in the components, grouped by name."""
+    names = {}
+    for expression in filter(is_symbolic, components):
+        import sympy
+        from sympy.core.function import AppliedUndef
+
+        functions = expression.atoms(AppliedUndef)
+        # The time inside theta(t) is no unknown of its own, unless it stands outside as well.
+        rest = expression.xreplace({function: sympy.Dummy("function") for function in functions})
+        for atom in functions | (rest.free_symbols & expression.free_symbols):
+            names.setdefault(getattr(atom, "name", None) or atom.func.__name__, set()).add(atom)
+    return dict(sorted(names.items()))
+
+
+def points_for(names):
+    """Values for every name: a dictionary for each point, the same ones on every call."""
+    if not names:
+        return [{}]
+    source = random.Random(20)
+    points = [{} for _ in QUARTERS]
+    for name in names:
+        for point, quarter in zip(points, source.sample(QUARTERS, len(QUARTERS))):
+            point[name] = (quarter + source.uniform(0.1, 0.9)) * math.pi / 2
+    return points
+
+
+def put_in(components, names, point):
+    """Numbers for the components, with the values of one point for their symbols."""
+    if not any(map(is_symbolic, components)):
+        return components
+    import sympy
+
+    values = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
+    return [complex(entry.xreplace(values).evalf()) if is_symbolic(entry) else entry for entry in components]
+
+
+def at_random_points(*components):
+    """For each random choice of the symbols' values, a tuple of the lists of components as numbers."""
+    names = unknowns([entry for entries in components for entry in entries])
+    for point in points_for(names):
+        yield tuple(put_in(entries, names, point) for entries in components)
