@@ -1,4 +1,7 @@
-"""The reader's own phone: both makers' conventions give the same orientation, force and file; without sensors a recording plays."""
+"""The reader's own phone: both makers' conventions give the same orientation, force and file.
+
+Without sensors a recording plays.
+"""
 
 import csv
 import io
@@ -17,7 +20,8 @@ SEND = """([maker, angles, force, rate, from, to]) => {
   const [alpha, beta, gamma] = angles, [x, y, z] = force, android = maker === 'android';
   const kind = android ? 'deviceorientationabsolute' : 'deviceorientation', start = 40;
   for (let k = from; k <= to; k++) {
-    const turned = new DeviceOrientationEvent(kind, { alpha: android ? alpha : (alpha + start) % 360, beta, gamma, absolute: android });
+    const turned = new DeviceOrientationEvent(kind, { alpha: android ? alpha : (alpha + start) % 360, beta, gamma,
+      absolute: android });
     if (!android) Object.defineProperty(turned, 'webkitCompassHeading', { value: (360 - alpha) % 360 });
     window.dispatchEvent(turned);
     const sign = android ? 1 : -1;
@@ -30,7 +34,8 @@ SEND = """([maker, angles, force, rate, from, to]) => {
 }"""
 IOS = """() => {
   delete window.ondeviceorientationabsolute;
-  for (const kind of [DeviceOrientationEvent, DeviceMotionEvent]) kind.requestPermission = async () => window.permission ?? 'granted';
+  for (const kind of [DeviceOrientationEvent, DeviceMotionEvent])
+    kind.requestPermission = async () => window.permission ?? 'granted';
 }"""
 ANGLES, RATE = (70, 15, -10), (5.0, -20.0, 30.0)
 

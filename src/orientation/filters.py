@@ -1,6 +1,7 @@
 """A filter that follows an orientation: gyroscope in, directions in, orientation and its uncertainty out."""
 
 from ._numbers_and_symbols import number_array
+from ._types import Values
 from .direction_cosines import check_dcm
 from .rotation_vector import dcm_from_rotation_vector
 
@@ -60,7 +61,7 @@ class MultiplicativeKalmanFilter:
         self.covariance = numpy.broadcast_to(number_array(covariance, (6, 6), "covariance"), (*batch, 6, 6)).copy()
         self.gyroscope_noise, self.bias_noise = float(gyroscope_noise), float(bias_noise)
 
-    def turn(self, angular_velocity, step):
+    def turn(self, angular_velocity: Values, step: float) -> None:
         r"""Turn with the gyroscope for one step.
 
         Parameters
@@ -80,7 +81,7 @@ class MultiplicativeKalmanFilter:
         noise = numpy.repeat([self.gyroscope_noise**2 * step, self.bias_noise**2 * step], 3)
         self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + numpy.diag(noise)
 
-    def observe(self, observed, reference, deviation):
+    def observe(self, observed: Values, reference: Values, deviation: float) -> None:
         r"""Correct the estimate with one direction that was measured.
 
         Parameters

@@ -5,12 +5,13 @@ directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two ar
 """
 
 from ._numbers_and_symbols import number_array
+from ._types import Result, Values
 
 #: Sine of the angle below which two directions count as one.
 PARALLEL = 1e-6
 
 
-def dcm_from_two_directions(observed, reference):
+def dcm_from_two_directions(observed: Values, reference: Values) -> Result:
     r"""Direction cosine matrix that two observed directions fix: the TRIAD method.
 
     The first direction is trusted entirely, the second only for what it says about the turn around the
@@ -82,7 +83,7 @@ def _unit(directions, name):
     return directions / length
 
 
-def dcm_from_directions(observed, reference, deviations=None):
+def dcm_from_directions(observed: Values, reference: Values, deviations: Values | None = None) -> Result:
     r"""Direction cosine matrix that fits many observed directions best: Wahba's problem.
 
     Finds the :math:`{}^B\mathbf{C}^N` with the least
@@ -144,7 +145,7 @@ def dcm_from_directions(observed, reference, deviations=None):
     return left @ right
 
 
-def directions_covariance(observed, deviations):
+def directions_covariance(observed: Values, deviations: Values) -> Result:
     r"""Covariance of the error of an orientation that was fitted to directions.
 
     The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the true one, along

@@ -64,7 +64,8 @@ def find_question(name):
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(
-            f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with this notebook is not "
+            f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with this notebook is "
+            "not "
             f"beside it (in {Path.cwd()}), and no package with sealed questions is installed."
         )
     notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json"))

@@ -10,7 +10,7 @@ from .state import Numbers
 
 
 class PhoneFigure(MovingFigure):
-    r"""A phone :math:`B` and the ground :math:`N`: :math:`\hat{n}_x` east, :math:`\hat{n}_y` north, :math:`\hat{n}_z` up.
+    r"""A phone :math:`B`, and the ground :math:`N` with axes to the east, the north and upwards.
 
     On a phone the figure asks for its sensors when a button is pressed, and follows it; nothing is sent
     anywhere. The angles are those that browsers report: body fixed z-x-y, from the ground to the phone, whose
