@@ -67,6 +67,7 @@ def test_there_are_enough():
     assert bundle.EXPORT.findall(bundle.source("mathematics")), "nothing is exported"
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("sequence", module.SEQUENCES)
 @pytest.mark.parametrize("fixed", ["body", "space"])
 def test_euler_angles(in_browser_language, sequence, fixed):
