@@ -217,6 +217,7 @@ def test_pages_hardly_grow(name):
     assert sum(len(gzip.compress(part)) for part in added) < 5000
 
 
+@pytest.mark.long
 def test_browser_asks_nobody_else(site, browser, tmp_path):
     """By the browser's own log of the network, from its start to its end."""
     log = tmp_path / "network.json"
