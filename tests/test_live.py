@@ -605,6 +605,7 @@ def test_keyboard(shared):
     assert shared.page.evaluate(focused) != "Code of cell 3"
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("theme", "width"), [("light", 1300), ("dark", 380)])
 def test_accessible_in_use(browser, site, theme, width):
     with Visit(browser, site, QUIET, theme, {"width": width, "height": 800}) as visit:
