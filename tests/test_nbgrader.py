@@ -10,14 +10,16 @@ import nbformat
 import pytest
 
 from coursework.authoring import release
+from coursework.authoring.course import find_course
 
 nbgrader_utils = pytest.importorskip("nbgrader.utils")
 
+COURSE = find_course(Path(__file__).parent)
 ASSIGNMENT = "simple-orientations"
 
 
 def test_the_checksums_are_nbgraders():
-    for path in release.EXERCISES.glob("*.ipynb"):
+    for path in COURSE.exercises.glob("*.ipynb"):
         for cell in nbformat.read(path, as_version=4).cells:
             about = cell.metadata.get("nbgrader")
             if about:
@@ -27,7 +29,7 @@ def test_the_checksums_are_nbgraders():
 def test_the_metadata_is_of_schema_3():
     from nbgrader.nbgraderformat.v3 import MetadataValidatorV3
 
-    for path in release.EXERCISES.glob("*.ipynb"):
+    for path in COURSE.exercises.glob("*.ipynb"):
         notebook = nbformat.read(path, as_version=4)
         for cell in notebook.cells:
             if "nbgrader" in cell.metadata:
@@ -61,10 +63,10 @@ def test_nbgrader_grades_a_submission_by_our_checks(tmp_path):
     """One question right, one wrong, the rest untouched: the points are those of the right one."""
     from nbgrader.api import Gradebook
 
-    source = release.read_source(release.SOURCES / f"{ASSIGNMENT}.ipynb")
+    source = release.read_source(COURSE.sources / f"{ASSIGNMENT}.ipynb")
     names = list(source.questions)
     answers = {cell.source for cell in source.notebook.cells}
-    notebook = nbformat.read(release.EXERCISES / f"{ASSIGNMENT}.ipynb", as_version=4)
+    notebook = nbformat.read(COURSE.exercises / f"{ASSIGNMENT}.ipynb", as_version=4)
     right, wrong = (source.questions[name].variable for name in names[:2])
     for cell in notebook.cells:
         if cell.source.startswith(f"{right} = ..."):
@@ -75,7 +77,7 @@ def test_nbgrader_grades_a_submission_by_our_checks(tmp_path):
     for folder, content in (("source", None), ("submitted/someone", notebook)):
         place = tmp_path / folder / ASSIGNMENT
         place.mkdir(parents=True)
-        shutil.copy(release.EXERCISES / f"{ASSIGNMENT}.ipynb", place)
+        shutil.copy(COURSE.exercises / f"{ASSIGNMENT}.ipynb", place)
         if content:
             nbformat.write(content, place / f"{ASSIGNMENT}.ipynb")
     (tmp_path / "nbgrader_config.py").write_text("c = get_config()\nc.CourseDirectory.course_id = 'trial'\n")

@@ -16,10 +16,27 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from coursework.authoring import packing, release
+from coursework.authoring import release
 from coursework.authoring.author import AuthorError
+from coursework.authoring.course import Course, find_course
+from coursework.authoring.packing import archive
 from coursework.authoring.selftest import leaks, released_texts, secrets_of
 from coursework.checking.update import OlderArchive, update
+from website import packing
+
+COURSE = find_course(Path(__file__).parent)
+
+
+def made_in(folder, sources=None, exercises=None, sealed=None):
+    """A course in a folder, or with some of its folders elsewhere."""
+    places = {"sources": sources, "exercises": exercises, "sealed": sealed}
+    return Course(
+        folder,
+        "Trial",
+        archive=folder / "exercises.zip",
+        **{name: given or folder / name for name, given in places.items()},
+    )
+
 
 SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("theta")'
 SOLUTION = (
@@ -74,7 +91,7 @@ CELLS = [
 def trial(tmp_path_factory):
     folder = tmp_path_factory.mktemp("trial")
     write_source(folder / "sources", *CELLS)
-    release.release(folder / "sources", folder / "exercises", folder / "sealed", run=False)
+    release.release(made_in(folder), run=False)
     return folder
 
 
@@ -95,7 +112,7 @@ def test_a_figure_becomes_a_picture_with_its_text(trial):
 
 
 def test_a_release_is_the_same_each_time(trial, tmp_path):
-    release.release(trial / "sources", tmp_path / "exercises", tmp_path / "sealed", run=False)
+    release.release(made_in(tmp_path, sources=trial / "sources"), run=False)
     assert release.differences(trial / "exercises", tmp_path / "exercises", "*") == []
     assert release.differences(trial / "sealed", tmp_path / "sealed", "*") == []
 
@@ -149,7 +166,7 @@ def test_an_author_is_told_what_is_wrong(tmp_path, cells, words):
         release.read_source(write_source(tmp_path, *cells))
 
 
-COMMITTED = sorted(path.stem for path in release.SOURCES.glob("*.ipynb"))
+COMMITTED = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
 
 
 @pytest.mark.sampled(2)
@@ -157,39 +174,39 @@ COMMITTED = sorted(path.stem for path in release.SOURCES.glob("*.ipynb"))
 def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     write_to = tmp_path / "sources", tmp_path / "exercises", tmp_path / "sealed"
     write_to[0].mkdir()
-    shutil.copy(release.SOURCES / f"{name}.ipynb", write_to[0])
-    release.release(*write_to)
+    shutil.copy(COURSE.sources / f"{name}.ipynb", write_to[0])
+    release.release(made_in(tmp_path))
     message = (
         "Run `make release` and commit exercises/ and src/orientation_course/sealed/: they are not what this makes."
     )
-    made = release.EXERCISES / f"{name}.ipynb", release.SEALED / f"{name}.json"
+    made = COURSE.exercises / f"{name}.ipynb", COURSE.sealed / f"{name}.json"
     for folder, file in zip(write_to[1:], made, strict=True):
         if name != release.CHAPTERS or file.suffix == ".json":
             assert (folder / file.name).read_bytes() == file.read_bytes(), message
 
 
 def test_nothing_is_committed_that_has_no_source():
-    assert sorted(path.stem for path in release.SEALED.glob("*.json")) == COMMITTED
-    assert sorted(path.stem for path in release.EXERCISES.glob("*.ipynb")) == sorted({*COMMITTED} - {release.CHAPTERS})
+    assert sorted(path.stem for path in COURSE.sealed.glob("*.json")) == COMMITTED
+    assert sorted(path.stem for path in COURSE.exercises.glob("*.ipynb")) == sorted({*COMMITTED} - {release.CHAPTERS})
 
 
 def test_there_is_a_notebook_of_exercises_for_every_chapter():
-    chapters = {path.stem for path in (release.REPOSITORY / "chapters").glob("*.ipynb")}
-    assert {path.stem for path in release.EXERCISES.glob("*.ipynb")} == chapters
+    chapters = {path.stem for path in (COURSE.root / "chapters").glob("*.ipynb")}
+    assert {path.stem for path in COURSE.exercises.glob("*.ipynb")} == chapters
     questions = [
-        name for path in release.SEALED.glob("*.json") for name in json.loads(path.read_text("utf8"))["questions"]
+        name for path in COURSE.sealed.glob("*.json") for name in json.loads(path.read_text("utf8"))["questions"]
     ]
     assert sum(not name.startswith("chapters/") for name in questions) >= 60
 
 
 def test_the_archive_is_the_same_each_time_and_installs_what_it_says(tmp_path):
-    first, second = (packing.archive(tmp_path / name / "exercises.zip") for name in "ab")
+    first, second = (archive(COURSE, tmp_path / name / "exercises.zip") for name in "ab")
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as box:
         names = {Path(name).name for name in box.namelist()}
         wheel = next(name for name in names if name.endswith(".whl"))
         assert f"./{wheel}" in box.read("exercises/requirements.txt").decode().splitlines()
-    assert {path.name for path in release.EXERCISES.glob("*.ipynb")} < names
+    assert {path.name for path in COURSE.exercises.glob("*.ipynb")} < names
 
 
 def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):

@@ -1,13 +1,14 @@
 """Every question of the book, tried as students will try it."""
 
 import pytest
-from test_release import CELLS, write_source
+from test_release import CELLS, COURSE, made_in, write_source
 
 from coursework.__main__ import main
-from coursework.authoring import packing, release
+from coursework.authoring import release
+from coursework.authoring.packing import archive as pack
 from coursework.authoring.selftest import leaks, released_texts, selftest, try_question, write_page
 
-SOURCES = {path.stem: path for path in sorted(release.SOURCES.glob("*.ipynb"))}
+SOURCES = {path.stem: path for path in sorted(COURSE.sources.glob("*.ipynb"))}
 
 
 @pytest.mark.sampled(4)
@@ -19,14 +20,14 @@ def test_every_question_passes_and_names_its_mistakes(name):
     assert "<h1>" in write_page(findings, [])
     if name != release.CHAPTERS:
         assert len(findings) >= 4
-        assert leaks([source], released_texts(archive="none")) == []
+        assert leaks([source], released_texts(COURSE.exercises, COURSE.sealed, "none")) == []
 
 
 @pytest.mark.long
 def test_nothing_leaks_into_the_archive(tmp_path):
-    archive = packing.archive(tmp_path / "exercises.zip")
+    archive = pack(COURSE, tmp_path / "exercises.zip")
     sources = [release.read_source(path) for path in SOURCES.values()]
-    assert leaks(sources, released_texts(archive=archive)) == []
+    assert leaks(sources, released_texts(COURSE.exercises, COURSE.sealed, archive)) == []
 
 
 def test_nothing_to_try_is_not_a_pass(tmp_path):
@@ -44,6 +45,6 @@ def test_a_question_with_a_fault_is_found(tmp_path):
         for kind, text, *tags in CELLS
     ]
     write_source(tmp_path, *cells)
-    faults = selftest(tmp_path, tmp_path / "page.html")
+    faults = selftest(made_in(tmp_path, sources=tmp_path), tmp_path / "page.html")
     assert any("gives the right answer" in fault for fault in faults)
     assert "gives the right answer" in (tmp_path / "page.html").read_text("utf8")

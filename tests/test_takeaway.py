@@ -21,8 +21,8 @@ from nbclient import NotebookClient
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from coursework.authoring.packing import PACKAGES
 from website.notebooks import all_notebooks
+from website.paths import PACKAGES
 
 FOLDER = HTML / "take-away"
 SOURCES = {path.stem: path for path in all_notebooks(REPOSITORY)}

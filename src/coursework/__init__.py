@@ -5,4 +5,6 @@ A student needs ``from coursework import check`` and no more.
 
 from .checking.check import check, hint, progress
 
+__version__ = "1.1.0"
+
 __all__ = ["check", "hint", "progress"]

@@ -12,10 +12,12 @@ from pathlib import Path
 import jupytext
 import nbformat
 
-from coursework.authoring import packing
-from coursework.authoring.packing import wheel_name
+from coursework.authoring.course import find_course
+from coursework.authoring.packing import archive as pack
 
+from . import packing
 from .markdown import MarkdownWriter
+from .packing import wheel_name
 from .paths import REPOSITORY, pages
 
 FOLDER = "take-away"
@@ -121,7 +123,7 @@ def pack_exercises(app, exception):
     archive = Path(app.outdir) / FOLDER / ARCHIVE
     newest = max(path.stat().st_mtime for path in [*packing.wheel_sources(), *EXERCISES.glob("*.ipynb")])
     if not archive.exists() or archive.stat().st_mtime < newest:
-        packing.archive(archive)
+        pack(find_course(), archive)
 
 
 def build_wheel(app, exception):

@@ -1,34 +1,41 @@
-"""What students download: the package that they import, and with it the archive of all exercises.
+"""What students download: the notebooks, the sealed questions, and the package that checks them."""
 
-The package holds no grader and no author's tools. Its version follows from its sources, so that pip installs a
-newer one over an older one, and says that nothing is to be done where nothing has changed.
-"""
-
-import os
-import re
-import shutil
-import subprocess
-import sys
+import base64
+import hashlib
 import tempfile
-import tomllib
 import zipfile
-from datetime import UTC, datetime
-from functools import cache
+from importlib import import_module
 from pathlib import Path
 
-from .release import EXERCISES
-from .source import REPOSITORY
+import coursework
 
-ARCHIVE = REPOSITORY / "_build" / "exercises.zip"
-ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
-PACKAGES = ("orientation", "orientation_figures", "orientation_recordings", "orientation_course", "coursework")
-#: Parts of those packages that students do not get.
-LEFT_OUT = ("src/coursework/authoring", "src/coursework/grading")
-VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
 #: Every file of an archive carries this time, so that the same contents are the same bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
-
-README = """Exercises of Orientation of Reference Frames
+#: What each distribution holds of coursework, what it needs, and its one line. Students get neither the author's
+#: tools nor the grader.
+DISTRIBUTIONS = {
+    "coursework": (
+        ("*.py", "py.typed", "checking/*.py"),
+        ("sympy<2,>=1.14",),
+        "Exercises in notebooks that check themselves and hold no answers: what a student needs",
+    ),
+    "coursework-tools": (
+        ("authoring/**/*", "grading/**/*"),
+        (
+            f"coursework=={coursework.__version__}",
+            "ipykernel",
+            "ipython",
+            "latex2mathml",
+            "markdown-it-py",
+            "mdit-py-plugins",
+            "nbclient",
+            "nbformat",
+            "numpy",
+        ),
+        "Exercises in notebooks that check themselves and hold no answers: what authors and instructors need",
+    ),
+}
+README = """Exercises of {title}
 
 1. Install Python 3.11 or newer, then in this folder:
 
@@ -38,8 +45,8 @@ README = """Exercises of Orientation of Reference Frames
 
        jupyter lab
 
-Answer in place of the dots and run the check below each question. It says whether the answer is right or which
-convention was mixed up. Your progress is kept in the folder .coursework beside the notebooks and nowhere else.
+Answer in place of the dots and run the check below each question. It says whether the answer is right or what
+was mixed up. Your progress is kept in the folder .coursework beside the notebooks and nowhere else.
 
 When there is a newer archive, do not unpack it over your work. Run
 
@@ -48,102 +55,83 @@ When there is a newer archive, do not unpack it over your work. Run
 in this folder: it adds what is new, puts the new package in place of the old one, tells how to install it, and
 leaves every notebook that you have changed as it is.
 """
+ABOUT = """Metadata-Version: 2.1
+Name: {name}
+Version: {version}
+Summary: {summary}
+License: BSD-3-Clause
+Requires-Python: >=3.11
+"""
 
 
-def wheel_sources(repository=REPOSITORY):
-    """The files that the package for students is made of."""
-    packages = [repository / "src" / name for name in PACKAGES]
-    found = [path for package in packages for path in package.rglob("*") if path.is_file()]
-    left_out = [repository / place for place in LEFT_OUT]
-    return [repository / name for name in ABOUT] + sorted(
-        path
-        for path in found
-        if "__pycache__" not in path.parts and not any(path.is_relative_to(place) for place in left_out)
-    )
+WHEEL = """Wheel-Version: 1.0
+Generator: coursework
+Root-Is-Purelib: true
+Tag: py3-none-any
+"""
 
 
-@cache
-def version(repository=REPOSITORY):
-    """The version of the package for students, such as ``1.1.0.post20261122093000``.
+def archive(course, target=None):
+    """Make the archive for students. The same contents give the same bytes.
 
-    To the version in ``orientation.__version__`` it adds when the sources were last changed, in UTC: when they were
-    last committed or, where something is not committed or there is no repository, when those files were written.
+    Parameters
+    ----------
+    course : Course
+    target : path, optional
+        Another place than the course names.
     """
-    paths = [*ABOUT, *(f"src/{name}" for name in PACKAGES), *(f":(exclude){place}" for place in LEFT_OUT)]
-    committed = _git(repository, "log", "-1", "--format=%ct", "--", *paths)
-    changed = wheel_sources(repository)
-    if committed:
-        changed = [
-            Path(repository, name)
-            for command in (
-                ("diff", "--name-only", "--relative", "HEAD"),
-                ("ls-files", "--others", "--exclude-standard"),
-            )
-            for name in _git(repository, *command, "-z", "--", *paths).split("\0")
-            if name
-        ]
-    # Of a file that is gone, the folder that it stood in tells when.
-    written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
-    moment = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
-    stated = VERSION.search(_stamped(repository).read_text("utf8"))[1]
-    return f"{stated}.post{moment:%Y%m%d%H%M%S}"
-
-
-def _stamped(repository):
-    """The file that states the version."""
-    return Path(repository, "src", "orientation", "__init__.py")
-
-
-def _git(repository, *arguments):
-    """What git says, or nothing where there is no git, or no repository that it would read."""
-    if not shutil.which("git"):
-        return ""
-    done = subprocess.run(["git", "-C", repository, *arguments], capture_output=True, text=True)
-    return done.stdout.strip() if done.returncode == 0 else ""
-
-
-def wheel_name():
-    """The name of the file of the package for students."""
-    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
-    return f"{project['name'].replace('-', '_')}-{version()}-py3-none-any.whl"
-
-
-def build_wheel(folder):
-    """Build the package for students, from a copy: setuptools leaves files behind, and here the version is set."""
-    with tempfile.TemporaryDirectory() as place:
-        for path in wheel_sources():
-            target = Path(place, path.relative_to(REPOSITORY))
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(path, target)
-        stamped = _stamped(place)
-        text, count = VERSION.subn(f'__version__ = "{version()}"', stamped.read_text("utf8"))
-        if count != 1:
-            raise RuntimeError(f"orientation/__init__.py must set __version__ once; it does {count} times")
-        stamped.write_text(text, "utf8")
-        command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps"]
-        subprocess.run(
-            [*command, "--no-build-isolation", "--wheel-dir", folder, place],
-            check=True,
-            env={**os.environ, "SOURCE_DATE_EPOCH": str(int(datetime(*TIME, tzinfo=UTC).timestamp()))},
-        )
-    return Path(folder, wheel_name())
-
-
-def archive(target=ARCHIVE, exercises=EXERCISES):
-    """Make the archive for students: the notebooks, the package, and how to start. The same each time."""
-    target = Path(target)
+    target = Path(target or course.archive)
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        wheel = build_wheel(folder)
+        module, _, function = course.package.partition(":")
+        package = getattr(import_module(module), function)(folder) if course.package else wheel("coursework", folder)
         files = {
-            "README.txt": README.encode("utf8"),
-            "requirements.txt": f"./{wheel.name}\njupyterlab\n".encode(),
-            wheel.name: wheel.read_bytes(),
+            "README.txt": README.format(title=course.title).encode("utf8"),
+            "requirements.txt": f"./{package.name}\njupyterlab\n".encode(),
+            package.name: package.read_bytes(),
         }
-        files.update({path.name: path.read_bytes() for path in sorted(Path(exercises).glob("*.ipynb"))})
+    files |= {path.name: path.read_bytes() for path in course.exercises.glob("*.ipynb")}
+    if not course.package:
+        files |= {f"sealed/{path.name}": path.read_bytes() for path in course.sealed.glob("*.json")}
+    write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
+    return target
+
+
+def wheel(name, folder):
+    """Build one of :data:`DISTRIBUTIONS` out of the coursework that is installed here, and give its file."""
+    patterns, needs, summary = DISTRIBUTIONS[name]
+    root, version = Path(coursework.__file__).parent, coursework.__version__
+    place = f"{name.replace('-', '_')}-{version}"
+    files = {
+        f"coursework/{path.relative_to(root).as_posix()}": path.read_bytes()
+        for pattern in patterns
+        for path in root.glob(pattern)
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    about = ABOUT.format(name=name, version=version, summary=summary) + "".join(
+        f"Requires-Dist: {one}\n" for one in needs
+    )
+    files |= {
+        f"{place}.dist-info/METADATA": about.encode(),
+        f"{place}.dist-info/WHEEL": WHEEL.encode(),
+        f"{place}.dist-info/entry_points.txt": b"[console_scripts]\n"
+        + (b"coursework = coursework.__main__:main\n" if name == "coursework" else b""),
+    }
+    lines = [f"{name},sha256={_digest(content)},{len(content)}\n" for name, content in sorted(files.items())]
+    record = f"{place}.dist-info/RECORD"
+    files[record] = "".join([*lines, f"{record},,\n"]).encode()
+    return write_zip(Path(folder, f"{place}-py3-none-any.whl"), files)
+
+
+def _digest(content):
+    return base64.urlsafe_b64encode(hashlib.sha256(content).digest()).decode().rstrip("=")
+
+
+def write_zip(target, files):
+    """Write contents by name into a zip, always the same way."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):
-            entry = zipfile.ZipInfo(f"exercises/{name}", TIME)
+            entry = zipfile.ZipInfo(name, TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = 0o644 << 16
             box.writestr(entry, files[name])

@@ -13,14 +13,13 @@ import html
 import json
 import os
 import re
+import shutil
 import tempfile
 from pathlib import Path
 
 from ..checking.questions import FORMAT
-from .source import CHAPTERS, REPOSITORY, SOURCES, answered_in, checked_names, notebooks_in, posed, read_source
-
-EXERCISES = REPOSITORY / "exercises"
-SEALED = REPOSITORY / "src" / "orientation_course" / "sealed"
+from .author import AuthorError
+from .source import CHAPTERS, answered_in, checked_names, notebooks_in, posed, read_source
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
@@ -140,37 +139,70 @@ def _release_one(path, exercises, sealed):
     return source.name
 
 
-def _run_one(path):
+def _run_one(path, sealed):
     import nbformat
 
     notebook = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
+        # The sealed questions stand beside the notebook, as they do where there is no package for them.
+        shutil.copytree(sealed, Path(folder, "sealed"))
         run_notebook(notebook, folder)
     nbformat.write(notebook, path)
 
 
-def release(sources=SOURCES, exercises=EXERCISES, sealed=SEALED, run=True):
+def release(course, only=(), run=True):
     """Make the exercise notebooks and the sealed questions.
 
     Parameters
     ----------
-    sources, exercises, sealed : path
+    course : Course
+    only : sequence of str
+        Names of the notebooks to make; all of them if there is none.
     run : bool
-        Whether to run the exercise notebooks, so that they show what an untouched notebook shows. They are
-        run with the sealed questions of the installed package.
+        Whether to run the exercise notebooks, so that they show what an untouched notebook shows.
+
+    Returns
+    -------
+    list of str
+        The names of the notebooks that were made.
+
+    Raises
+    ------
+    AuthorError
+        A question is not well posed, or the folders hold what these sources do not make. Nothing is ever deleted.
     """
-    paths = notebooks_in(sources)
-    for folder in (exercises, sealed):
-        Path(folder).mkdir(parents=True, exist_ok=True)
-    with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
-        names = list(pool.map(_release_one, paths, [exercises] * len(paths), [sealed] * len(paths)))
-        for folder, suffix in ((exercises, ".ipynb"), (sealed, ".json")):
-            for path in Path(folder).glob(f"*{suffix}"):
-                if path.stem not in names:
-                    path.unlink()  # its source is gone
+    paths = notebooks_in(course.sources)
+    known = {path.stem for path in paths}
+    _demand_sources(course, known)
+    unknown = sorted(set(only) - known)
+    if unknown:
+        raise AuthorError(f"There is no {unknown[0]}.ipynb in {course.sources}; there are {', '.join(sorted(known))}.")
+    if only:
+        paths = [path for path in paths if path.stem in only]
+    for folder in (course.exercises, course.sealed):
+        folder.mkdir(parents=True, exist_ok=True)
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+        names = list(pool.map(_release_one, paths, [course.exercises] * len(paths), [course.sealed] * len(paths)))
         if run:
-            list(pool.map(_run_one, sorted(Path(exercises).glob("*.ipynb"))))
+            made = [course.exercises / f"{name}.ipynb" for name in names if name != CHAPTERS]
+            list(pool.map(_run_one, made, [course.sealed] * len(made)))
     return names
+
+
+def _demand_sources(course, known):
+    """Whoever names the wrong folder must not lose another course's exercises."""
+    others = [
+        path
+        for folder, suffix in ((course.exercises, ".ipynb"), (course.sealed, ".json"))
+        for path in sorted(folder.glob(f"*{suffix}"))
+        if path.stem not in known
+    ]
+    if others:
+        raise AuthorError(
+            f"{others[0]} is made of no notebook in {course.sources}"
+            + (f", and neither are {len(others) - 1} other files" if others[1:] else "")
+            + ". Nothing was changed: delete what is no longer wanted yourself, or name other folders."
+        )
 
 
 def differences(first, second, pattern):

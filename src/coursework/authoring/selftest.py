@@ -22,9 +22,7 @@ from ..checking.questions import compare, judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
-from .packing import ARCHIVE
-from .release import EXERCISES, SEALED
-from .source import CHAPTERS, HIDDEN, SOLUTION, SOURCES, blank, notebooks_in, read_source
+from .source import CHAPTERS, HIDDEN, SOLUTION, blank, notebooks_in, read_source
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
 SECONDS_PER_TRY = 0.015
@@ -195,7 +193,7 @@ def _dense(text):
     return re.sub(r"\s+", "", text).lower()
 
 
-def released_texts(exercises=EXERCISES, sealed=SEALED, archive=ARCHIVE):
+def released_texts(exercises, sealed, archive):
     """Everything that students receive, as texts by place: files, what is packed in them, and pictures."""
     files = {
         str(path): path.read_bytes()
@@ -252,8 +250,8 @@ def leaks(sources, texts):
 # --- the page -----------------------------------------------------------------------------------
 
 
-def selftest(sources=SOURCES, page=None):
-    """Try all questions, look for leaks, and write the page.
+def selftest(course, page=None):
+    """Try all questions of a course, look for leaks, and write the page.
 
     Returns
     -------
@@ -265,11 +263,11 @@ def selftest(sources=SOURCES, page=None):
     AuthorError
         There is nothing to try, or a notebook cannot be read.
     """
-    read = [read_source(path) for path in notebooks_in(sources)]
+    read = [read_source(path) for path in notebooks_in(course.sources)]
     findings = [try_question(question) for source in read for question in source.questions.values()]
     if not findings:
-        raise AuthorError(f"The notebooks in {sources} ask no question.")
-    found = leaks(read, released_texts())
+        raise AuthorError(f"The notebooks in {course.sources} ask no question.")
+    found = leaks(read, released_texts(course.exercises, course.sealed, course.archive))
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
         Path(page).write_text(write_page(findings, found), "utf8")
@@ -292,7 +290,7 @@ def guessing(bits):
     return "years"
 
 
-def write_page(findings, found):
+def write_page(findings, found, before=""):
     rows = []
     for finding in findings:
         mistakes = "".join(f"<li><b>{html.escape(note)}</b>: {to_html(said)}</li>" for note, said in finding.mistakes)
@@ -306,7 +304,9 @@ def write_page(findings, found):
             f"<td>{finding.bits:.0f} bits: {guessing(finding.bits)}</td>"
             f"<td>{f'<ul>{faults}</ul>' if faults else 'ready'}</td></tr>"
         )
-    leaked = "".join(f"<li>{html.escape(what)} stands in {html.escape(place)}</li>" for what, place in found)
+    listed = "".join(f"<li>{html.escape(what)} stands in {html.escape(place)}</li>" for what, place in found or [])
+    # Where only a few questions are tried, nothing was looked for.
+    leaked = "" if found is None else f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title><style>'
         "body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem}"
@@ -318,8 +318,7 @@ def write_page(findings, found):
         "bits a guess needs, and how long one core takes to try half of all such answers at "
         f"{SECONDS_PER_TRY * 1000:.0f} "
         "ms each. An answer with few bits should not count much.</p>"
-        "<h2>Leaks</h2>"
-        f"{f'<ul>{leaked}</ul>' if leaked else NO_LEAK}"
+        f"{before}{leaked}"
         "<h2>Questions</h2><table><thead><tr><th>Question</th><th>Kind</th><th>Forms that pass</th>"
         "<th>Mistakes named</th><th>Mistakes that change nothing here</th><th>To guess "
         "it</th><th>Faults</th></tr></thead>"

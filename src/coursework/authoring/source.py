@@ -14,8 +14,6 @@ import coursework
 
 from . import author
 
-REPOSITORY = Path(__file__).resolve().parents[3]
-SOURCES = REPOSITORY / "tests" / "solutions"
 #: The source whose questions stand inside the chapters: only its sealed file is made.
 CHAPTERS = "chapters"
 
@@ -42,7 +40,10 @@ def notebooks_in(folder):
     """
     found = sorted(Path(folder).glob("*.ipynb"))
     if not found:
-        raise author.AuthorError(f"There is no notebook with solutions in {folder}.")
+        raise author.AuthorError(
+            f"There is no notebook with solutions in {folder}. If the solutions are kept in a private repository, "
+            "get them first; without them everything builds, but nothing is released or graded."
+        )
     return found
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 #: The file of a package: its name and its version.
 WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
 REQUIREMENTS = "requirements.txt"
+#: The folder of the sealed questions: no student changes them, so a newer one takes the place of the older one.
+SEALED = "sealed/"
 
 
 class OlderArchive(ValueError):
@@ -38,7 +40,7 @@ def update(archive_file, folder="."):
     folder = Path(folder)
     with zipfile.ZipFile(archive_file) as box:
         entries = [entry for entry in sorted(box.namelist()) if not entry.endswith("/")]
-        files = {Path(entry).name: box.read(entry) for entry in entries}
+        files = {_place(entry): box.read(entry) for entry in entries}
     older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
     to_install = [str(folder / name) for name in older if not _is_installed(name)]
     said = []
@@ -46,6 +48,10 @@ def update(archive_file, folder="."):
         place = folder / name
         if place.exists() and place.read_bytes() == data:
             said.append(f"the same    {name}")
+        elif name.startswith(SEALED):
+            said.append(f"{'replaced' if place.exists() else 'added':<12}{name}")
+            place.parent.mkdir(exist_ok=True)
+            place.write_bytes(data)
         elif name in older:
             place.write_bytes(data)
             for path in older[name]:
@@ -66,6 +72,12 @@ def update(archive_file, folder="."):
         line = " ".join(f'"{word}"' if " " in word else word for word in command)
         said.append(f"Now run this:\n\n    {line}\n")
     return said
+
+
+def _place(entry):
+    """Where an entry of the archive goes: sealed questions into a folder of their own, other files into the folder."""
+    path = Path(entry)
+    return f"{SEALED}{path.name}" if path.parent.name == "sealed" else path.name
 
 
 def _is_installed(name):

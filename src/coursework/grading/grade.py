@@ -17,7 +17,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
 
-from ..authoring.source import SOURCES
+from ..authoring.course import find_course
 from . import intake, marking
 from .store import FORMAT, Store, as_text, write
 
@@ -49,7 +49,7 @@ class Course:
     """
 
     def __init__(self, solutions=None, assignments=None):
-        folder = Path(solutions or SOURCES)
+        folder = Path(solutions or find_course().sources)
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
         if not self.sources:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")

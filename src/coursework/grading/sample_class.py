@@ -15,8 +15,9 @@ import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
+from ..authoring.course import find_course
 from ..authoring.release import KERNEL, exercise_notebook
-from ..authoring.source import CHAPTERS, SOURCES, answered_in, checked_names, read_source, solved
+from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
 #: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
@@ -357,7 +358,7 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     layout : {'folders', 'canvas', 'moodle', 'brightspace', 'nbgrader'}
         How the submissions are handed out.
     """
-    folder = Path(solutions or SOURCES)
+    folder = Path(solutions or find_course().sources)
     stems = list(notebooks) or [sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != CHAPTERS)[0]]
     dice = random.Random(f"class {seed}")
     exercise = _Exercise(stems, folder)

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from sphinx.errors import ConfigError
 
-from coursework.authoring.packing import wheel_name
-
+from ..packing import wheel_name
 from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY
 from ..take_away import FOLDER as TAKE_AWAY
 

@@ -1,0 +1,64 @@
+"""The author's preview of a question: its text, and everything that a student may hear about an answer."""
+
+import html
+from pathlib import Path
+
+from ..checking.reply import to_html
+from .author import AuthorError, to_page
+from .selftest import try_question, write_page
+from .source import read_source
+
+
+def trial(course, name, page):
+    """Write a page on one question, or on all questions of a notebook.
+
+    Parameters
+    ----------
+    course : Course
+    name : str
+        ``'notebook/question'``, or ``'notebook'``.
+    page : path
+
+    Raises
+    ------
+    AuthorError
+        There is no such question, or it is not well posed.
+    """
+    notebook = name.partition("/")[0]
+    path = course.sources / f"{notebook}.ipynb"
+    if not path.is_file():
+        raise AuthorError(f"There is no {path.name} in {course.sources}.")
+    source = read_source(path)
+    chosen = [question for key, question in source.questions.items() if name in (notebook, key)]
+    if not chosen:
+        raise AuthorError(f"There is no question {name!r}; {path.name} has {', '.join(source.questions)}.")
+    texts = "".join(
+        f"<section><h2>{html.escape(question.name)}</h2>{to_page(text_of(source, question))}"
+        f"<details><summary>The worked solution</summary>{to_page(question.solution) or '<p>None.</p>'}</details>"
+        f"{_hints(question)}</section>"
+        for question in chosen
+    )
+    findings = [try_question(question) for question in chosen]
+    Path(page).parent.mkdir(parents=True, exist_ok=True)
+    Path(page).write_text(write_page(findings, None, texts), "utf8")
+    return page
+
+
+def text_of(source, question):
+    """The text of a question: the Markdown above the cell that its answer stands in."""
+    above = ""
+    for cell in source.notebook.cells:
+        if cell.cell_type == "markdown":
+            above = cell.source
+        elif f"check({question.name!r}" in cell.source.replace('"', "'"):
+            return above
+    return above
+
+
+def _hints(question):
+    lines = [
+        f"<li><b>{html.escape(note)}</b>: {to_html(step)}</li>"
+        for note, steps in question.hints.items()
+        for step in steps
+    ]
+    return f"<h3>Hints</h3><ul>{''.join(lines)}</ul>" if lines else ""
