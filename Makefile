@@ -14,17 +14,19 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve test test-all times take-away notebooks release benchmark clean
+.PHONY: help setup book serve check test test-all times take-away notebooks release renew-pins benchmark clean
 
 help:
 	@echo "make book       build the site into _build/html"
 	@echo "make serve      build it, serve it on a local address and print that"
 	@echo "make take-away  build it with the whole book as a PDF and as a zip to read offline"
+	@echo "make check      style, types, pins and links (a minute at most, no browser)"
 	@echo "make test       try every part of the book and its software (minutes)"
 	@echo "make test-all   run every test, as continuous integration does"
 	@echo "make times      the same, and write down what each part costs in tests/TIMES.md"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them"
+	@echo "make renew-pins newest versions of all that is installed"
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
 
@@ -73,6 +75,9 @@ serve: book
 take-away: $(VENV)/ready-print book
 	@$(RUN) -m website.whole_book
 
+check: $(VENV)/ready-test book
+	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_site.py::test_links_lead_somewhere
+
 # As many tests side by side as there are cores. What takes long and rarely breaks is left to `make test-all`.
 test: $(VENV)/ready-test book
 	@$(RUN) -m website.browser || true
@@ -92,6 +97,9 @@ notebooks: setup
 release: $(VENV)/ready-release setup
 	@$(RUN) -m coursework release
 	@$(RUN) -m coursework selftest
+
+renew-pins: setup
+	@$(RUN) -m website.pins
 
 benchmark: $(VENV)/ready-test setup
 	@$(RUN) -m benchmarks

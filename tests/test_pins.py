@@ -1,0 +1,90 @@
+"""Every version that the set-up installs is exact, and the lists that name one package agree."""
+
+import json
+import re
+import sys
+import tomllib
+
+import pytest
+from conftest import REPOSITORY
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from website import pins
+
+CONSTRAINTS = pins.pins(pins.CONSTRAINTS.read_text("utf8"))
+
+
+def test_what_is_asked_for_is_pinned():
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
+    for text in [*project["dependencies"], *sum(project["optional-dependencies"].values(), [])]:
+        wanted = Requirement(text)
+        version = CONSTRAINTS[canonicalize_name(wanted.name)]
+        assert wanted.specifier.contains(version), f"constraints.txt has {version}, pyproject.toml asks for {text}"
+
+
+@pytest.mark.parametrize("path", pins.WHEELS, ids=lambda path: path.parent.name)
+def test_wheels_for_browsers_are_those_of_the_book(path):
+    text = path.read_text("utf8")
+    for name, version in pins.pins(text).items():
+        assert CONSTRAINTS.get(name, version) == version, name
+        assert re.search(rf"^{name}=={re.escape(version)} --hash=sha256:[0-9a-f]{{64}}$", text, re.M), name
+
+
+def test_the_lock_of_npm_names_no_address():
+    text = pins.LOCK.read_text("utf8")
+    assert '"resolved"' not in text and "://" not in re.sub(r'"funding": (".*"|{[^}]*}|\[[^]]*\])', "", text)
+    stated, locked = json.loads(pins.PACKAGE.read_text("utf8")), json.loads(text)["packages"]
+    for name, version in (stated["dependencies"] | stated["devDependencies"]).items():
+        assert locked[f"node_modules/{name}"]["version"] == version, name
+        assert locked[f"node_modules/{name}"]["integrity"].startswith("sha512-"), name
+
+
+def report(name, version, *requires):
+    archive = {"hashes": {"sha256": f"{len(name):064x}"}}
+    return {
+        "metadata": {"name": name, "version": version, "requires_dist": list(requires)},
+        "download_info": {"archive_info": archive},
+    }
+
+
+def test_wheels_are_renewed_to_the_versions_of_the_book(monkeypatch):
+    asked = []
+
+    def resolve(*arguments):
+        asked.extend(arguments)
+        return [report("IPython", "9.99"), report("micropip", "0.12")]
+
+    monkeypatch.setattr(pins, "resolve", resolve)
+    old = "# Why.\nipython==9.18.1 --hash=sha256:0\nmicropip==0.11.1 --hash=sha256:0\n"
+    text, _ = pins.wheels(old, {"ipython": "9.99"})
+    assert "ipython==9.99" in asked and "micropip" in asked
+    assert text == f"# Why.\nipython==9.99 --hash=sha256:{7:064x}\nmicropip==0.12 --hash=sha256:{8:064x}\n"
+
+
+def test_what_a_wheel_newly_needs_in_browsers_is_told():
+    needs = ("traitlets>=5", 'pexpect; sys_platform != "emscripten"', 'pytest; extra == "test"', "jupyterlab_widgets")
+    assert list(pins.missing([report("ipython", "9.99", *needs)])) == ["ipython 9.99 needs traitlets"]
+    assert list(pins.missing([report("ipython", "9.99", *needs), report("traitlets", "5.1")])) == []
+
+
+def test_nothing_is_renewed_by_a_newer_python(monkeypatch):
+    monkeypatch.setattr(sys, "version_info", (3, 99, 0, "final", 0))
+    with pytest.raises(SystemExit, match="Python that the book supports, 3.11.*this is 3.99"):
+        pins.main()
+
+
+def test_every_command_that_is_named_exists():
+    """`make renew-pins` was named where requests for newer versions are switched off, and was not there."""
+    targets = set(re.findall(r"^([a-z-]+):", (REPOSITORY / "Makefile").read_text("utf8"), re.M))
+    names = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "Makefile",
+        ".ci/run",
+        ".pre-commit-config.yaml",
+        "appendix/instructors.md",
+    ]
+    for path in [*(REPOSITORY / name for name in names), *(REPOSITORY / ".github").rglob("*.yml")]:
+        for named in re.findall(r"(?:`|run: |\n)make ([a-z-]+)", path.read_text("utf8")):
+            assert named in targets, f"{path.relative_to(REPOSITORY)} names `make {named}`"
