@@ -4,7 +4,8 @@ A student needs ``from coursework import check`` and no more.
 """
 
 from .checking.check import check, hint, progress
+from .checking.variants import me, variant
 
 __version__ = "1.1.0"
 
-__all__ = ["check", "hint", "progress"]
+__all__ = ["check", "hint", "me", "progress", "variant"]

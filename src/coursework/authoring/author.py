@@ -113,8 +113,11 @@ class Question:
 
     def _settle_points(self):
         """Choose the salt, and with it the points, so that the answer lies well inside its cells."""
+        # Each variant has a salt of its own, so that a guess is worth nothing for the others.
+        number = self.public.get("variant", 0)
+        seed = f"{self.name} variant {number}" if number else self.name
         for attempt in range(50):
-            self.public["salt"] = hashlib.sha256(f"{self.name} {attempt}".encode()).hexdigest()[:16]
+            self.public["salt"] = hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16]
             self.public.pop("shift", None)
             try:
                 reading = read(self.public, self.plain)
@@ -283,6 +286,7 @@ def question(
     either_sign=None,
     unit_vector=None,
     mistakes=None,
+    variant=None,
     **rest,
 ):
     """Build a :class:`Question` from what its author wrote.
@@ -295,7 +299,7 @@ def question(
     if kind not in kinds():
         raise AuthorError(f"{name}: the kind {kind!r} is none of {sorted(kinds())}.")
     known, values = kinds()[kind], kinds()[result or kind]
-    public = {"kind": kind}
+    public = {"kind": kind, **(variant or {})}
     if isinstance(symbols, str):
         symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
     symbols = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}

@@ -24,6 +24,8 @@ class Course(NamedTuple):
     package : str
         ``module:function`` that builds the wheel for students into a folder, for a course with a package of its own;
         empty for one that needs nothing but coursework.
+    edition : str
+        Each edition draws the variants of questions afresh: an exam, say, or another year.
     """
 
     root: Path
@@ -33,6 +35,7 @@ class Course(NamedTuple):
     sealed: Path
     archive: Path
     package: str = ""
+    edition: str = ""
 
 
 DEFAULTS = {
@@ -65,11 +68,12 @@ def _read(path):
         said = tomllib.loads(path.read_text("utf8"))
     except ValueError as error:
         raise AuthorError(f"{path}: {error}") from None
-    unknown = sorted(set(said) - {*DEFAULTS, "title", "package"})
+    unknown = sorted(set(said) - {*DEFAULTS, "title", "package", "edition"})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it has texts under the names title, package, {', '.join(DEFAULTS)}, and nothing else"
+            f"{path}: it has texts under the names title, package, edition, {', '.join(DEFAULTS)}, and nothing else"
             + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
-    return Course(path.parent, said.get("title", path.parent.name), package=said.get("package", ""), **places)
+    others = {name: said.get(name, "") for name in ("package", "edition")}
+    return Course(path.parent, said.get("title", path.parent.name), **places, **others)

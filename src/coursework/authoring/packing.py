@@ -27,6 +27,7 @@ DISTRIBUTIONS = {
             "ipython",
             "latex2mathml",
             "markdown-it-py",
+            "matplotlib",  # what students plot with
             "mdit-py-plugins",
             "nbclient",
             "nbformat",
@@ -93,6 +94,9 @@ def archive(course, target=None):
     files |= {path.name: path.read_bytes() for path in course.exercises.glob("*.ipynb")}
     if not course.package:
         files |= {f"sealed/{path.name}": path.read_bytes() for path in course.sealed.glob("*.json")}
+        files |= {
+            f"sealed/variants/{path.name}": path.read_bytes() for path in (course.sealed / "variants").glob("*.json")
+        }
     write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
     return target
 

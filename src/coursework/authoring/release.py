@@ -17,9 +17,12 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from ..checking.plugins import folders_of, packages
 from ..checking.questions import FORMAT
 from .author import AuthorError
+from .selftest import try_question
 from .source import CHAPTERS, answered_in, checked_names, notebooks_in, posed, read_source
+from .variation import drawn_in
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
@@ -37,7 +40,12 @@ def exercise_notebook(source):
     for number, cell in enumerate(source.notebook.cells):
         cell = copy.deepcopy(cell)
         cell.metadata = {}
-        if number in source.figures:
+        varied = drawn_in(cell.source) if cell.cell_type == "code" else None
+        if varied:
+            cells.append(nbformat.v4.new_code_cell(f'{varied[0]} = variant("{varied[1]}")\n{varied[0]}'))
+        elif cell.cell_type == "markdown" and number and drawn_in(source.notebook.cells[number - 1].source):
+            continue  # the text of a question with variants is shown by the cell before
+        elif number in source.figures:
             cells.append(nbformat.v4.new_markdown_cell(_image(source.figures[number])))
         elif cell.cell_type == "markdown":
             cells.append(nbformat.v4.new_markdown_cell(cell.source))
@@ -129,14 +137,40 @@ def sealed_file(source):
     return json.dumps({"format": FORMAT, "questions": questions}, indent=0, sort_keys=True, ensure_ascii=False) + "\n"
 
 
-def _release_one(path, exercises, sealed):
+def _release_one(path, course):
+    """Make a notebook and its sealed questions, and give its name and how many variants its questions have."""
     import nbformat
 
-    source = read_source(path)
-    Path(sealed, f"{source.name}.json").write_text(sealed_file(source), "utf8")
+    source = read_source(path, edition=course.edition)
+    (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
-        nbformat.write(exercise_notebook(source), Path(exercises, f"{source.name}.ipynb"))
-    return source.name
+        nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")
+    return source.name, max((rule.count for rule in source.rules.values()), default=1)
+
+
+def _release_variant(path, number, course):
+    """Solve, try and seal one variant of a notebook's questions.
+
+    What came of it is kept beside the archive, under a name that follows from the source and from our code.
+    """
+    digest = hashlib.sha256(f"{course.edition}\n{number}\n".encode() + path.read_bytes())
+    for folder in [Path(__file__).parents[1], *folders_of(packages())]:
+        for code in sorted(Path(folder).rglob("*.py")):
+            digest.update(code.read_bytes())
+    kept = course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
+    if not kept.exists():
+        source = read_source(path, number, course.edition)
+        for name, question in source.questions.items():
+            faults = try_question(question, against_sealed=False).faults
+            if faults:
+                raise AuthorError(f"{name}, variant {number}, {question.public['given']}: {faults[0]}")
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
+            outdated.unlink()
+        kept.write_text(sealed_file(source), "utf8")
+    target = course.sealed / "variants" / f"{path.stem}-{number}.json"
+    target.parent.mkdir(exist_ok=True)
+    shutil.copyfile(kept, target)
 
 
 def _run_one(path, sealed):
@@ -182,7 +216,18 @@ def release(course, only=(), run=True):
     for folder in (course.exercises, course.sealed):
         folder.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
-        names = list(pool.map(_release_one, paths, [course.exercises] * len(paths), [course.sealed] * len(paths)))
+        made = list(pool.map(_release_one, paths, [course] * len(paths)))
+        names = [name for name, _ in made]
+        variants = [(path, number) for path, (_, count) in zip(paths, made, strict=True) for number in range(1, count)]
+        if variants:
+            list(pool.map(_release_variant, *zip(*variants, strict=True), [course] * len(variants)))
+        for name, count in made:
+            for path in (course.sealed / "variants").glob(f"{name}-*.json"):
+                if (
+                    re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))
+                    and int(path.stem.rpartition("-")[2]) >= count
+                ):
+                    path.unlink()  # this notebook made it when it had more variants
         if run:
             made = [course.exercises / f"{name}.ipynb" for name in names if name != CHAPTERS]
             list(pool.map(_run_one, made, [course.sealed] * len(made)))

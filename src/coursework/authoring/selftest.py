@@ -43,8 +43,8 @@ class Finding(NamedTuple):
     faults: list
 
 
-def try_question(question):
-    """Try one question as students will, right and wrong.
+def try_question(question, against_sealed=True):
+    """Try one question as students will, right and wrong; ``against_sealed``: also with what was released of it.
 
     Answers are compared with what is sealed before the slow hash locks it up: that the locks hold the same is
     shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
@@ -58,7 +58,8 @@ def try_question(question):
     words = kinds()[question.public["kind"]].text or question.public["kind"] == "function"
     if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
         faults.append(f"The right answer was tried in {len(forms)} forms only.")
-    sealed = notebook_questions(question.name.partition("/")[0]).get(question.name)
+    notebook, variant = question.name.partition("/")[0], question.public.get("variant", 0)
+    sealed = notebook_questions(notebook, variant).get(question.name) if against_sealed else None
     if sealed and judge(question.name, sealed, question.plain)[0].outcome != "correct":
         faults.append("The right answer does not open what is sealed: make the release anew.")
     named, unmoved = _try_mistakes(question, faults)

@@ -5,14 +5,17 @@
 
 import ast
 import contextlib
+import itertools
 import re
 import textwrap
 from pathlib import Path
 from typing import NamedTuple
 
 import coursework
+from coursework.checking.variants import Given
 
 from . import author
+from .variation import COUNT, Rule, drawn_in, shown
 
 #: The source whose questions stand inside the chapters: only its sealed file is made.
 CHAPTERS = "chapters"
@@ -28,6 +31,7 @@ class Source(NamedTuple):
     notebook: dict
     questions: dict
     figures: dict
+    rules: dict
 
 
 def notebooks_in(folder):
@@ -47,8 +51,16 @@ def notebooks_in(folder):
     return found
 
 
-def read_source(path):
+def read_source(path, variant=0, edition=""):
     """Run a notebook with solutions and give its questions.
+
+    Parameters
+    ----------
+    path : path
+    variant : int
+        For 0 all questions are given, in their first variant; for another number those that have that variant.
+    edition : str
+        Of a course: each edition draws afresh.
 
     Raises
     ------
@@ -60,6 +72,12 @@ def read_source(path):
     path = Path(path)
     notebook = nbformat.read(path, as_version=4)
     answers, questions, figures = {}, {}, {}
+    rules, given, texts = {}, {}, _texts_of_variants(notebook)
+
+    def draw(name, count=COUNT, where=None, **pools):
+        rules[name] = Rule(name, count, pools, where)
+        given[name] = rules[name].parameters(variant if variant < count else 0, edition)
+        return Given(shown(texts[name], given[name]), given[name])
 
     def record_check(name, answer):
         answers[name] = answer
@@ -71,10 +89,20 @@ def read_source(path):
             raise author.AuthorError(f"{name}: there are two questions of this name.")
         if name.partition("/")[0] != path.stem:
             raise author.AuthorError(f"{name}: a question of this notebook is named '{path.stem}/...'.")
-        questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
+        if name not in rules:
+            if not variant:
+                questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
+        elif variant < rules[name].count:
+            about["variant"] = {
+                "variant": variant,
+                "variants": rules[name].count,
+                "text": shown(texts[name], given[name]),
+                "given": {key: value for key, value in given[name].items() if _is_plain(value)},
+            } | ({"edition": edition} if edition else {})
+            questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
 
-    namespace = {"__name__": "__main__", "question": record_question}
-    with _replaced(coursework, "check", record_check):
+    namespace = {"__name__": "__main__", "question": record_question, "draw": draw}
+    with _replaced(coursework, "check", record_check), _replaced(coursework, "me", lambda identity="": None):
         for number, cell in enumerate(notebook.cells):
             if cell.cell_type != "code":
                 continue
@@ -86,7 +114,7 @@ def read_source(path):
                 raise author.AuthorError(f"{path.name}, cell {number}: {type(error).__name__}: {error}") from error
             if "figure" in cell.metadata.get("tags", []):
                 figures[number] = value
-    unasked = sorted(set(answers) - set(questions))
+    unasked = sorted((set(answers) if not variant else set()) - set(questions))
     if unasked:
         raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
     variables = checked_names(notebook)
@@ -94,7 +122,23 @@ def read_source(path):
         raise author.AuthorError(f"{path.name}: two questions have an answer of the same name.")
     for name, question in questions.items():
         question.variable = variables[name]
-    return Source(path.stem, notebook, questions, figures)
+    return Source(path.stem, notebook, questions, figures, rules)
+
+
+def _texts_of_variants(notebook):
+    """The text of each question with variants, with the places of its parameters: the Markdown below what may vary."""
+    texts = {}
+    for cell, after in itertools.pairwise([*notebook.cells, None]):
+        found = drawn_in(cell.source) if cell.cell_type == "code" else None
+        if found:
+            if after is None or after.cell_type != "markdown":
+                raise author.AuthorError(f"{found[1]}: the text of the question comes next after what may vary in it.")
+            texts[found[1]] = after.source
+    return texts
+
+
+def _is_plain(value):
+    return isinstance(value, (int, float, str)) or isinstance(value, (list, tuple)) and all(map(_is_plain, value))
 
 
 @contextlib.contextmanager

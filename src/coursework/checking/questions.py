@@ -16,6 +16,7 @@ from .mistakes import message
 from .plugins import kind_of_values, sealed_folders
 from .points import TWINS
 from .reply import Reply
+from .variants import own_variant
 
 FORMAT = 1
 
@@ -28,11 +29,15 @@ class NoSuchQuestion(KeyError):
 
 
 @functools.cache
-def notebook_questions(notebook):
-    """The public parts and the lockers of all questions of a notebook, by full name."""
+def notebook_questions(notebook, variant=0):
+    """The public parts and the lockers of the questions of a notebook, by full name.
+
+    Those of variant 0 are all questions; those of another are the questions that have it.
+    """
     if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
         return {}
-    file = next((folder / f"{notebook}.json" for folder in places() if (folder / f"{notebook}.json").is_file()), None)
+    name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
+    file = next((folder / name for folder in places() if (folder / name).is_file()), None)
     if file is None:
         return {}
     data = json.loads(file.read_text("utf8"))
@@ -51,7 +56,7 @@ def places():
 
 
 def find_question(name):
-    """Give a question by its full name.
+    """Give a question by its full name, in the variant of whoever works here.
 
     Raises
     ------
@@ -60,7 +65,8 @@ def find_question(name):
     notebook, _, _ = name.partition("/")
     questions = notebook_questions(notebook)
     if name in questions:
-        return questions[name]
+        number = own_variant(name, questions[name])
+        return notebook_questions(notebook, number)[name] if number else questions[name]
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(

@@ -50,7 +50,7 @@ def update(archive_file, folder="."):
             said.append(f"the same    {name}")
         elif name.startswith(SEALED):
             said.append(f"{'replaced' if place.exists() else 'added':<12}{name}")
-            place.parent.mkdir(exist_ok=True)
+            place.parent.mkdir(parents=True, exist_ok=True)
             place.write_bytes(data)
         elif name in older:
             place.write_bytes(data)
@@ -77,6 +77,8 @@ def update(archive_file, folder="."):
 def _place(entry):
     """Where an entry of the archive goes: sealed questions into a folder of their own, other files into the folder."""
     path = Path(entry)
+    if path.parent.name == "variants":
+        return f"{SEALED}variants/{path.name}"
     return f"{SEALED}{path.name}" if path.parent.name == "sealed" else path.name
 
 

@@ -1,0 +1,130 @@
+"""How the parameters of a question's variants are drawn, by rule, and how its text shows them.
+
+In a source, a cell above the text of a question says what may vary; the text shows a parameter as ``{{force}}``:
+
+.. code-block:: python
+
+    ### BEGIN VARIANTS
+    lever = draw('levers/see-saw', force=[20, 30, 45], arm=[0.2, 0.4, 0.5])
+    ### END VARIANTS
+
+Students get in place of both ``lever = variant('levers/see-saw')``, which shows the text of their own variant.
+"""
+
+import ast
+import hashlib
+import random
+import re
+import textwrap
+from collections.abc import Callable
+from typing import NamedTuple
+
+from .author import AuthorError
+
+VARIANTS = re.compile(r"^[ \t]*### BEGIN VARIANTS\n(.*?)^[ \t]*### END VARIANTS[ \t]*\n?", re.M | re.S)
+#: How many variants a question has if nothing is said.
+COUNT = 16
+#: How often a variant is drawn anew because it is one that there was already, or does not fit.
+MOST_ATTEMPTS = 400
+
+
+class Rule(NamedTuple):
+    """What may vary in a question.
+
+    Attributes
+    ----------
+    count : int
+        How many variants there are.
+    pools : dict
+        For each parameter a list to choose from, or a function of a ``random.Random`` that gives a value.
+    where : function, optional
+        Which choices will do: a function of the dictionary of parameters.
+    """
+
+    name: str
+    count: int
+    pools: dict
+    where: Callable | None = None
+
+    def parameters(self, number, edition=""):
+        """The parameters of a variant. Of the first edition, variant 0 takes the first of each list.
+
+        Raises
+        ------
+        AuthorError
+            There are not as many different variants as were asked for.
+        """
+        found = []
+        for order in range(number + 1):
+            for attempt in range(MOST_ATTEMPTS):
+                drawn = self._draw(
+                    f"{edition}\n{self.name}\n{order}\n{attempt}", first=not (edition or order or attempt)
+                )
+                if drawn not in found and (self.where is None or self.where(drawn)):
+                    found.append(drawn)
+                    break
+            else:
+                raise AuthorError(
+                    f"{self.name}: after {MOST_ATTEMPTS} attempts there are {order} different variants; {self.count} "
+                    "are wanted. Give longer lists, or a smaller count."
+                )
+        return found[number]
+
+    def _draw(self, seed, first):
+        chance = random.Random(int.from_bytes(hashlib.sha256(seed.encode()).digest()))
+        drawn = {}
+        for name, pool in self.pools.items():
+            if callable(pool):
+                drawn[name] = pool(chance)
+            else:
+                pool = list(pool)
+                drawn[name] = pool[0 if first else int(chance.random() * len(pool))]
+        return drawn
+
+
+def shown(text, parameters):
+    """The text of a question with its parameters in their places.
+
+    >>> shown("A force of {{force}} N", {"force": 20})
+    'A force of 20 N'
+    """
+    for name, value in parameters.items():
+        text = text.replace(f"{{{{{name}}}}}", _written(value))
+    return text
+
+
+def _written(value):
+    if hasattr(value, "free_symbols"):
+        import sympy
+
+        return sympy.latex(value)
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(_written, value))
+    return str(value)
+
+
+def drawn_in(text):
+    """The variable and the question of a cell that says what may vary, or ``None``.
+
+    Raises
+    ------
+    AuthorError
+        The cell is not one assignment of a call of ``draw``.
+    """
+    region = VARIANTS.search(text)
+    if region is None:
+        return None
+    body = ast.parse(textwrap.dedent(region[1])).body
+    calls = [
+        (statement.targets[0].id, statement.value.args[0].value)
+        for statement in body
+        if isinstance(statement, ast.Assign)
+        and isinstance(statement.value, ast.Call)
+        and getattr(statement.value.func, "id", "") == "draw"
+    ]
+    if len(calls) != 1:
+        raise AuthorError(
+            f"Between the marks for variants stands one `name = draw(...)`; here are {len(calls)}:\n"
+            f"{region[1]}"
+        )
+    return calls[0]

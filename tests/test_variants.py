@@ -1,0 +1,177 @@
+"""Variants of a question: drawn by rule, sealed one by one, and each student's own found without a server."""
+
+import collections
+import json
+import shutil
+import zipfile
+
+import nbformat
+import pytest
+import sympy
+from test_release import made_in, write_source
+
+import coursework
+from coursework.authoring.author import AuthorError
+from coursework.authoring.packing import archive
+from coursework.authoring.release import release
+from coursework.authoring.source import read_source
+from coursework.authoring.variation import Rule, drawn_in, shown
+from coursework.checking import questions, variants
+
+NAME = "levers/see-saw"
+TEXT = "## See-saw\n\nA force of ${{force}}$ N acts ${{arm}}$ m from the hinge. Give its moment as `moment`, in N m."
+SOLVED = "### BEGIN SOLUTION\nmoment = lever.force * lever.arm\n### END SOLUTION"
+DRAWN = (
+    "### BEGIN VARIANTS\nlever = draw('levers/see-saw', count=6, force=[20, 30, 45, 65], arm=[2, 3, 7])\n"
+    "### END VARIANTS"
+)
+CHECKED = (
+    "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\nquestion('levers/see-saw', kind='expression', "
+    "mistakes={'Force and arm are multiplied, not added.': lever.force + lever.arm}, "
+    "solution=f'It is ${lever.force} \\\\cdot {lever.arm}$.')\n### END HIDDEN TESTS"
+)
+CELLS = [
+    ("markdown", "# Levers"),
+    ("code", "from coursework import check, me, variant\nme('')"),
+    ("code", DRAWN),
+    ("markdown", TEXT),
+    ("code", SOLVED),
+    ("code", CHECKED),
+    ("markdown", "## Plain"),
+    ("code", "### BEGIN SOLUTION\nplain = 7\n### END SOLUTION"),
+    (
+        "code",
+        "check('levers/plain', plain)\n### BEGIN HIDDEN TESTS\nquestion('levers/plain', kind='expression')\n"
+        "### END HIDDEN TESTS",
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    made = made_in(tmp_path_factory.mktemp("levers"))
+    write_source(made.sources, *CELLS, name="levers")
+    release(made, run=False)
+    return made
+
+
+@pytest.fixture
+def beside(course, monkeypatch, tmp_path):
+    """Work in a folder with the sealed questions of the course beside it."""
+    (tmp_path / "sealed").symlink_to(course.sealed)
+    monkeypatch.chdir(tmp_path)
+    questions.notebook_questions.cache_clear()
+    yield
+    coursework.me("")
+    questions.notebook_questions.cache_clear()
+
+
+def student_with(number):
+    return next(
+        f"{k}@uni.example" for k in range(999) if variants.variant_of(f"{k}@uni.example", "levers/see-saw", 6) == number
+    )
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number):
+    coursework.me(student_with(number) if number else "")
+    lever = coursework.variant("levers/see-saw")
+    assert repr(lever) == f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. " + (
+        "Give its moment as moment, in N m."
+    )
+    assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
+    assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
+    assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
+    for other in range(6):
+        given = read_source(course.sources / "levers.ipynb", other).questions["levers/see-saw"].public["given"]
+        right = given["force"] * given["arm"] == lever.force * lever.arm
+        outcome = coursework.check("levers/see-saw", given["force"] * given["arm"]).outcome
+        assert (outcome == "correct") == right
+
+
+def test_the_exercise_notebook_shows_the_variant_and_hides_the_rule(course):
+    notebook = nbformat.read(course.exercises / "levers.ipynb", as_version=4)
+    sources = [cell.source for cell in notebook.cells]
+    assert sources[2] == 'lever = variant("levers/see-saw")\nlever' and sources[3].startswith("moment = ...")
+    assert "draw" not in "".join(sources) and "{{" not in "".join(sources)
+
+
+def test_variants_are_different_fair_and_of_the_students_own(course):
+    numbers = collections.Counter(variants.variant_of(f"student-{k}", "a/b", 16) for k in range(4000))
+    assert set(numbers) == set(range(16)) and min(numbers.values()) > 180
+    same = [
+        variants.variant_of(f"student-{k}", "a/b", 16) == variants.variant_of(f"student-{k}", "a/c", 16)
+        for k in range(2000)
+    ]
+    assert 60 < sum(same) < 200  # one in 16: what one question gives tells nothing of the next
+    drawn = [json.dumps(Rule("a/b", 12, {"x": range(3), "y": range(4)}).parameters(number)) for number in range(12)]
+    assert len(set(drawn)) == 12 and drawn[0] == '{"x": 0, "y": 0}'
+
+
+def test_the_grader_finds_the_same_variant_from_the_roster():
+    for spelling in ("ada@uni.example", " Ada@Uni.example", "ADA@UNI.EXAMPLE\n"):
+        assert variants.variant_of(spelling, "levers/see-saw", 16) == variants.variant_of(
+            "ada@uni.example", "levers/see-saw", 16
+        )
+
+
+def test_an_edition_draws_afresh():
+    rule = Rule("a/b", 4, {"x": range(1000), "y": lambda chance: chance.randint(0, 10**6)})
+    first, exam = ([rule.parameters(number, edition) for number in range(4)] for edition in ("", "exam"))
+    assert not [one for one in first if one in exam]
+    assert first == [rule.parameters(number) for number in range(4)]
+
+
+def test_salts_differ_so_that_a_guess_serves_one_variant(course):
+    salts = [
+        read_source(course.sources / "levers.ipynb", k).questions["levers/see-saw"].public["salt"] for k in range(6)
+    ]
+    assert len(set(salts)) == 6
+
+
+def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(course, tmp_path):
+    with zipfile.ZipFile(archive(course)) as box:
+        names = {name for name in box.namelist() if "/variants/" in name}
+    assert names == {f"exercises/sealed/variants/levers-{k}.json" for k in range(1, 6)}
+    shutil.copytree(course.root, tmp_path / "again")
+    again = made_in(tmp_path / "again")
+    (again.sealed / "variants" / "levers-extra-5.json").write_text("of another notebook")
+    write_source(
+        again.sources, *((kind, text.replace("count=6", "count=3")) for kind, text, *_ in CELLS), name="levers"
+    )
+    release(again, run=False)
+    assert sorted(path.name for path in (again.sealed / "variants").iterdir()) == [
+        "levers-1.json",
+        "levers-2.json",
+        "levers-extra-5.json",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("count=6", "count=13", "there are 12 different variants; 13 are wanted"),
+        ("lever = draw", "draw", "stands one `name = draw"),
+    ],
+)
+def test_an_author_is_told(tmp_path, old, new, says):
+    path = write_source(tmp_path, *((kind, text.replace(old, new)) for kind, text, *_ in CELLS), name="levers")
+    with pytest.raises(AuthorError, match=says):
+        read_source(path, 12)
+
+
+def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
+    """Of 2 N at 2 m the sum is the product: one variant in which a mistake gives the right answer."""
+    made = made_in(tmp_path)
+    drawn = DRAWN.replace("20, 30, 45, 65", "3, 2").replace("2, 3, 7", "3, 2").replace("count=6", "count=4")
+    write_source(made.sources, *((kind, drawn if text == DRAWN else text) for kind, text, *_ in CELLS), name="levers")
+    with pytest.raises(AuthorError, match=r"levers/see-saw, variant \d, {'force': 2, 'arm': 2}: This authored mistake"):
+        release(made, run=False)
+
+
+def test_parameters_are_shown_in_a_text():
+    x = sympy.Symbol("x")
+    assert shown("{{a}} and ${{b}}$, {{c}}; {{d}}", {"a": "up", "b": x**2 / 3, "c": [1, 2]}) == (
+        r"up and $\frac{x^{2}}{3}$, 1, 2; {{d}}"
+    )
+    assert drawn_in("x = 1") is None and drawn_in(DRAWN) == ("lever", "levers/see-saw")
