@@ -14,18 +14,20 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve check test test-all times take-away notebooks release renew-pins benchmark clean
+.PHONY: help setup book serve new-chapter new-question check test test-all times take-away notebooks release renew-pins benchmark clean
 
 help:
 	@echo "make book       build the site into _build/html"
 	@echo "make serve      build it, serve it on a local address and print that"
 	@echo "make take-away  build it with the whole book as a PDF and as a zip to read offline"
+	@echo "make new-chapter NAME=belt-trick TITLE='The belt trick'   a chapter with all its parts"
+	@echo "make new-question NAME=belt-trick/twist TITLE='A twist' KIND='quaternion'   a question for it"
 	@echo "make check      style, types, pins and links (a minute at most, no browser)"
 	@echo "make test       try every part of the book and its software (minutes)"
 	@echo "make test-all   run every test, as continuous integration does"
 	@echo "make times      the same, and write down what each part costs in tests/TIMES.md"
 	@echo "make notebooks  run every notebook and store it with its outputs"
-	@echo "make release    make the exercises from the notebooks with solutions, and try them"
+	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"
 	@echo "make renew-pins newest versions of all that is installed"
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
@@ -75,8 +77,17 @@ serve: book
 take-away: $(VENV)/ready-print book
 	@$(RUN) -m website.whole_book
 
+# What an author begins with. AFTER names the chapter that the new one follows; it is released, so that the book builds.
+new-chapter: $(VENV)/ready-release setup
+	@$(RUN) -m website.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
+	@$(RUN) -m coursework release "$(NAME)" chapters
+
+new-question: setup
+	@$(RUN) -m website.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
+
 check: $(VENV)/ready-test book
-	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_site.py::test_links_lead_somewhere
+	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_chapters.py \
+	  tests/test_site.py::test_links_lead_somewhere
 
 # As many tests side by side as there are cores. What takes long and rarely breaks is left to `make test-all`.
 test: $(VENV)/ready-test book
@@ -95,7 +106,7 @@ notebooks: setup
 	@$(RUN) -m website.notebooks
 
 release: $(VENV)/ready-release setup
-	@$(RUN) -m coursework release
+	@$(RUN) -m coursework release $(ONLY)
 	@$(RUN) -m coursework selftest
 
 renew-pins: setup

@@ -28,8 +28,9 @@ WHEELS = [REPOSITORY / "src" / "website" / place / "wheels.txt" for place in ("l
 PACKAGE, LOCK = REPOSITORY / "package.json", REPOSITORY / "package-lock.json"
 #: Packages of npm that stay as they are, and why.
 HELD = {"codemirror": "later numbers hold an older editor, published by mistake"}
-#: For wheels that run in browsers, as the Makefile fetches them.
+#: For wheels that run in browsers, as the Makefile fetches them. The Python that matters is not the one that asks.
 IN_BROWSERS = ("--python-version", "3.14", "--platform", "any", "--implementation", "py", "--abi", "none")
+IN_BROWSERS += ("--ignore-requires-python",)
 #: What wheels for browsers ask for and do not get: front ends, which JupyterLite brings itself.
 NOT_IN_BROWSERS = {"jupyterlab-widgets", "widgetsnbextension"}
 
@@ -72,7 +73,9 @@ def constraints():
 
 def wheels(old, versions):
     """The new text of a list of wheels for browsers, whose old text is ``old``, and what pip reports of each."""
-    wanted = [f"{name}=={versions[name]}" if name in versions else name for name in pins(old)]
+    wanted = [
+        f"{name}=={versions[name]}" if name in versions else f"{name}>={version}" for name, version in pins(old).items()
+    ]
     with tempfile.TemporaryDirectory() as folder:
         reports = resolve("--no-deps", *IN_BROWSERS, "--target", folder, *wanted)
     found = {canonicalize_name(one["metadata"]["name"]): one for one in reports}

@@ -1,0 +1,153 @@
+"""Every chapter has its parts; what is forgotten is told by file, line and cell; what is new has all of them."""
+
+import re
+import shutil
+import subprocess
+import sys
+
+import nbformat
+import pytest
+from conftest import REPOSITORY
+
+from coursework.authoring.source import read_source
+from coursework.checking.plugins import kinds
+from website import chapters, new
+
+
+@pytest.fixture
+def book(tmp_path, monkeypatch):
+    """The texts of the book, in a folder of their own."""
+    for name in ("chapters", "appendix", "exercises", "tests/solutions"):
+        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns(".*"))
+    shutil.copy(REPOSITORY / "_toc.yml", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_every_chapter_has_its_parts(monkeypatch):
+    monkeypatch.chdir(REPOSITORY)
+    assert list(chapters.faults()) == []
+
+
+FORGOTTEN = {
+    "objectives": (
+        "chapters/gimbal-lock.ipynb",
+        ":class: objectives",
+        "",
+        r"chapters/gimbal-lock.ipynb:1 \(cell 1\): no objectives",
+    ),
+    "summary": (
+        "chapters/gimbal-lock.ipynb",
+        ":class: summary",
+        "",
+        r"chapters/gimbal-lock.ipynb:\d+ \(cell 29\): no summary",
+    ),
+    "label": ("chapters/gimbal-lock.ipynb", "(chapter-gimbal-lock)=", "(gimbal)=", r"gimbal-lock.ipynb:1 \(cell 1\)"),
+    "solution": (
+        "appendix/solutions.ipynb",
+        "{solution-start} exercise-scalar-last",
+        "{solution-start} exercise-scalar",
+        r"chapters/unit-quaternions.ipynb:\d+ \(cell 27\): exercise-scalar-last has no",
+    ),
+    "sealed question": (
+        "tests/solutions/chapters.ipynb",
+        "question('chapters/scalar-last'",
+        "question('chapters/scalar'",
+        r"chapters/unit-quaternions.ipynb:\d+ \(cell 28\): chapters/scalar-last is no question of",
+    ),
+    "place among the chapters": (
+        "_toc.yml",
+        "      - file: chapters/gimbal-lock\n",
+        "",
+        r"_toc.yml:\d+: the chapter chapters/gimbal-lock.ipynb is not in",
+    ),
+    "place among the exercises": (
+        "_toc.yml",
+        "      - file: exercises/gimbal-lock\n",
+        "",
+        r"_toc.yml:\d+: exercises/gimbal-lock is not in",
+    ),
+    "page": (
+        "_toc.yml",
+        "- file: chapters/gimbal-lock",
+        "- file: chapters/gimbal-lok",
+        r"_toc.yml:\d+: there is no page chapters/gimbal-lok$",
+    ),
+    "line of the index": ("exercises/index.md", "- {doc}`gimbal-lock`\n", "", r"exercises/index.md:\d+: .*gimbal-lock"),
+    "sentence": (
+        "chapters/gimbal-lock.ipynb",
+        "# Gimbal lock",
+        "# TO BE WRITTEN",
+        r"chapters/gimbal-lock.ipynb:2 \(cell 1\): # TO BE WRITTEN",
+    ),
+}
+
+
+@pytest.mark.parametrize("part", FORGOTTEN)
+def test_what_is_forgotten_is_told_by_its_place(book, part):
+    path, old, other, says = FORGOTTEN[part]
+    text = (book / path).read_text("utf8")
+    assert old in text
+    (book / path).write_text(text.replace(old, other), "utf8")
+    told = list(chapters.faults())
+    assert any(re.search(says, fault) for fault in told), told
+
+
+def test_a_notebook_of_exercises_that_is_not_there(book):
+    (book / "tests/solutions/gimbal-lock.ipynb").unlink()
+    (book / "exercises/gimbal-lock.ipynb").unlink()
+    told = "\n".join(chapters.faults())
+    assert "its exercises are missing, tests/solutions/gimbal-lock.ipynb" in told
+    assert re.search(r"_toc.yml:\d+: there is no page exercises/gimbal-lock; `make release` makes it", told)
+
+
+def make(*arguments):
+    return subprocess.run([sys.executable, "-m", "website.new", *arguments], capture_output=True, text=True)
+
+
+def test_a_new_chapter_has_all_its_parts(book):
+    done = make("chapter", "belt-trick", "The belt trick", "--after", "quaternions-in-full")
+    assert done.returncode == 0, done.stderr
+    shutil.copy("tests/solutions/belt-trick.ipynb", "exercises")  # as a release would put it there
+    told = list(chapters.faults())
+    assert told and all("TO BE WRITTEN" in fault for fault in told), told
+    pages = re.findall(r"file: (\S+)", (book / "_toc.yml").read_text("utf8"))
+    for folder in ("chapters", "exercises"):
+        place = pages.index(f"{folder}/belt-trick")
+        assert pages[place - 1] == f"{folder}/quaternions-in-full"
+    for cell in nbformat.read("chapters/belt-trick.ipynb", as_version=4).cells:
+        if "check(" not in cell.source and cell.cell_type == "code":
+            exec(cell.source, {})
+    again = make("chapter", "belt-trick", "The belt trick")
+    assert again.returncode != 0 and "there already; nothing was changed" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("chapter", "Belt trick", "The belt trick"), "NAME in small letters and hyphens"),
+        (("chapter", "belt-trick", ""), "a TITLE"),
+        (("chapter", "belt-trick", "The belt trick", "--after", "gimbals"), "no chapter 'gimbals'; it has"),
+        (("question", "gimbal-lock", ""), "is CHAPTER/QUESTION"),
+        (("question", "belt-trick/twist", ""), "`make new-chapter NAME=belt-trick"),
+        (("question", "gimbal-lock/twist", "", "--kind", "riddle"), "no KIND of question 'riddle'; there are expr"),
+    ],
+)
+def test_what_cannot_be_made_is_told_and_nothing_changed(book, capsys, monkeypatch, arguments, says):
+    before = {path: path.read_bytes() for path in book.rglob("*") if path.is_file()}
+    monkeypatch.setattr(sys, "argv", ["new", *arguments])
+    with pytest.raises(SystemExit, match=says):
+        new.main()
+    assert {path: path.read_bytes() for path in book.rglob("*") if path.is_file()} == before
+
+
+def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
+    assert set(new.EXAMPLES) == set(kinds())
+    path = book / "tests" / "solutions" / "trial.ipynb"
+    notebook = nbformat.v4.new_notebook(cells=[new.code("import sympy as sm\n\nfrom coursework import check")])
+    nbformat.write(notebook, path)
+    for kind in new.EXAMPLES:
+        new.new_question(f"trial/{kind.replace(' ', '-').lower()}", "", kind)
+    assert len(read_source(path).questions) == len(new.EXAMPLES)
+    with pytest.raises(SystemExit, match="has a question trial/words already"):
+        new.new_question("trial/words", "", "words")
