@@ -4,24 +4,30 @@ import numpy as np
 import pytest
 import sympy as sm
 import sympy.physics.mechanics as me
+from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation, Slerp
 
 from orientation import (
     SEQUENCES,
     SymbolsNotPossible,
+    angle_between,
+    angular_velocity_from_dcm_rate,
     angular_velocity_matrix,
     dcm_from_body_fixed,
     dcm_from_quaternion,
     dcm_from_rotation_vector,
     dcm_from_scipy_rotation,
     dcm_rate,
+    dcms_after_turns,
     gimbal_lock_margin,
     interpolate_quaternions,
     quaternion_from_dcm,
     quaternion_rate,
     rotation_vector_from_dcm,
+    rotation_vector_rate,
     same_orientation,
     simple_dcm,
+    turns_from_angular_velocity,
 )
 
 RANDOM = np.random.default_rng(11)
@@ -120,3 +126,142 @@ def test_slerp_refuses_what_has_no_answer():
         interpolate_quaternions((1, 0, 0, 0), (2, 0, 0, 0), 0.5)
     with pytest.raises(SymbolsNotPossible):
         interpolate_quaternions(sm.symbols("a:4"), (1, 0, 0, 0), 0.5)
+
+
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_the_rate_of_the_matrix_defines_the_angular_velocity(sequence):
+    """Against SymPy's own, by differentiating our matrix of functions of time."""
+    angles = me.dynamicsymbols("psi, theta, varphi")
+    t = me.dynamicsymbols._t
+    A, D = me.ReferenceFrame("A"), me.ReferenceFrame("D")
+    D.orient_body_fixed(A, angles, sequence)
+    C = dcm_from_body_fixed(angles, sequence)
+    ours, theirs = angular_velocity_from_dcm_rate(C, C.diff(t)), D.ang_vel_in(A).to_matrix(D)
+    numbers = {angle.diff(t): value for angle, value in zip(angles, (0.3, -1.1, 0.7))}
+    numbers |= dict(zip(angles, (0.4, 0.9, -2.1)))
+    assert np.allclose(np.array((ours - theirs).subs(numbers), dtype=float), 0, atol=1e-14)
+
+
+def test_angular_velocity_undoes_the_rate_of_the_matrix():
+    dcms = dcm_from_quaternion(random_quaternions(50))
+    omegas = RANDOM.normal(size=(50, 3))
+    assert np.allclose(angular_velocity_from_dcm_rate(dcms, dcm_rate(dcms, omegas)), omegas, atol=1e-14)
+    # What is symmetric in the product is no turning: the skew part is taken.
+    stretch = np.diag([0.1, 0.2, 0.3]) @ dcms[0]
+    assert np.allclose(angular_velocity_from_dcm_rate(dcms[0], dcm_rate(dcms[0], omegas[0]) + stretch), omegas[0])
+    with pytest.raises(ValueError, match="not orthogonal"):
+        angular_velocity_from_dcm_rate(2 * np.eye(3), np.zeros((3, 3)))
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e-6, 1e-3, 0.05, 1, 3, 4.5, 6.2])
+def test_rotation_vector_rate_against_differences(size):
+    """The matrix of r + h dr/dt must move as the angular velocity says, beyond half a turn as well."""
+    h = 1e-6
+    for _ in range(20):
+        vector = RANDOM.normal(size=3)
+        vector *= size / np.linalg.norm(vector)
+        omega = RANDOM.normal(size=3)
+        rate = rotation_vector_rate(vector, omega)
+        h_here = h / max(1, np.linalg.norm(rate))
+        ahead, behind = (dcm_from_rotation_vector(vector + sign * h_here * rate) for sign in (1, -1))
+        assert np.allclose(
+            (ahead - behind) / (2 * h_here), dcm_rate(dcm_from_rotation_vector(vector), omega), atol=2e-9
+        )
+
+
+def test_rotation_vector_rate_at_rest_of_symbols_and_at_a_whole_turn():
+    assert (rotation_vector_rate((0.0, 0, 0), (1.0, 2, 3)) == [1, 2, 3]).all()
+    assert rotation_vector_rate(np.zeros((4, 3)), (1.0, 2, 3)).shape == (4, 3)
+    symbols = sm.symbols("r_x:z, omega_x:z")
+    ours = rotation_vector_rate(symbols[:3], symbols[3:]).subs(dict(zip(symbols, (0.1, 0.7, -0.4, 1, 2, 3))))
+    assert np.allclose(np.array(ours, dtype=float).ravel(), rotation_vector_rate((0.1, 0.7, -0.4), (1, 2, 3)))
+    near = rotation_vector_rate((0, 0, 2 * np.pi - 1e-4), (1.0, 0, 0))
+    assert np.linalg.norm(near) > 1e4, "it grows without bound"
+    with pytest.raises(ValueError, match="whole turn"):
+        rotation_vector_rate((0, 0, 2 * np.pi), (1.0, 0, 0))
+
+
+def tumbling(t):
+    """An angular velocity that changes its size and its direction."""
+    return np.stack([2 * np.sin(3 * t), 1 + np.cos(2 * t), 1.5 * np.sin(t + 1)], axis=-1)
+
+
+@pytest.fixture(scope="module")
+def tumbled():
+    """What SciPy's integrator of eighth order makes of the nine equations of the matrix."""
+    solution = solve_ivp(
+        lambda t, c: dcm_rate(c.reshape(3, 3), tumbling(t)).ravel(),
+        (0, 4),
+        np.eye(3).ravel(),
+        "DOP853",
+        rtol=1e-13,
+        atol=1e-14,
+    )
+    return solution.y[:, -1].reshape(3, 3)
+
+
+@pytest.mark.parametrize("order", (1, 2, 4))
+def test_exponential_steps_have_their_order_and_stay_valid(order, tumbled):
+    errors = []
+    for count in (100, 200):
+        dcms = dcms_after_turns(np.eye(3), turns_from_angular_velocity(tumbling, np.linspace(0, 4, count + 1), order))
+        assert dcms.shape == (count + 1, 3, 3)
+        assert abs(dcms[-1] @ dcms[-1].T - np.eye(3)).max() < 1e-13
+        excess = dcms[-1] - tumbled
+        errors.append(np.linalg.norm(excess))
+    assert abs(np.log2(errors[0] / errors[1]) - order) < 0.1
+    assert errors[1] < {1: 0.1, 2: 1e-3, 4: 1e-6}[order]
+
+
+def test_the_fourth_order_needs_its_cross_product(tumbled):
+    """Without it, or with the other sign, the order falls to two: a mutant that must be seen."""
+    times = np.linspace(0, 4, 201)
+    turns = turns_from_angular_velocity(tumbling, times)
+    h, node = times[1], 3**0.5 / 6
+    first, second = (tumbling(times[:-1] + (0.5 + side * node) * h) for side in (-1, 1))
+    plain = h / 2 * (first + second)
+    for mutant in (plain, 2 * plain - turns):
+        assert np.linalg.norm(dcms_after_turns(np.eye(3), mutant)[-1] - tumbled) > 1e-4
+
+
+def test_a_constant_angular_velocity_is_integrated_exactly_by_one_step():
+    omega = np.array([0.3, -2.0, 1.0])
+    for order in (1, 2, 4):
+        turns = turns_from_angular_velocity(lambda t: omega, [0, 1.7], order)
+        assert np.allclose(turns, [1.7 * omega], atol=1e-15)
+
+
+def test_steps_refuse_what_they_cannot_read():
+    with pytest.raises(ValueError, match="order is 3"):
+        turns_from_angular_velocity(tumbling, [0, 1], 3)
+    with pytest.raises(ValueError, match=r"shape \(2,\)|shape \(3, 1\)"):
+        turns_from_angular_velocity(lambda t: np.ones((len(t), 1)), [0, 1, 2, 3])
+    with pytest.raises(ValueError, match="for 3 times"):
+        turns_from_angular_velocity(lambda t: np.ones((5, 3)), [0, 1, 2, 3])
+    with pytest.raises(ValueError, match="ends of one interval"):
+        turns_from_angular_velocity(tumbling, [0])
+    with pytest.raises(ValueError, match="not orthogonal"):
+        dcms_after_turns(2 * np.eye(3), np.zeros((1, 3)))
+    with pytest.raises(ValueError, match="turns has shape"):
+        dcms_after_turns(np.eye(3), (0, 0, 1))
+
+
+def test_restoring_the_matrix_leaves_the_error_of_the_orientation_as_it_is():
+    """The nearest valid matrix of a Runge-Kutta run is as wrong as that of a run restored at every step."""
+    from orientation import nearest_dcm
+
+    h, count = 0.02, 200
+    plain = restored = np.eye(3)
+    for k in range(count):
+
+        def step(c):
+            t = k * h
+            a = dcm_rate(c, tumbling(t))
+            b = dcm_rate(c + h / 2 * a, tumbling(t + h / 2))
+            d = dcm_rate(c + h / 2 * b, tumbling(t + h / 2))
+            return c + h / 6 * (a + 2 * b + 2 * d + dcm_rate(c + h * d, tumbling(t + h)))
+
+        plain, restored = step(plain), nearest_dcm(step(restored)).dcm
+    truth = dcms_after_turns(np.eye(3), turns_from_angular_velocity(tumbling, np.linspace(0, 4, 4001)))[-1]
+    errors = [angle_between(nearest_dcm(plain).dcm, truth), angle_between(restored, truth)]
+    assert errors[0] > 1e-8 and abs(errors[0] / errors[1] - 1) < 1e-4

@@ -6,7 +6,7 @@ along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in r
 
 from ._numbers_and_symbols import evaluate
 from ._types import Result, Values
-from .direction_cosines import AXES
+from .direction_cosines import AXES, DCM_GUARD
 from .euler_angles import layout_of
 
 
@@ -67,6 +67,59 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
         return entries
 
     return evaluate(formula, (3, 3), ("angles", angles, (3,)))
+
+
+def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Result:
+    r"""Angular velocity of a direction cosine matrix that changes.
+
+    This is how the angular velocity is defined: :math:`\dot{\mathbf{C}}\mathbf{C}^T` is skew, because
+    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and
+
+    .. math::
+
+       [\boldsymbol{\omega}]_\times = -\,\frac{d\,{}^A\mathbf{C}^N}{dt}\left({}^A\mathbf{C}^N\right)^T .
+
+    Parameters
+    ----------
+    dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`.
+    rate : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        Its time derivative, per second. If numbers of both are measured, the product is not quite skew, and
+        its skew part is taken.
+
+    Returns
+    -------
+    SymPy column of three, array of shape ``(3,)`` or ``(..., 3)``
+        Components along :math:`A`, radians per second.
+
+    Raises
+    ------
+    ValueError
+        If a matrix of numbers is not a direction cosine matrix.
+
+    Examples
+    --------
+    >>> import sympy as sm
+    >>> from orientation import angular_velocity_from_dcm_rate, simple_dcm
+    >>> t = sm.Symbol('t')
+    >>> C = simple_dcm('z', 3*t)
+    >>> sm.simplify(angular_velocity_from_dcm_rate(C, C.diff(t))).T
+    Matrix([[0, 0, 3]])
+
+    Notes
+    -----
+    Source: Hughes (1986).
+    """
+
+    def formula(f, *entries):
+        rows, rates = [entries[k : k + 3] for k in (0, 3, 6)], [entries[k : k + 3] for k in (9, 12, 15)]
+
+        def product(i, j):
+            return sum(a * b for a, b in zip(rates[i], rows[j]))
+
+        return [(product(i, j) - product(j, i)) / 2 for i, j in ((1, 2), (2, 0), (0, 1))]
+
+    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), ("rate", rate, (3, 3)), guard=DCM_GUARD)
 
 
 def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
@@ -152,3 +205,77 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
         )
 
     return evaluate(formula, (4,), ("quaternion", quaternion, (4,)), ("angular_velocity", angular_velocity, (3,)))
+
+
+def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Result:
+    r"""Time derivative of a rotation vector: Bortz's equation.
+
+    With :math:`\theta = |\mathbf{r}|`,
+
+    .. math::
+
+       \dot{\mathbf{r}} = \boldsymbol{\omega} + \tfrac{1}{2}\,\mathbf{r}\times\boldsymbol{\omega}
+       + \frac{1 - \frac{\theta}{2}\cot\frac{\theta}{2}}{\theta^2}\,
+       \mathbf{r}\times(\mathbf{r}\times\boldsymbol{\omega}) .
+
+    The last factor is :math:`\frac{1}{12}` at rest and grows without bound towards a whole turn,
+    :math:`\theta = 2\pi`, where this description is singular.
+
+    Parameters
+    ----------
+    vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
+        Rotation vector of :math:`A` in :math:`N`, radians.
+    angular_velocity : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
+        Components along :math:`A`, radians per second.
+
+    Returns
+    -------
+    SymPy column of three, array of shape ``(3,)`` or ``(..., 3)``
+
+    Raises
+    ------
+    ValueError
+        If numbers are a whole turn, or several, where there is no such rate.
+
+    Examples
+    --------
+    >>> from orientation import rotation_vector_rate
+    >>> rotation_vector_rate((0.3, 0, 0), (2.0, 0, 0)).tolist()  # about the same axis it just grows
+    [2.0, 0.0, 0.0]
+
+    Notes
+    -----
+    Source: Bortz (1971).
+    """
+
+    def excess(f, x, y, z):
+        angle = f.norm(x, y, z)
+        return f.where(angle > 1, f.where(abs(f.sin(angle / 2)) < 1e-9, 1, 0), 0)
+
+    def explain(components, where):
+        raise ValueError(
+            f"vector{where} is {components}, a whole turn: there the rate of a rotation vector is not "
+            f"defined. Keep it below half a turn, by taking a whole turn off, or use a quaternion"
+        )
+
+    def formula(f, x, y, z, p, q, r):
+        angle = f.norm(x, y, z)
+        turning = angle > 0
+        length = f.where(turning, angle, 1.0)
+        half = length / 2
+        # The digits that the difference loses at small angles are multiplied by squares of small numbers.
+        factor = f.where(turning, (1 - half * f.cos(half) / f.sin(half)) / length / length, 0.0)
+        a, b, c = y * r - z * q, z * p - x * r, x * q - y * p
+        return (
+            p + a / 2 + factor * (y * c - z * b),
+            q + b / 2 + factor * (z * a - x * c),
+            r + c / 2 + factor * (x * b - y * a),
+        )
+
+    return evaluate(
+        formula,
+        (3,),
+        ("vector", vector, (3,)),
+        ("angular_velocity", angular_velocity, (3,)),
+        guard=(3, excess, explain),
+    )

@@ -72,21 +72,23 @@ def dcm_from_quaternion(quaternion: Values) -> Result:
     Source: Shuster (1993), Moore (2022).
     """
 
-    def formula(f, scalar, x, y, z):
-        ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
-        return (
-            ss + xx - yy - zz,
-            2 * (x * y + scalar * z),
-            2 * (x * z - scalar * y),
-            2 * (x * y - scalar * z),
-            ss - xx + yy - zz,
-            2 * (y * z + scalar * x),
-            2 * (x * z + scalar * y),
-            2 * (y * z - scalar * x),
-            ss - xx - yy + zz,
-        )
+    return evaluate(dcm_components_from_quaternion, (3, 3), ("quaternion", quaternion, (4,)), guard=QUATERNION_GUARD)
 
-    return evaluate(formula, (3, 3), ("quaternion", quaternion, (4,)), guard=QUATERNION_GUARD)
+
+def dcm_components_from_quaternion(f, scalar, x, y, z):
+    """Formula of :func:`dcm_from_quaternion`, shared with the Rodrigues parameters."""
+    ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
+    return (
+        ss + xx - yy - zz,
+        2 * (x * y + scalar * z),
+        2 * (x * z - scalar * y),
+        2 * (x * y - scalar * z),
+        ss - xx + yy - zz,
+        2 * (y * z + scalar * x),
+        2 * (x * z + scalar * y),
+        2 * (y * z - scalar * x),
+        ss - xx - yy + zz,
+    )
 
 
 def quaternion_components_from_dcm(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):

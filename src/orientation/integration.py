@@ -1,0 +1,131 @@
+"""From an angular velocity to the orientations it leads through, by exponential steps.
+
+Every step is a turn, so what comes out is a direction cosine matrix however long the steps are; only whether
+it is the right one depends on them.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from ._numbers_and_symbols import number_array
+from ._types import Result, Values
+from .direction_cosines import check_dcm
+from .rotation_vector import dcm_from_rotation_vector
+
+ORDERS = (1, 2, 4)
+
+
+def turns_from_angular_velocity(angular_velocity: Callable[[Any], Any], times: Values, order: int = 4) -> Result:
+    r"""Return the rotation vector of the turn in each interval of time.
+
+    For a step of the duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its beginning,
+    :math:`h\,\boldsymbol{\omega}(t)`, and order 2 that in its middle,
+    :math:`h\,\boldsymbol{\omega}(t + \frac{h}{2})`. Order 4 takes it at the two Gauss points
+    :math:`t + (\frac{1}{2} \mp \frac{\sqrt{3}}{6})h`, and what the order of the turns costs
+    in between (Magnus):
+
+    .. math::
+
+       \mathbf{r} = \frac{h}{2}\left(\boldsymbol{\omega}_1 + \boldsymbol{\omega}_2\right)
+       + \frac{\sqrt{3}\,h^2}{12}\,\boldsymbol{\omega}_1\times\boldsymbol{\omega}_2
+
+    Parameters
+    ----------
+    angular_velocity : callable
+        ``angular_velocity(times)`` takes an array of shape ``(n,)`` and returns the components along the turning
+        frame :math:`A`, shape ``(n, 3)``, radians per second. It is called once for each point of a step.
+    times : array of shape ``(n + 1,)``
+        Seconds.
+    order : {1, 2, 4}
+        By what power of the step the error of the orientations falls.
+
+    Returns
+    -------
+    array of shape ``(n, 3)``
+        Rotation vectors, radians.
+
+    Raises
+    ------
+    ValueError
+        If the order is another, or what the function returns has another shape or is not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orientation import turns_from_angular_velocity
+    >>> turns_from_angular_velocity(lambda t: np.outer(t, [0, 0, 2.0]), [0, 1, 2]).round(12).tolist()
+    [[0.0, 0.0, 1.0], [0.0, 0.0, 3.0]]
+
+    Notes
+    -----
+    Source: Iserles and Norsett (1999), Blanes et al. (2009).
+    """
+    import numpy
+
+    if order not in ORDERS:
+        raise ValueError(f"order is {order!r}, where 1, 2 or 4 was expected")
+    times = numpy.asarray(times, dtype=float)
+    if times.ndim != 1 or len(times) < 2:
+        raise ValueError(
+            f"times has shape {times.shape}, where the ends of one interval or more were expected, (n + 1,)"
+        )
+    starts, steps = times[:-1], numpy.diff(times)[:, None]
+
+    def at(share):
+        found = number_array(angular_velocity(starts + share * steps[:, 0]), (3,), "angular_velocity(times)")
+        if found.shape not in ((3,), (len(starts), 3)):
+            raise ValueError(
+                f"angular_velocity(times) has shape {found.shape} for {len(starts)} times, where "
+                f"({len(starts)}, 3) was expected"
+            )
+        return numpy.broadcast_to(found, (len(starts), 3))
+
+    if order < 4:
+        return steps * at((order - 1) / 2)
+    first, second = at(0.5 - 3**0.5 / 6), at(0.5 + 3**0.5 / 6)
+    return steps / 2 * (first + second) + 3**0.5 / 12 * steps**2 * numpy.cross(first, second)
+
+
+def dcms_after_turns(start: Values, turns: Values) -> Result:
+    r"""Return an orientation and those that successive turns lead to from there.
+
+    .. math::
+
+       \mathbf{C}_{k+1} = \exp\left(-[\mathbf{r}_k]_\times\right)\mathbf{C}_k
+
+    Parameters
+    ----------
+    start : array of shape ``(3, 3)``
+        :math:`{}^A\mathbf{C}^N` before the first turn.
+    turns : array of shape ``(n, 3)``
+        Rotation vectors along the turning frame :math:`A`, radians, as those of
+        :func:`turns_from_angular_velocity` or the increments of a gyroscope.
+
+    Returns
+    -------
+    array of shape ``(n + 1, 3, 3)``
+
+    Raises
+    ------
+    ValueError
+        If ``start`` is not a direction cosine matrix or a shape is wrong.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orientation import dcms_after_turns
+    >>> dcms = dcms_after_turns(np.eye(3), [[0, 0, np.pi/2], [np.pi/2, 0, 0]])
+    >>> (dcms[-1].round(12) + 0.0).tolist()
+    [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]
+    """
+    import numpy
+
+    check_dcm(start)
+    small = dcm_from_rotation_vector(turns)
+    if small.ndim != 3:
+        raise ValueError(f"turns has shape {numpy.shape(turns)}, where (n, 3) was expected")
+    dcms = numpy.empty((len(small) + 1, 3, 3))
+    dcms[0] = start
+    for k, turn in enumerate(small):
+        dcms[k + 1] = turn @ dcms[k]
+    return dcms

@@ -1,0 +1,207 @@
+"""How far orientations are apart, what is in their middle, and orientations chosen at random."""
+
+from typing import Any
+
+from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate, number_array
+from ._types import Result, Values
+from .direction_cosines import DCM_GUARD, check_dcm, nearest_dcm
+from .quaternions import dcm_from_quaternion, quaternion_components_from_dcm
+from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
+
+METRICS = ("entries", "angle")
+#: The mean by angle is looked for from so many of the orientations, if they are spread too far to be sure of one.
+STARTS = 100
+
+
+def angle_between(first: Values, second: Values) -> Result:
+    r"""Return the angle of the one turn that leads from one orientation to another.
+
+    For :math:`{}^A\mathbf{C}^N` and :math:`{}^B\mathbf{C}^N` it is the angle of :math:`{}^B\mathbf{C}^A`, the length of
+    the shortest way between them. It keeps its digits near 0 and near :math:`\pi`.
+
+    Parameters
+    ----------
+    first, second : arrays of shape ``(3, 3)`` or ``(..., 3, 3)``
+        Direction cosine matrices with respect to one frame. Numbers only.
+
+    Returns
+    -------
+    float, or array of shape ``(...)``
+        From 0 to :math:`\pi`, radians.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not a direction cosine matrix, or the batches do not fit each other.
+
+    Examples
+    --------
+    >>> from orientation import angle_between, simple_dcm
+    >>> round(angle_between(simple_dcm('x', 0.5), simple_dcm('x', -0.3)), 12)
+    0.8
+
+    Notes
+    -----
+    Source: Huynh (2009).
+    """
+    _, excess_of_one, explain_one = DCM_GUARD
+
+    def excess(f, *entries):
+        return f.largest(excess_of_one(f, *entries[:9]), excess_of_one(f, *entries[9:18]))
+
+    def explain(entries, where):
+        for name, nine in (("first", entries[:9]), ("second", entries[9:18])):
+            if not excess_of_one(NUMBERS, *nine) <= TOLERANCE:
+                explain_one(nine, where, name)
+
+    def formula(f, *entries):
+        rows, others = [[entries[k + 3 * i : k + 3 * i + 3] for i in range(3)] for k in (0, 9)]
+        product = [sum(a * b for a, b in zip(other, row)) for other in others for row in rows]
+        scalar, x, y, z = quaternion_components_from_dcm(f, *product)
+        return (2 * f.atan2(f.norm(x, y, z), scalar),)
+
+    return evaluate(
+        formula,
+        (),
+        ("first", first, (3, 3)),
+        ("second", second, (3, 3)),
+        guard=(18, excess, explain),
+        symbols=False,
+    )
+
+
+def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = "entries") -> Result:
+    r"""Return the orientation whose squared distances from the given ones have the smallest sum.
+
+    By ``entries`` the distance is the Frobenius norm of the difference of the matrices: the mean is the direction
+    cosine matrix nearest to their average. The mean of the quaternions, the eigenvector of the largest
+    eigenvalue of :math:`\sum_k w_k\,q_k q_k^T`, is the same orientation. By ``angle`` it is the angle of the turn
+    between them, and the mean is found by averaging rotation vectors as seen from a guess, again and again.
+
+    Parameters
+    ----------
+    dcms : array of shape ``(n, 3, 3)``
+        Direction cosine matrices with respect to one frame. Numbers only.
+    weights : array of shape ``(n,)``, optional
+        Not negative, and not all zero. All the same if not given.
+    metric : {'entries', 'angle'}
+
+    Returns
+    -------
+    array of shape ``(3, 3)``
+
+    Raises
+    ------
+    ValueError
+        If the mean by that metric is not unique, because the orientations are spread too far. By angle it is
+        unique if all are closer to it than a quarter turn; otherwise it is looked for from up to 100 of
+        them and 16 places between, and means that are equally good are told.
+
+    Examples
+    --------
+    >>> from orientation import mean_orientation, same_orientation, simple_dcm
+    >>> same_orientation(mean_orientation(simple_dcm('z', [0.1, 0.2, 0.6]), metric='angle'), simple_dcm('z', 0.3))
+    True
+
+    Notes
+    -----
+    Source: Moakher (2002), Markley et al. (2007).
+    """
+    import numpy
+
+    if metric not in METRICS:
+        raise ValueError(f"metric is {metric!r}, where 'entries' or 'angle' was expected")
+    dcms = number_array(dcms, (3, 3), "dcms")
+    if dcms.ndim != 3 or not len(dcms):
+        raise ValueError(f"dcms has shape {dcms.shape}, where (n, 3, 3) with at least one of them was expected")
+    check_dcm(dcms)
+    weights = _shares(weights, len(dcms))
+    average = numpy.tensordot(weights, dcms, axes=1)
+    if metric == "entries":
+        try:
+            return nearest_dcm(average).dcm
+        except ValueError:
+            raise ValueError(
+                "these orientations have no unique mean by their entries: several direction cosine matrices are "
+                "equally near to their average. They are spread too evenly"
+            ) from None
+    return _mean_by_angle(dcms, weights, average)
+
+
+def _shares(weights, count):
+    import numpy
+
+    if weights is None:
+        return numpy.full(count, 1 / count)
+    weights = number_array(weights, (), "weights")
+    if weights.shape != (count,):
+        raise ValueError(f"weights has shape {weights.shape}, where ({count},) was expected, one for each orientation")
+    if weights.min() < 0 or weights.sum() == 0:
+        raise ValueError(f"weights are from {weights.min():g} to {weights.max():g}: none may be negative, nor all zero")
+    return weights / weights.sum()
+
+
+def _mean_by_angle(dcms, weights, average):
+    import numpy
+
+    def settled(guess):
+        for _ in range(200):
+            step = weights @ rotation_vector_from_dcm(dcms @ guess.T)
+            guess = dcm_from_rotation_vector(step) @ guess
+            if numpy.linalg.norm(step) < 1e-14:
+                break
+        # Rounding may have brought it a little off, in hundreds of products.
+        guess = nearest_dcm(guess).dcm
+        return guess, angle_between(dcms, guess)
+
+    try:
+        guess, angles = settled(nearest_dcm(average).dcm)
+        if angles[weights > 0].max() < numpy.pi / 2:
+            return guess  # the only one there is, by the theorem
+        found = [(weights @ angles**2, guess)]
+    except ValueError:
+        found = []  # no one place to begin
+    # From places between them too: from one that is half a turn from another, rounding would choose the way.
+    starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]
+    found += [(weights @ angles**2, guess) for guess, angles in map(settled, starts)]
+    least = min(cost for cost, _ in found)
+    best = [guess for cost, guess in found if cost <= least + 1e-9 * (1 + least)]
+    apart = max(angle_between(best[0], guess) for guess in best)
+    if apart > 1e-6:
+        raise ValueError(
+            f"these orientations have no unique mean by angle: among those that are equally good, two are "
+            f"{numpy.degrees(apart):.4g} degrees apart. They are spread too evenly"
+        )
+    return best[0]
+
+
+def random_orientations(count: int, random: Any = None) -> Result:
+    r"""Return orientations chosen at random, none likelier than another.
+
+    Four normally distributed numbers, divided by their length, are a point on the sphere of unit quaternions that
+    is equally likely everywhere, and so is the orientation. Evenly distributed Euler angles are not.
+
+    Parameters
+    ----------
+    count : int
+    random : numpy.random.Generator or int, optional
+        Where the chance comes from, or its seed, so that a program can be run again.
+
+    Returns
+    -------
+    array of shape ``(count, 3, 3)``
+
+    Examples
+    --------
+    >>> from orientation import random_orientations
+    >>> random_orientations(1000, 1).shape
+    (1000, 3, 3)
+
+    Notes
+    -----
+    Source: Shoemake (1992).
+    """
+    import numpy
+
+    four = numpy.random.default_rng(random).normal(size=(count, 4))
+    return dcm_from_quaternion(four / numpy.linalg.norm(four, axis=1, keepdims=True))

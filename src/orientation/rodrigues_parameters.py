@@ -1,0 +1,214 @@
+"""Rodrigues (Gibbs) parameters and modified Rodrigues parameters: three numbers, by a tangent.
+
+Both are a stereographic picture of the unit quaternions: a line from the middle of the sphere, or from the
+quaternion -1, through the quaternion meets a flat space of three dimensions in the parameters.
+"""
+
+from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate
+from ._types import Result, Values
+from .direction_cosines import DCM_GUARD
+from .quaternions import dcm_components_from_quaternion, quaternion_components_from_dcm
+
+
+def dcm_from_rodrigues(vector: Values) -> Result:
+    r"""Direction cosine matrix of Rodrigues parameters, also called the Gibbs vector.
+
+    :math:`\mathbf{g} = \tan\frac{\theta}{2}\,\hat{e}`, and the matrix is Cayley's transform of its cross product:
+
+    .. math::
+
+       {}^A\mathbf{C}^N
+       = \left(\mathbf{I} - [\mathbf{g}]_\times\right)\left(\mathbf{I} + [\mathbf{g}]_\times\right)^{-1}
+       = \frac{(1 - g^2)\,\mathbf{I} + 2\,\mathbf{g}\mathbf{g}^T - 2\,[\mathbf{g}]_\times}{1 + g^2}
+
+    Parameters
+    ----------
+    vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
+        No unit.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
+
+    Examples
+    --------
+    >>> from orientation import dcm_from_rodrigues
+    >>> dcm_from_rodrigues((0, 0, 1)).round(12).tolist()  # a quarter turn
+    [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+
+    Notes
+    -----
+    Source: Rodrigues (1840), Shuster (1993).
+    """
+
+    def formula(f, x, y, z):
+        length = f.norm(1, x, y, z)
+        return dcm_components_from_quaternion(f, 1 / length, x / length, y / length, z / length)
+
+    return evaluate(formula, (3, 3), ("vector", vector, (3,)))
+
+
+def rodrigues_from_dcm(dcm: Values) -> Result:
+    r"""Rodrigues parameters, or Gibbs vector, of a direction cosine matrix.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`. Numbers only.
+
+    Returns
+    -------
+    array of shape ``(3,)`` or ``(..., 3)``
+        :math:`\tan\frac{\theta}{2}\,\hat{e}`.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not a direction cosine matrix, or half a turn, whose parameters are infinite.
+    SymbolsNotPossible
+        If the matrix holds symbols.
+
+    Examples
+    --------
+    >>> import math
+    >>> from orientation import rodrigues_from_dcm, simple_dcm
+    >>> rodrigues_from_dcm(simple_dcm('x', math.pi/3)).round(12).tolist()
+    [0.57735026919, 0.0, 0.0]
+    """
+    _, valid, explain_invalid = DCM_GUARD
+
+    def excess(f, *entries):
+        scalar, *_ = quaternion_components_from_dcm(f, *entries)
+        return f.largest(valid(f, *entries), f.where(scalar > 1e-12, 0, 1))
+
+    def explain(entries, where):
+        if valid(NUMBERS, *entries) > TOLERANCE:
+            explain_invalid(entries, where)
+        raise ValueError(
+            f"dcm{where} is half a turn: its Rodrigues parameters, the tangent of half the angle, are infinite. "
+            f"Modified Rodrigues parameters, a quaternion or a rotation vector can hold it"
+        )
+
+    def formula(f, *entries):
+        scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
+        return x / scalar, y / scalar, z / scalar
+
+    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=(9, excess, explain), symbols=False)
+
+
+def dcm_from_modified_rodrigues(vector: Values) -> Result:
+    r"""Direction cosine matrix of modified Rodrigues parameters.
+
+    With :math:`\boldsymbol{\sigma} = \tan\frac{\theta}{4}\,\hat{e}`,
+
+    .. math::
+
+       {}^A\mathbf{C}^N = \mathbf{I} + \frac{8\,[\boldsymbol{\sigma}]_\times^2
+       - 4\,(1 - \sigma^2)\,[\boldsymbol{\sigma}]_\times}{(1 + \sigma^2)^2} .
+
+    Parameters
+    ----------
+    vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
+        No unit. A vector and its shadow give the same matrix.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
+
+    Examples
+    --------
+    >>> import math
+    >>> from orientation import dcm_from_modified_rodrigues, same_orientation, simple_dcm
+    >>> same_orientation(dcm_from_modified_rodrigues((0, math.tan(0.3/4), 0)), simple_dcm('y', 0.3))
+    True
+
+    Notes
+    -----
+    Source: Schaub and Junkins (1996).
+    """
+
+    def formula(f, x, y, z):
+        square = x**2 + y**2 + z**2
+        whole = 1 + square
+        return dcm_components_from_quaternion(f, (1 - square) / whole, 2 * x / whole, 2 * y / whole, 2 * z / whole)
+
+    return evaluate(formula, (3, 3), ("vector", vector, (3,)))
+
+
+def modified_rodrigues_from_dcm(dcm: Values) -> Result:
+    r"""Modified Rodrigues parameters of a direction cosine matrix.
+
+    Parameters
+    ----------
+    dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
+        :math:`{}^A\mathbf{C}^N`. Numbers only.
+
+    Returns
+    -------
+    array of shape ``(3,)`` or ``(..., 3)``
+        :math:`\tan\frac{\theta}{4}\,\hat{e}` with :math:`\theta` from 0 to :math:`\pi`: of the vector and its
+        shadow, the one that is no longer than 1.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not a direction cosine matrix.
+    SymbolsNotPossible
+        If the matrix holds symbols.
+
+    Examples
+    --------
+    >>> from orientation import modified_rodrigues_from_dcm
+    >>> modified_rodrigues_from_dcm([[-1, 0, 0], [0, -1, 0], [0, 0, 1]]).tolist()  # half a turn
+    [0.0, 0.0, 1.0]
+    """
+
+    def formula(f, *entries):
+        scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
+        return x / (1 + scalar), y / (1 + scalar), z / (1 + scalar)
+
+    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+
+
+def shadow_of_modified_rodrigues(vector: Values) -> Result:
+    r"""The other modified Rodrigues parameters of the same orientation: the shadow.
+
+    .. math::
+
+       \boldsymbol{\sigma}' = -\,\frac{\boldsymbol{\sigma}}{\sigma^2}
+
+    It belongs to the quaternion :math:`-q`, the turn the other way round. Changing over to it whenever
+    :math:`\sigma` grows longer than 1 keeps clear of the singularity at a whole turn.
+
+    Parameters
+    ----------
+    vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
+        Not zero: the shadow of no turn at all is infinitely far away.
+
+    Returns
+    -------
+    SymPy column of three, array of shape ``(3,)`` or ``(..., 3)``
+
+    Raises
+    ------
+    ValueError
+        If a vector is zero, or so short that its shadow cannot be written down.
+
+    Examples
+    --------
+    >>> from orientation import shadow_of_modified_rodrigues
+    >>> shadow_of_modified_rodrigues((0, 0, 0.5)).tolist()
+    [0.0, 0.0, -2.0]
+    """
+
+    def excess(f, x, y, z):
+        return f.where(x * x + y * y + z * z > 1e-300, 0, 1)
+
+    def explain(components, where):
+        raise ValueError(f"vector{where} is {components}, no turn at all: its shadow would be infinitely long")
+
+    def formula(f, x, y, z):
+        square = x * x + y * y + z * z
+        return -x / square, -y / square, -z / square
+
+    return evaluate(formula, (3,), ("vector", vector, (3,)), guard=(3, excess, explain))

@@ -1,0 +1,220 @@
+"""Rodrigues parameters, distances, means and random orientations, against SciPy, pytransform3d and formulas."""
+
+import numpy as np
+import pytest
+import sympy as sm
+from scipy.spatial.transform import Rotation
+
+from orientation import (
+    SymbolsNotPossible,
+    angle_between,
+    check_dcm,
+    dcm_from_modified_rodrigues,
+    dcm_from_quaternion,
+    dcm_from_rodrigues,
+    dcm_from_rotation_vector,
+    dcm_from_scipy_rotation,
+    mean_orientation,
+    modified_rodrigues_from_dcm,
+    quaternion_from_dcm,
+    random_orientations,
+    rodrigues_from_dcm,
+    rotation_vector_from_dcm,
+    same_orientation,
+    scipy_rotation_from_dcm,
+    shadow_of_modified_rodrigues,
+    simple_dcm,
+)
+
+DCMS = random_orientations(300, 3)
+
+
+def cross_matrix(v):
+    x, y, z = v
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+# ---- Rodrigues parameters ------------------------------------------------------------------------------
+
+
+def test_rodrigues_parameters_are_cayleys_transform():
+    for dcm in DCMS[:50]:
+        g = rodrigues_from_dcm(dcm)
+        cayley = (np.eye(3) - cross_matrix(g)) @ np.linalg.inv(np.eye(3) + cross_matrix(g))
+        assert np.allclose(cayley, dcm, atol=1e-12)
+        assert np.allclose(dcm_from_rodrigues(g), dcm, atol=1e-13)
+
+
+def test_rodrigues_parameters_are_the_tangent_of_half_the_angle():
+    vectors = rotation_vector_from_dcm(DCMS)
+    angles = np.linalg.norm(vectors, axis=1)[:, None]
+    assert np.allclose(rodrigues_from_dcm(DCMS), np.tan(angles / 2) * vectors / angles, rtol=1e-9)
+    assert np.allclose(modified_rodrigues_from_dcm(DCMS), np.tan(angles / 4) * vectors / angles, rtol=1e-12)
+
+
+def test_modified_rodrigues_parameters_agree_with_scipy():
+    # Only SciPy's matrix is turned round: its parameters of A in N are ours.
+    assert np.allclose(scipy_rotation_from_dcm(DCMS).as_mrp(), modified_rodrigues_from_dcm(DCMS), atol=1e-13)
+    vectors = np.random.default_rng(4).normal(size=(200, 3))
+    theirs = dcm_from_scipy_rotation(Rotation.from_mrp(vectors))
+    assert abs(dcm_from_modified_rodrigues(vectors) - theirs).max() < 1e-13
+
+
+def test_modified_rodrigues_parameters_by_the_formula_of_their_docstring():
+    for sigma in np.random.default_rng(5).normal(size=(50, 3)):
+        square, cross = sigma @ sigma, cross_matrix(sigma)
+        expected = np.eye(3) + (8 * cross @ cross - 4 * (1 - square) * cross) / (1 + square) ** 2
+        assert np.allclose(dcm_from_modified_rodrigues(sigma), expected, atol=1e-14)
+
+
+def test_the_shadow_is_the_same_orientation_the_other_way_round():
+    sigma = modified_rodrigues_from_dcm(DCMS)
+    shadow = shadow_of_modified_rodrigues(sigma)
+    assert (np.linalg.norm(sigma, axis=1) <= 1).all() and (np.linalg.norm(shadow, axis=1) >= 1).all()
+    assert abs(dcm_from_modified_rodrigues(shadow) - DCMS).max() < 1e-13
+    assert np.allclose(shadow_of_modified_rodrigues(shadow), sigma, rtol=1e-12)
+    with pytest.raises(ValueError, match="infinitely long"):
+        shadow_of_modified_rodrigues((0, 0, 0))
+
+
+def test_half_a_turn_has_no_rodrigues_parameters_but_modified_ones():
+    half = np.diag([-1.0, -1, 1])
+    with pytest.raises(ValueError, match="half a turn"):
+        rodrigues_from_dcm(half)
+    with pytest.raises(ValueError, match="not orthogonal"):
+        rodrigues_from_dcm(2 * half)
+    with pytest.raises(ValueError, match=r"dcm \(item \[1\]\) is half a turn"):
+        rodrigues_from_dcm([np.eye(3), half])
+    assert (modified_rodrigues_from_dcm(half) == [0, 0, 1]).all()
+
+
+def test_rodrigues_parameters_of_symbols_are_rational():
+    x, y, z = g = sm.symbols("g_x:z")
+    ours = dcm_from_rodrigues(g)
+    cross = sm.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    cayley = (sm.eye(3) - cross) * (sm.eye(3) + cross).inv()
+    assert (ours - cayley).applyfunc(sm.simplify) == sm.zeros(3, 3)
+    assert all(entry.is_rational_function(*g) for entry in (*ours, *dcm_from_modified_rodrigues(g)))
+    assert same_orientation(
+        dcm_from_modified_rodrigues(g), dcm_from_modified_rodrigues(shadow_of_modified_rodrigues(g))
+    )
+    with pytest.raises(SymbolsNotPossible):
+        modified_rodrigues_from_dcm(simple_dcm("x", sm.Symbol("theta")))
+
+
+# ---- distances -----------------------------------------------------------------------------------------
+
+
+def test_angle_between_agrees_with_scipy_and_keeps_its_digits():
+    theirs = (scipy_rotation_from_dcm(DCMS[1:]).inv() * scipy_rotation_from_dcm(DCMS[:-1])).magnitude()
+    assert np.allclose(angle_between(DCMS[1:], DCMS[:-1]), theirs, atol=1e-13)
+    for angle in (1e-12, 1e-7, np.pi - 1e-7, np.pi):
+        turned = dcm_from_rotation_vector(angle * np.array([0.6, 0, 0.8])) @ DCMS[0]
+        assert abs(angle_between(DCMS[0], turned) - angle) < 1e-14 + 1e-9 * min(angle, 1e-6)
+    with pytest.raises(ValueError, match="second"):
+        angle_between(np.eye(3), np.diag([1, 1, -1.0]))
+
+
+def test_distances_are_functions_of_one_angle():
+    """The Frobenius norm is sqrt(8) sin(angle/2), the chord of quaternions 2 sin(angle/4)."""
+    angle = angle_between(DCMS[1:], DCMS[:-1])
+    entries = np.linalg.norm(DCMS[1:] - DCMS[:-1], axis=(1, 2))
+    assert np.allclose(entries, np.sqrt(8) * np.sin(angle / 2), atol=1e-13)
+    q = quaternion_from_dcm(DCMS)
+    chord = np.minimum(np.linalg.norm(q[1:] - q[:-1], axis=1), np.linalg.norm(q[1:] + q[:-1], axis=1))
+    assert np.allclose(chord, 2 * np.sin(angle / 4), atol=1e-13)
+
+
+# ---- means ---------------------------------------------------------------------------------------------
+
+
+def spread(scale, count=20, seed=6):
+    turns = np.random.default_rng(seed).normal(scale=scale, size=(count, 3))
+    return dcm_from_rotation_vector(turns) @ DCMS[7]
+
+
+@pytest.mark.parametrize("weights", (None, np.arange(1.0, 21)))
+def test_mean_by_entries_is_the_mean_of_the_quaternions_and_scipys(weights):
+    dcms = spread(0.4)
+    ours = mean_orientation(dcms, weights)
+    q = quaternion_from_dcm(dcms)
+    share = np.ones(20) if weights is None else weights
+    vector = np.linalg.eigh(np.einsum("k,ki,kj->ij", share, q, q))[1][:, -1]
+    assert abs(dcm_from_quaternion(vector) - ours).max() < 1e-13
+    assert abs(dcm_from_scipy_rotation(scipy_rotation_from_dcm(dcms).mean(weights)) - ours).max() < 1e-12
+
+
+@pytest.mark.parametrize("metric", ("entries", "angle"))
+def test_nothing_near_the_mean_is_better(metric):
+    dcms, weights = spread(0.5), np.linspace(1, 3, 20)
+
+    def cost(candidate):
+        if metric == "angle":
+            return weights @ angle_between(dcms, candidate) ** 2
+        return weights @ np.linalg.norm(dcms - candidate, axis=(1, 2)) ** 2
+
+    mean = mean_orientation(dcms, weights, metric)
+    check_dcm(mean)
+    turns = np.random.default_rng(1).normal(scale=0.01, size=(300, 3))
+    assert min(cost(turn @ mean) for turn in dcm_from_rotation_vector(turns)) > cost(mean)
+
+
+def test_three_headings_have_no_mean_and_it_is_told_by_metric():
+    three = simple_dcm("z", np.radians([0, 120, 240]))
+    with pytest.raises(ValueError, match="no unique mean by their entries"):
+        mean_orientation(three)
+    with pytest.raises(ValueError, match="no unique mean by angle.*two are 120 degrees apart"):
+        mean_orientation(three, metric="angle")
+    # By angle 0 is better than 60: 28,800 against 39,600 square degrees.
+    costs = [sum(np.degrees(angle_between(three, simple_dcm("z", np.radians(a)))) ** 2) for a in (0, 60)]
+    assert np.allclose(costs, [28_800, 39_600])
+    # Weights break the tie, whichever is listed first.
+    for order in ([0, 1, 2], [2, 0, 1]):
+        mean = mean_orientation(three[order], np.array([1, 1, 1.2])[order], "angle")
+        assert angle_between(mean, three[2]) < np.radians(20)
+
+
+def test_two_headings_half_a_turn_apart_have_no_mean():
+    for metric in ("entries", "angle"):
+        with pytest.raises(ValueError, match="no unique mean"):
+            mean_orientation(simple_dcm("z", [0, np.pi]), metric=metric)
+
+
+def test_a_mean_does_not_depend_on_the_order_nor_on_one_far_away():
+    dcms = np.concatenate([spread(0.2), [dcm_from_rotation_vector((0, 3.0, 0)) @ DCMS[7]]])
+    means = [mean_orientation(some, metric="angle") for some in (dcms, dcms[::-1])]
+    assert angle_between(*means) < 1e-9
+
+
+@pytest.mark.parametrize(
+    "weights, words", [([1, 2], "one for each"), ([1, -1, 1], "none may be negative"), ([0, 0, 0], "nor all zero")]
+)
+def test_bad_weights_are_refused(weights, words):
+    with pytest.raises(ValueError, match=words):
+        mean_orientation(DCMS[:3], weights)
+
+
+def test_means_refuse_what_they_cannot_read():
+    with pytest.raises(ValueError, match="metric is 'chordal'"):
+        mean_orientation(DCMS, metric="chordal")
+    with pytest.raises(ValueError, match=r"\(n, 3, 3\)"):
+        mean_orientation(np.eye(3))
+    with pytest.raises(ValueError, match="item"):
+        mean_orientation(np.stack([np.eye(3), 2 * np.eye(3)]))
+
+
+# ---- chance --------------------------------------------------------------------------------------------
+
+
+def test_random_orientations_are_uniform():
+    """The density of the angle is (1 - cos)/pi; unit vectors are even on the sphere; the mean matrix vanishes."""
+    dcms = random_orientations(20_000, 9)
+    check_dcm(dcms)
+    angles = np.sort(angle_between(dcms, np.eye(3)))
+    distribution = (angles - np.sin(angles)) / np.pi
+    assert abs(distribution - np.linspace(0, 1, 20_000)).max() < 1.63 / np.sqrt(20_000), (
+        "Kolmogorov-Smirnov, 1 per cent"
+    )
+    assert abs(dcms.mean(axis=0)).max() < 4 / np.sqrt(3 * 20_000)
+    assert (random_orientations(5, 1) == random_orientations(5, 1)).all()
+    assert random_orientations(0, 1).shape == (0, 3, 3)
