@@ -13,24 +13,32 @@ from orientations import composed, random_dcms, random_unit_vectors
 import orientation
 from orientation import (
     SymbolsNotPossible,
+    angle_between,
+    angular_velocity_from_dcm_rate,
     angular_velocity_matrix,
     axis_angle_from_dcm,
     body_fixed_from_dcm,
     check_dcm,
     dcm_from_axis_angle,
     dcm_from_body_fixed,
+    dcm_from_modified_rodrigues,
     dcm_from_quaternion,
+    dcm_from_rodrigues,
     dcm_from_rotation_vector,
     dcm_from_space_fixed,
     dcm_rate,
     gimbal_lock_margin,
     interpolate_quaternions,
+    modified_rodrigues_from_dcm,
     multiply_quaternions,
     nearest_dcm,
     quaternion_from_axis_angle,
     quaternion_from_dcm,
     quaternion_rate,
+    rodrigues_from_dcm,
     rotation_vector_from_dcm,
+    rotation_vector_rate,
+    shadow_of_modified_rodrigues,
     simple_dcm,
     space_fixed_from_dcm,
 )
@@ -57,6 +65,11 @@ CONVERSIONS = {
     "multiply_quaternions": (multiply_quaternions, QUATERNIONS, OTHERS),
     "dcm_rate": (dcm_rate, DCMS, RATES),
     "quaternion_rate": (quaternion_rate, QUATERNIONS, RATES),
+    "angular_velocity_from_dcm_rate": (angular_velocity_from_dcm_rate, DCMS, dcm_rate(DCMS, RATES)),
+    "rotation_vector_rate": (rotation_vector_rate, AXES, RATES),
+    "dcm_from_rodrigues": (dcm_from_rodrigues, AXES),
+    "dcm_from_modified_rodrigues": (dcm_from_modified_rodrigues, AXES),
+    "shadow_of_modified_rodrigues": (shadow_of_modified_rodrigues, AXES),
 }
 NUMBERS_ONLY = {
     "body_fixed_from_dcm": (lambda dcm: body_fixed_from_dcm(dcm, "zxy"), DCMS),
@@ -67,6 +80,9 @@ NUMBERS_ONLY = {
     "angle of axis_angle_from_dcm": (lambda dcm: axis_angle_from_dcm(dcm)[1], DCMS),
     "quaternion_from_dcm": (quaternion_from_dcm, DCMS),
     "rotation_vector_from_dcm": (rotation_vector_from_dcm, DCMS),
+    "rodrigues_from_dcm": (rodrigues_from_dcm, DCMS),
+    "modified_rodrigues_from_dcm": (modified_rodrigues_from_dcm, DCMS),
+    "angle_between": (angle_between, DCMS, DCMS[::-1]),
     "interpolate_quaternions": (interpolate_quaternions, QUATERNIONS, OTHERS, SHARE),
     "nearest_dcm": (lambda dcm: nearest_dcm(dcm).dcm, DCMS),
     "distance of nearest_dcm": (lambda matrix: nearest_dcm(matrix).distance, DCMS + 0.01),
@@ -80,6 +96,8 @@ def test_no_conversion_is_forgotten():
     public = {name for name in orientation.__all__ if callable(getattr(orientation, name)) and name[0].islower()}
     tested = {name.split(" ")[-1] if " of " in name else name.split(" ")[0] for name in ALL}
     elsewhere = {"check_dcm", "diagnose", "same_orientation", "dcm_from_scipy_rotation", "scipy_rotation_from_dcm"}
+    # Not conversions of one orientation: they have tests of their own.
+    elsewhere |= {"turns_from_angular_velocity", "dcms_after_turns", "mean_orientation", "random_orientations"}
     drawing = {name for name in public if "drawing" in getattr(orientation, name).__module__}
     assert public - elsewhere - drawing == tested
 
