@@ -338,7 +338,7 @@ def test_two_sliders_do_the_same_thing_at_lock(open_figure, sequence):
     assert numbers(page, matrix) == pytest.approx(locked, abs=2e-3), "the camera moved"
 
 
-@pytest.mark.parametrize("example", ["Valid", "One decimal", "Measured", "1.2 times", "Left-handed"])
+@pytest.mark.parametrize("example", ["Valid", "One decimal", "Measured", "Skewed", "1.2 times", "Left-handed"])
 def test_nine_numbers_says_what_the_module_says(open_figure, example):
     page = open_figure("nine_numbers")
     page.get_by_role("button", name=example).click()

@@ -435,3 +435,21 @@ def test_turn_once_round(open_figure):
     page.get_by_role("button", name="Turn once round").click()
     page.wait_for_function("""() => document.querySelector('input[aria-label="theta in degrees"]').value === '360'""")
     assert numbers(page, "q and minus q, scalar first")[0, 0] == -1
+
+
+def test_no_speed_is_cut_off_in_silence():
+    """The scale holds all three ways; what is too fast for any scale leaves a gap, and its size is told."""
+    from orientation_figures.moving.stills.quaternion import plotted
+
+    slow = np.radians([[30.0] * 4, [40, 50, 60, 70], [100, 170, 110, 20]])
+    highest, pieces, beyond = plotted(slow)
+    assert highest == 180 and not beyond and [len(runs) for runs in pieces] == [1, 1, 1]
+    assert [speed for _, speed in pieces[2][0]] == pytest.approx([100, 170, 110, 20])
+    fast = np.radians([[30.0] * 5, [40.0] * 5, [100, 200, 5000, 300, 100]])
+    highest, pieces, beyond = plotted(fast)
+    assert highest == 720 and beyond == pytest.approx(5000)
+    assert [len(run) for run in pieces[2]] == [2, 2] and max(s for run in pieces[2] for _, s in run) <= 720
+    # Half a turn but a little: blended entries turn over all at once.
+    words = repr(QuaternionFigure(view="way", first=(0, 0, 0), second=(3.1, 0.02, 0)))
+    assert "cut off at 720 degrees per second; the fastest is 871" in words
+    assert "cut off" not in repr(QuaternionFigure(view="way"))

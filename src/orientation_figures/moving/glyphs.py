@@ -46,6 +46,7 @@ LABELS = (
     "0",
     r"4\,\mathrm{s}",
     *(rf"{top}^\circ/\mathrm{{s}}" for top in (30, 60, 90, 120, 180, 360, 720)),
+    r"\mathrm{cut\ off}",
     *(rf"\mathbf{{C}}_{axis}" for axis in "xyz"),
     *(rf"{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}" for frames in ("NN", "BN", "CN", "DN", "BA", "CB", "DC")),
     # The axes of the plots of motion.

@@ -6,11 +6,12 @@ import { Sheet, button, change, element, fixed, follow, glide, grid, group, hats
 const REACH = 1.2, SIZE = 116;   // as in nine_numbers.py
 const A = hats('a'), N = hats('n');
 const GOOD = [[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0.36, -0.48, 0.8]];
-// What readers meet: a matrix that is valid to the last digit, and four that are not.
+// What readers meet: a matrix that is valid to the last digit, and five that are not.
 const EXAMPLES = [
   ['Valid', GOOD],
   ['One decimal', [[0.8, 0.6, 0], [-0.5, 0.6, 0.6], [0.4, -0.5, 0.8]]],
-  ['Measured', [[0.98, 0.43, -0.2], [-0.31, 0.8, 0.7], [0.08, -0.4, 0.74]]],
+  ['Measured', [[0.812, 0.571, 0.104], [-0.566, 0.823, 0.021], [-0.079, -0.094, 0.991]]],   // as in the chapter
+  ['Skewed', [[0.98, 0.43, -0.2], [-0.31, 0.8, 0.7], [0.08, -0.4, 0.74]]],
   ['1.2 times', GOOD.map((row) => row.map((entry) => Math.round(1200 * entry) / 1000))],
   ['Left-handed', [...GOOD.slice(0, 2), [-0.36, 0.48, -0.8]]],
 ];

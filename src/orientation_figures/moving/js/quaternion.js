@@ -250,9 +250,11 @@ function wayText({ angle, speeds }, [slerped, , repaired], sizes) {
   if (!slerped) return '$A$ and $B$ are half a turn apart: both ways round are equally long, and slerp has no shorter one to take.';
   if (!repaired) return 'The blended entries are as near to one orientation as to another: no matrix is the nearest to them.';
   const euler = degrees(Math.min(...speeds[1])), fast = degrees(Math.max(...speeds[1])), short = Math.min(...sizes);
+  const { beyond } = plotted(speeds);
   const way = speeds[1].reduce((sum, speed) => sum + speed, 0) * SECONDS / SAMPLES;
   return `Slerp turns through ${inDegrees(angle)} at ${number(degrees(angle) / SECONDS, 1)} °/s. Euler angles turn through ${inDegrees(way)} in all, `
-    + `at ${number(euler, 1)} to ${number(fast, 1)} °/s. ${short < 0.9995 ? `The blended rows are too short now, the shortest ${number(short)}.` : ''}`;
+    + `at ${number(euler, 1)} to ${number(fast, 1)} °/s. ${short < 0.9995 ? `The blended rows are too short now, the shortest ${number(short)}.` : ''}${
+    beyond ? ` The plot is cut off: the fastest speed is ${number(beyond, 0)} °/s.` : ''}`;
 }
 
 function wayPicture(sheet, { from, to, tracks, speeds }, now, raw, k, share) {
@@ -280,20 +282,31 @@ function wayPicture(sheet, { from, to, tracks, speeds }, now, raw, k, share) {
   plot(sheet, speeds, share);
 }
 
-function plot(sheet, speeds, share) {
-  const { left, right, top, bottom } = PLOT, fast = degrees(Math.max(...speeds.slice(0, 2).flat().filter((speed) => speed >= 0)));
+// The scale is that of all three ways. What is faster than it is cut off, and the figure says so.
+export function plotted(speeds) {
+  const fast = degrees(Math.max(0, ...speeds.flat().filter((speed) => speed >= 0)));
   const highest = TOPS.find((one) => one >= fast) ?? TOPS.at(-1);
-  const at = (part, speed) => placed(sheet, [left + part * (right - left), bottom - Math.min(1.15, degrees(speed) / highest) * (bottom - top)]);
-  const tick = radians(highest);
+  const pieces = speeds.map((track) => {
+    const runs = [[]];
+    track.forEach((speed, k) => {
+      if (degrees(speed) <= highest) runs.at(-1).push([(k + 0.5) / SAMPLES, degrees(speed)]);
+      else if (runs.at(-1).length) runs.push([]);
+    });
+    return runs.filter((run) => run.length > 1);
+  });
+  return { highest, pieces, beyond: fast > highest ? fast : 0 };
+}
+
+function plot(sheet, speeds, share) {
+  const { left, right, top, bottom } = PLOT, { highest, pieces, beyond } = plotted(speeds);
+  const at = (part, speed) => placed(sheet, [left + part * (right - left), bottom - speed / highest * (bottom - top)]);
   sheet.line([at(0, 0), at(1, 0)], 'muted');
-  sheet.line([at(0, 0), at(0, tick)], 'muted');
-  sheet.line([at(0, tick), at(1, tick)], 'muted', 'faint');
-  sheet.label(at(0, tick), `$${highest}^\\circ/\\mathrm{s}$`, 'ink', [-30, 0], 14);
+  sheet.line([at(0, 0), at(0, highest)], 'muted');
+  sheet.line([at(0, highest), at(1, highest)], 'muted', 'faint');
+  sheet.label(at(0, highest), `$${highest}^\\circ/\\mathrm{s}$`, 'ink', [-30, 0], 14);
   sheet.label(at(0, 0), '$0$', 'ink', [-11, 0], 14);
   sheet.label(at(1, 0), `$${SECONDS}\\,\\mathrm{s}$`, 'ink', [0, 14], 14);
-  sheet.line([at(share, 0), at(share, tick)], 'ink', 'guide');
-  speeds.forEach((track, n) => {
-    const points = track.flatMap((speed, k) => (Number.isNaN(speed) ? [] : [at((k + 0.5) / SAMPLES, speed)]));
-    if (points.length > 1) sheet.line(points, WAYS[n], 'axis thin');
-  });
+  if (beyond) sheet.label(at(0.5, highest), '$\\mathrm{cut\\ off}$', 'ink', [0, -9], 14);
+  sheet.line([at(share, 0), at(share, highest)], 'ink', 'guide');
+  pieces.forEach((runs, n) => runs.forEach((run) => sheet.line(run.map(([part, speed]) => at(part, speed)), WAYS[n], 'axis thin')));
 }

@@ -79,6 +79,8 @@ def _way(figure):
     now = [
         f"{speed:.0f}" if math.isfinite(speed) else "not defined" for speed in np.degrees(figure.speeds(figure.share))
     ]
+    highest, _, beyond = plotted(speeds)
+    cut = f", cut off at {highest} degrees per second; the fastest is {beyond:.0f}" if beyond else ""
     drawing = Drawing(
         f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the orientation of A to "
         "that of "
@@ -90,7 +92,7 @@ def _way(figure):
         f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D and E are "
         f"{now[0]}, {now[1]} and {now[2]} "
         f"degrees per second, and the blended rows have the lengths "
-        f"{', '.join(f'{length:.2f}' for length in lengths)}. Below, the three speeds over time.",
+        f"{', '.join(f'{length:.2f}' for length in lengths)}. Below, the three speeds over time{cut}.",
         scale=BALL,
     )
     drawing.circle(drawing.view[2], kind="faint").circle((0, 0, 1), kind="faint")
@@ -114,24 +116,43 @@ def _way(figure):
     return _plot(figure, drawing, speeds)
 
 
-def _plot(figure, drawing, speeds):
-    fast = np.degrees(np.nanmax(speeds[:2]))
+def plotted(speeds):
+    """Return the top of the scale, the pieces of each way's curve below it, and the fastest speed if it is cut off.
+
+    Speeds come in radians per second, and all else is in degrees.
+    """
+    degrees = np.degrees(np.array(speeds, dtype=float))
+    fast = np.max(degrees, initial=0, where=np.isfinite(degrees))
     highest = next((top for top in TOPS if top >= fast), TOPS[-1])
+    pieces = []
+    for track in degrees:
+        runs = [[]]
+        for n, speed in enumerate(track):
+            if speed <= highest:
+                runs[-1].append(((n + 0.5) / SAMPLES, speed))
+            elif runs[-1]:
+                runs.append([])
+        pieces.append([run for run in runs if len(run) > 1])
+    return highest, pieces, fast if fast > highest else 0
+
+
+def _plot(figure, drawing, speeds):
+    highest, pieces, beyond = plotted(speeds)
 
     def at(part, speed):
-        height = min(1.15, speed / highest)
-        return _placed(drawing, LEFT + part * (RIGHT - LEFT), BOTTOM - height * (BOTTOM - TOP))
+        return _placed(drawing, LEFT + part * (RIGHT - LEFT), BOTTOM - speed / highest * (BOTTOM - TOP))
 
     drawing.line([at(0, 0), at(1, 0)], "muted").line([at(0, 0), at(0, highest)], "muted")
     drawing.line([at(0, highest), at(1, highest)], "muted", "faint")
     drawing.label(at(0, highest), rf"${highest}^\circ/\mathrm{{s}}$", shift=(-30, 0), size=14)
     drawing.label(at(0, 0), "$0$", shift=(-11, 0), size=14)
     drawing.label(at(1, 0), rf"${SECONDS}\,\mathrm{{s}}$", shift=(0, 14), size=14)
+    if beyond:
+        drawing.label(at(0.5, highest), r"$\mathrm{cut\ off}$", shift=(0, -9), size=14)
     drawing.line([at(figure.share, 0), at(figure.share, highest)], "ink", "guide")
-    for letter, track in zip("CDE", speeds):
-        points = [at((n + 0.5) / SAMPLES, math.degrees(speed)) for n, speed in enumerate(track) if math.isfinite(speed)]
-        if len(points) > 1:
-            drawing.line(points, letter, "axis")
+    for letter, runs in zip("CDE", pieces):
+        for run in runs:
+            drawing.line([at(*point) for point in run], letter, "axis")
     return drawing
 
 
