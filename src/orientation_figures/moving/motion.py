@@ -5,8 +5,8 @@ import traitlets
 from .figure import MovingFigure, svg_on
 from .state import Numbers
 
-#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's a_x
-#: runs along its handle and a_z out of its face; the book's a_x runs along its long edges.
+#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's are those that
+#: Brody (1985) measured, rounded; its a_x runs along its handle and a_z out of its face. The book's a_x runs along its long edges.
 MOMENTS = {"racket": (1.2, 16.0, 17.0), "book": (6.9, 13.3, 19.7)}
 DESCRIPTIONS = {"matrix": "direction cosine matrix", "quaternion": "quaternion", "angles": "Euler angles"}
 SECONDS = 20.0
@@ -51,8 +51,9 @@ class MotionFigure(MovingFigure):
 
     The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation is
     carried along as a direction cosine matrix, as a quaternion and as Euler angles in the sequence
-    :math:`z`-:math:`x`-:math:`y`; one of them is drawn, and dashed the reference, a quaternion
-    integrated with steps ten times finer. Plots show how the drift grows.
+    :math:`z`-:math:`x`-:math:`y`. Each is given one and the same angular velocity, which is found in steps
+    ten times finer; what they differ in is their own. One of them is drawn, and dashed the reference, a quaternion
+    integrated in the finer steps. Plots show how the drift grows.
 
     Attributes
     ----------
@@ -65,7 +66,8 @@ class MotionFigure(MovingFigure):
     disturbance : float
         Angular velocity about the two other axes at the start, 0 to 0.5 rad/s.
     method : str
-        'Euler' or 'Runge-Kutta' (of fourth order).
+        'Euler', 'Runge-Kutta' (of fourth order) or 'exponential', which turns matrix and quaternion by the rotation
+        vector of each step (Magnus, of fourth order). Euler angles have no such step, and take Runge-Kutta's.
     step : float
         From 0.005 to 0.1 seconds.
     restored : bool
@@ -93,7 +95,7 @@ class MotionFigure(MovingFigure):
     moments = Moments(MOMENTS["racket"], (3,)).tag(sync=True, state=True)
     axis = traitlets.Enum(tuple("xyz"), "y").tag(sync=True, state=True)
     disturbance = Between(0.01, 0, 0.5, "rad/s").tag(sync=True, state=True)
-    method = traitlets.Enum(("Euler", "Runge-Kutta"), "Euler").tag(sync=True, state=True)
+    method = traitlets.Enum(("Euler", "Runge-Kutta", "exponential"), "Euler").tag(sync=True, state=True)
     step = Between(0.01, 0.005, 0.1, "seconds").tag(sync=True, state=True)
     restored = traitlets.Bool(False).tag(sync=True, state=True)
     description = traitlets.Enum(tuple(DESCRIPTIONS), "matrix").tag(sync=True, state=True)
@@ -103,8 +105,8 @@ class MotionFigure(MovingFigure):
         """Return what has been computed from 0 to ``time``, as a dict of arrays with one row for each step.
 
         ``'time'``; ``'angular_velocity'`` along A; ``'matrix'``, ``'quaternion'``, ``'angles'`` as
-        integrated; and ``'reference'``, the unit quaternion of the fine integration. A run ends early where
-        its numbers have grown beyond a million.
+        integrated from it; and ``'reference'``, the unit quaternion of the fine integration. A run ends early where
+        its numbers have grown beyond ten thousand.
         """
         from . import tumbling  # only now: it needs NumPy
 

@@ -5,44 +5,46 @@ from functools import lru_cache
 import numpy as np
 
 from orientation.angular_velocity import angular_velocity_matrix, dcm_rate, quaternion_rate
-from orientation.axis_angle import axis_angle_from_dcm
+from orientation.axis_angle import axis_angle_from_dcm, quaternion_from_axis_angle
 from orientation.direction_cosines import nearest_dcm
 from orientation.euler_angles import dcm_from_body_fixed
-from orientation.quaternions import dcm_from_quaternion
+from orientation.quaternions import dcm_from_quaternion, multiply_quaternions
+from orientation.rotation_vector import dcm_from_rotation_vector
 
 SPIN = 4.0  # rad/s
 FINER = 10  # the reference takes so many steps for one
-LARGEST = 1e6  # numbers beyond this end a run
+LARGEST = 1e4  # numbers beyond this end a run
+
+
+#: The points of a step at which the fourth-order exponential step looks.
+GAUSS = 0.5 - 3**0.5 / 6, 0.5 + 3**0.5 / 6
 
 
 # The results are kept: an unchanged figure draws the same run again and again.
 @lru_cache(maxsize=8)
 def run(moments, axis, disturbance, method, step, restored, count):
-    """Return the arrays of so many steps, as :meth:`MotionFigure.run` gives them."""
+    """Return the arrays of so many steps, as :meth:`MotionFigure.run` gives them.
+
+    The angular velocity is found once, in steps ten times finer, and every description is given the same: what they
+    differ in is their own.
+    """
     start = np.where([axis == other for other in "xyz"], SPIN, disturbance)
-    rows = [(start, np.eye(3), np.eye(4)[0], np.zeros(3))]
-
-    def rates(omega, matrix, quaternion, angles):
-        return (
-            np.array(_angular_acceleration(omega, moments)),
-            dcm_rate(matrix, omega),
-            quaternion_rate(quaternion, omega),
-            np.linalg.solve(angular_velocity_matrix(angles, "zxy"), omega),
-        )
-
-    for _ in range(count):
+    omegas, reference = _reference(start, moments, step / FINER, FINER * count)
+    rows = [(np.eye(3), np.eye(4)[0], np.zeros(3))]
+    for k in range(count):
         with np.errstate(all="ignore"):
-            omega, matrix, quaternion, angles = _step(rates, rows[-1], step, method)
-        largest = max(abs(omega).max(), abs(matrix).max(), abs(quaternion).max())
+            matrix, quaternion, angles = _step(rows[-1], step, method, moments, omegas[FINER * k :])
+        largest = max(abs(matrix).max(), abs(quaternion).max())
         if not largest < LARGEST or not np.isfinite(angles).all():
             break
         if restored:
             matrix, quaternion = nearest_dcm(matrix).dcm, quaternion / np.linalg.norm(quaternion)
-        rows.append((omega, matrix, quaternion, angles))
-    names = "angular_velocity", "matrix", "quaternion", "angles"
+        rows.append((matrix, quaternion, angles))
+    names = "matrix", "quaternion", "angles"
     return {
         "time": step * np.arange(len(rows)),
-        "reference": _reference(start, moments, step / FINER, FINER * (len(rows) - 1))[::FINER],
+        "angular_velocity": np.array(omegas[::FINER][: len(rows)]),
+        "reference": reference[::FINER][: len(rows)],
         **{name: np.array(column) for name, column in zip(names, zip(*rows))},
     }
 
@@ -53,24 +55,31 @@ def _angular_acceleration(omega, moments):
     return -(y * (c * z) - z * (b * y)) / a, -(z * (a * x) - x * (c * z)) / b, -(x * (b * y) - y * (a * x)) / c
 
 
-def _reference(start, moments, step, count):
-    """Return the unit quaternions of so many Runge-Kutta steps from the identity, shape ``(count + 1, 4)``.
-
-    The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4 matrix,
-    and those of all steps are found together, which is ten times as fast as one after the other.
-    """
+def _turned_on(omega, moments, step):
+    """Return the angular velocities of one Runge-Kutta step: at its four stages, and at its end."""
 
     def beyond(length, slope):
         return [value + length * change for value, change in zip(omega, slope)]
 
-    omega, stages = start.tolist(), []
+    first = _angular_acceleration(omega, moments)
+    second = _angular_acceleration(middle := beyond(step / 2, first), moments)
+    third = _angular_acceleration(again := beyond(step / 2, second), moments)
+    fourth = _angular_acceleration(end := beyond(step, third), moments)
+    last = beyond(step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)])
+    return (omega, middle, again, end), last
+
+
+def _reference(start, moments, step, count):
+    """Return the angular velocities and unit quaternions of so many Runge-Kutta steps from the identity.
+
+    The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4 matrix,
+    and those of all steps are found together, which is ten times as fast as one after the other.
+    """
+    omegas, stages = [start.tolist()], []
     for _ in range(count):
-        first = _angular_acceleration(omega, moments)
-        second = _angular_acceleration(middle := beyond(step / 2, first), moments)
-        third = _angular_acceleration(again := beyond(step / 2, second), moments)
-        fourth = _angular_acceleration(end := beyond(step, third), moments)
-        stages.append((omega, middle, again, end))
-        omega = beyond(step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)])
+        stage, last = _turned_on(omegas[-1], moments, step)
+        stages.append(stage)
+        omegas.append(last)
     quaternions = [np.eye(4)[0]]
     if count:
         # The fixed quaternions 1, i, j, k, and in front of them an axis for the steps.
@@ -82,22 +91,46 @@ def _reference(start, moments, step, count):
         for matrix in units + step / 6 * (a + 2 * b + 2 * c + d):
             quaternion = quaternions[-1] @ matrix
             quaternions.append(quaternion / np.sqrt(quaternion @ quaternion))
-    return np.array(quaternions)
+    return omegas, np.array(quaternions)
 
 
-def _step(rates, state, step, method):
-    """Return the ``state``, a tuple of arrays, one step later."""
+def _rates(state, omega):
+    matrix, quaternion, angles = state
+    rates = np.linalg.solve(angular_velocity_matrix(angles, "zxy"), omega)
+    return dcm_rate(matrix, omega), quaternion_rate(quaternion, omega), rates
+
+
+def _step(state, step, method, moments, omegas):
+    """Return the matrix, the quaternion and the angles one step later; ``omegas`` are those of the finer steps from here."""
 
     def beyond(length, slopes):
         return tuple(value + length * slope for value, slope in zip(state, slopes))
 
-    first = rates(*state)
+    first = _rates(state, omegas[0])
     if method == "Euler":
         return beyond(step, first)
-    second = rates(*beyond(step / 2, first))
-    third = rates(*beyond(step / 2, second))
-    fourth = rates(*beyond(step, third))
-    return beyond(step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)])
+    second = _rates(beyond(step / 2, first), omegas[FINER // 2])
+    third = _rates(beyond(step / 2, second), omegas[FINER // 2])
+    fourth = _rates(beyond(step, third), omegas[FINER])
+    matrix, quaternion, angles = beyond(
+        step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)]
+    )
+    if method == "exponential":  # of which Euler angles have none
+        turn = _turn(step, moments, omegas)
+        matrix = dcm_from_rotation_vector(turn) @ state[0]
+        quaternion = multiply_quaternions(
+            state[1], quaternion_from_axis_angle(turn, np.sqrt(turn @ turn)) if turn.any() else np.eye(4)[0]
+        )
+    return matrix, quaternion, angles
+
+
+def _turn(step, moments, omegas):
+    """Return the rotation vector of a step of the fourth order (Magnus)."""
+    one, other = (
+        np.array(_turned_on(omegas[int(FINER * point)], moments, step * (point - int(FINER * point) / FINER))[1])
+        for point in GAUSS
+    )
+    return step / 2 * (one + other) + 3**0.5 / 12 * step**2 * np.cross(one, other)
 
 
 # What the numbers of a run say.

@@ -1,5 +1,5 @@
-import { AXES, IDENTITY, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromBodyFixed, dcmFromQuaternion, dot, gimbalLockMargin,
-  length, multiply, nearestDcm, scale, times, transpose, unit } from './mathematics.js';
+import { AXES, IDENTITY, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed, dcmFromQuaternion, dot,
+  gimbalLockMargin, length, multiply, multiplyQuaternions, nearestDcm, quaternionFromAxisAngle, scale, times, transpose, unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, follow, group, liveText, onceAFrame, open, plain, player, put, slider,
   stage, write, writeWords } from './shared.js';
 
@@ -7,14 +7,14 @@ import { Sheet, button, change, choice, degrees, element, follow, group, liveTex
 const MOMENTS = { racket: [1.2, 16, 17], book: [6.9, 13.3, 19.7] };   // g m^2
 const DESCRIPTIONS = { matrix: 'Matrix', quaternion: 'Quaternion', angles: 'Euler angles' };
 const COLOURS = { matrix: 'A', quaternion: 'D', angles: 'C' };
-const SPIN = 4, SECONDS = 20, FINER = 10, LARGEST = 1e6, SAMPLE = 0.1;
+const SPIN = 4, SECONDS = 20, FINER = 10, LARGEST = 1e4, SAMPLE = 0.1;
 const SIZE = 118, LONGEST = 1.25, LEFT = -128, RIGHT = 168;
 const FAULT = [24, 124, -16, 2], ERROR = [156, 256, -12, 1], MARGIN = [288, 324, 0, 90];
 
 // ---- the integration -----------------------------------------------------------------------------------
 
-// A state is one list: the angular velocity along A, a quaternion, and then, but not in the reference, the
-// nine entries of a matrix row by row and three Euler angles in the sequence zxy.
+// A reference is the angular velocity along A and a quaternion, found in fine steps. A state is a quaternion, the nine
+// entries of a matrix row by row and three Euler angles in the sequence zxy: each is given the reference's angular velocity.
 export const angularAcceleration = ([x, y, z], [a, b, c]) => [
   -(y * (c * z) - z * (b * y)) / a, -(z * (a * x) - x * (c * z)) / b, -(x * (b * y) - y * (a * x)) / c];
 
@@ -31,27 +31,52 @@ export function angleRates([, theta, phi], [x, y, z]) {
   return [psiRate, cosine * x + sine * z, y - Math.sin(theta) * psiRate];
 }
 
-function rates(state, moments) {
-  const omega = state.slice(0, 3), changes = [...angularAcceleration(omega, moments), ...quaternionRate(state.slice(3, 7), omega)];
-  return state.length < 8 ? changes : [...changes, ...dcmRate(state.slice(7, 16), omega), ...angleRates(state.slice(16), omega)];
-}
-
-export function stepped(state, step, method, moments) {
-  const beyond = (far, slopes) => state.map((value, k) => value + far * slopes[k]);
-  const first = rates(state, moments);
-  if (method === 'Euler') return beyond(step, first);
-  const second = rates(beyond(step / 2, first), moments), third = rates(beyond(step / 2, second), moments);
-  const fourth = rates(beyond(step, third), moments);
+// One Runge-Kutta step from the slopes that it asks for at each stage.
+function rungeKutta(state, step, slopes) {
+  const beyond = (far, slope) => state.map((value, k) => value + far * slope[k]);
+  const first = slopes[0](state), second = slopes[1](beyond(step / 2, first)), third = slopes[1](beyond(step / 2, second));
+  const fourth = slopes[2](beyond(step, third));
   return beyond(step / 6, first.map((a, k) => a + 2 * second[k] + 2 * third[k] + fourth[k]));
 }
 
-const quaternionOf = (state) => state.slice(3, 7);
-const withUnitQuaternion = (state) => [...state.slice(0, 3), ...unit(quaternionOf(state)), ...state.slice(7)];
+const fine = (reference, step, moments) => {
+  const slope = (at) => [...angularAcceleration(at, moments), ...quaternionRate(at.slice(3, 7), at)];
+  const [x, y, z, ...quaternion] = rungeKutta(reference, step, [slope, slope, slope]);
+  return [x, y, z, ...unit(quaternion)];
+};
+
+const rates = (state, omega) => [...quaternionRate(state.slice(0, 4), omega), ...dcmRate(state.slice(4, 13), omega),
+  ...angleRates(state.slice(13), omega)];
+
+// The turn of a step of the fourth order (Magnus), from the angular velocity at its two Gauss points.
+const GAUSS = [0.5 - Math.sqrt(3) / 6, 0.5 + Math.sqrt(3) / 6];
+function turnOf(step, moments, references) {
+  const [one, other] = GAUSS.map((point) => {
+    const before = Math.floor(FINER * point), slope = (at) => angularAcceleration(at, moments);
+    return rungeKutta(references[before].slice(0, 3), step * (point - before / FINER), [slope, slope, slope]);
+  });
+  return add(scale(step / 2, add(one, other)), scale(Math.sqrt(3) / 12 * step * step, cross(one, other)));
+}
+
+// The state one step later; the references are those of the finer steps in between.
+export function stepped(state, step, method, moments, references) {
+  const slopes = [0, FINER / 2, FINER].map((k) => (at) => rates(at, references[k].slice(0, 3)));
+  if (method === 'Euler') {
+    const slope = slopes[0](state);
+    return state.map((value, k) => value + step * slope[k]);
+  }
+  const later = rungeKutta(state, step, slopes);
+  if (method !== 'exponential') return later;
+  const turn = turnOf(step, moments, references), angle = length(turn);   // of which Euler angles have none
+  return [...multiplyQuaternions(state.slice(0, 4), quaternionFromAxisAngle(turn, angle)),
+    ...multiply(dcmFromAxisAngle(turn, angle), rowsOf(state.slice(4, 13))).flat(), ...later.slice(13)];
+}
+
 const rowsOf = (list) => [list.slice(0, 3), list.slice(3, 6), list.slice(6, 9)];
 
 // The matrix that each description stands for; of a quaternion it is |q|^2 times an orthogonal one.
-const MATRICES = { matrix: (state) => rowsOf(state.slice(7, 16)), quaternion: (state) => dcmFromQuaternion(quaternionOf(state)),
-  angles: (state) => dcmFromBodyFixed(state.slice(16), 'zxy') };
+const MATRICES = { matrix: (state) => rowsOf(state.slice(4, 13)), quaternion: (state) => dcmFromQuaternion(state.slice(0, 4)),
+  angles: (state) => dcmFromBodyFixed(state.slice(13), 'zxy') };
 
 export const fault = (matrix) => Math.max(...multiply(matrix, transpose(matrix)).flatMap(
   (row, i) => row.map((entry, j) => Math.abs(entry - (i === j)))));
@@ -67,8 +92,8 @@ export class Run {
     Object.assign(this, { step, method, restored, moments, axis: AXES.indexOf(axis) });
     const omega = AXES.map((other) => (other === axis ? SPIN : disturbance));
     this.momentum = unit(omega.map((entry, k) => entry * this.moments[k]));
-    this.states = [[...omega, 1, 0, 0, 0, ...IDENTITY.flat(), 0, 0, 0]];
-    this.references = [this.states[0].slice(0, 7)];
+    this.states = [[1, 0, 0, 0, ...IDENTITY.flat(), 0, 0, 0]];
+    this.references = [[...omega, 1, 0, 0, 0]];
     this.flips = [];   // the steps after which the spin axis has turned over
     this.every = Math.max(1, Math.round(SAMPLE / step));
     this.curves = new Map();   // path data, longer with every sample
@@ -80,26 +105,23 @@ export class Run {
   get last() { return this.states.length - 1; }
 
   next() {
-    const state = stepped(this.states[this.last], this.step, this.method, this.moments);
-    if (!state.slice(0, 16).every((entry) => Math.abs(entry) < LARGEST) || !state.every(Number.isFinite)) {
+    const references = [this.references[this.last]];
+    for (let k = 0; k < FINER; k += 1) references.push(fine(references[k], this.step / FINER, this.moments));
+    const state = stepped(this.states[this.last], this.step, this.method, this.moments, references);
+    if (!state.slice(0, 13).every((entry) => Math.abs(entry) < LARGEST) || !state.every(Number.isFinite)) {
       this.ended = true;
       return;
     }
-    if (this.restored) {
-      state.splice(0, 7, ...withUnitQuaternion(state.slice(0, 7)));
-      state.splice(7, 9, ...nearestDcm(MATRICES.matrix(state)).dcm.flat());
-    }
-    let reference = this.references[this.last];
-    for (let k = 0; k < FINER; k += 1) reference = withUnitQuaternion(stepped(reference, this.step / FINER, 'Runge-Kutta', this.moments));
+    if (this.restored) state.splice(0, 13, ...unit(state.slice(0, 4)), ...nearestDcm(MATRICES.matrix(state)).dcm.flat());
     this.states.push(state);
-    this.references.push(reference);
+    this.references.push(references[FINER]);
     const side = Math.sign(dot(this.truth(this.last)[this.axis], this.momentum));
     if (side !== this.side) this.flips.push(this.last);
     this.side = side;
     this.sample();
   }
 
-  truth(k) { return dcmFromQuaternion(quaternionOf(this.references[k])); }
+  truth(k) { return dcmFromQuaternion(this.references[k].slice(3)); }
 
   // Margin of the reference to lock, in degrees.
   marginAt(k) { return degrees(gimbalLockMargin(bodyFixedFromDcm(this.truth(k), 'zxy'), 'zxy')); }
@@ -252,7 +274,8 @@ export function render({ model, el }) {
     ...[['racket', 'a racket'], ['book', 'a book']].map(([name, title]) => button(title, () => setMoments(MOMENTS[name]))));
   const axis = choice({ name: 'Spin about', options: AXES.map((name) => [name, '']), change: (value) => change(model, { axis: value }) });
   const ranks = axis.element.querySelectorAll('option');
-  const method = choice({ name: 'Method', options: ['Euler', ['Runge-Kutta', 'Runge–Kutta, fourth order']],
+  const method = choice({ name: 'Method', options: ['Euler', ['Runge-Kutta', 'Runge–Kutta, fourth order'],
+    ['exponential', 'Exponential, fourth order']],
     change: (value) => change(model, { method: value }) });
   const step = slider({ symbol: '', name: 'Step', unit: 'milliseconds', sign: ' ms', factor: 0.001, min: 5, max: 100, step: 5, more: () => '',
     change: (value) => change(model, { step: value }) });
@@ -309,7 +332,7 @@ export function render({ model, el }) {
       moment.mark(refused ? 'refused' : '');
     });
     AXES.forEach((about, k) => write(ranks[k], `${about} (${rank(settings.moments, k)})`));
-    writeWords(aside, `Dashed: the reference, with steps ten times finer. The arrow $\\mathbf{H}$ is the angular momentum of the ${body}, which keeps its direction.`);
+    writeWords(aside, `Dashed: the reference, with steps ten times finer, whose angular velocity every description is given. The arrow $\\mathbf{H}$ is the angular momentum of the ${body}, which keeps its direction.`);
     axis.show(settings.axis);
     method.show(settings.method);
     step.show(settings.step);
@@ -332,7 +355,7 @@ export function render({ model, el }) {
     const now = (run.step * k).toFixed(1), count = run.flips.filter((flip) => flip <= k).length;
     const begin = `After ${now} s the ${what} ${often(count, middle)}. `;
     if (run.ended && k === run.last) {
-      return `${begin}Here the run ends: the computed numbers have passed a million. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
+      return `${begin}Here the run ends: the computed numbers have passed ten thousand. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
     }
     if (name === 'angles') {
       return `${begin}The Euler angles always give a valid orientation. It is wrong by ${power(wrong)} rad, and ${Math.round(run.marginAt(k))}° from gimbal lock.`;
