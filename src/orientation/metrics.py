@@ -115,8 +115,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     if dcms.ndim != 3 or not len(dcms):
         raise ValueError(f"dcms has shape {dcms.shape}, where (n, 3, 3) with at least one of them was expected")
     check_dcm(dcms)
-    weights = _shares(weights, len(dcms))
-    average = numpy.tensordot(weights, dcms, axes=1)
+    shares = _shares(weights, len(dcms))
+    average = numpy.tensordot(shares, dcms, axes=1)
     if metric == "entries":
         try:
             return nearest_dcm(average).dcm
@@ -125,7 +125,7 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
                 "these orientations have no unique mean by their entries: several direction cosine matrices are "
                 "equally near to their average. They are spread too evenly"
             ) from None
-    return _mean_by_angle(dcms, weights, average)
+    return _mean_by_angle(dcms, shares, average)
 
 
 def _shares(weights, count):

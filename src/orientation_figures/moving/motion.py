@@ -6,7 +6,8 @@ from .figure import MovingFigure, svg_on
 from .state import Numbers
 
 #: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's are those that
-#: Brody (1985) measured, rounded; its a_x runs along its handle and a_z out of its face. The book's a_x runs along its long edges.
+#: Brody (1985) measured, rounded; its a_x runs along its handle and a_z out of its face. The book's
+#: a_x runs along its long edges.
 MOMENTS = {"racket": (1.2, 16.0, 17.0), "book": (6.9, 13.3, 19.7)}
 DESCRIPTIONS = {"matrix": "direction cosine matrix", "quaternion": "quaternion", "angles": "Euler angles"}
 SECONDS = 20.0

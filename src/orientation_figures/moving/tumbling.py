@@ -101,7 +101,7 @@ def _rates(state, omega):
 
 
 def _step(state, step, method, moments, omegas):
-    """Return the matrix, the quaternion and the angles one step later; ``omegas`` are those of the finer steps from here."""
+    """Return matrix, quaternion and angles one step later; ``omegas`` are those of the finer steps from here."""
 
     def beyond(length, slopes):
         return tuple(value + length * slope for value, slope in zip(state, slopes))
