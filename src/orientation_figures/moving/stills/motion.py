@@ -35,9 +35,9 @@ def drawing(figure):
         f"{DESCRIPTIONS[figure.description]} says after {run['time'][-1]:.1f} seconds, {restored}, with the "
         f"{METHODS[figure.method]} method in steps of {1000 * figure.step:g} milliseconds. It {times}. "
         f"The unit vectors of A, which should be 1 long, are {lengths} long; the matrix is not orthogonal by "
-        f"{_words(fault)}, and the orientation is wrong by {_words(error)} radians. Dashed: the reference, computed with steps ten times "
-        f"finer; the angular velocity of those steps is given to every description. The arrow H is "
-        f"the angular momentum, which keeps its direction. In the corner stands the triad of N.",
+        f"{_words(fault)}, and the orientation is wrong by {_words(error)} radians. Dashed: the reference, "
+        f"computed with steps ten times finer; the angular velocity of those steps is given to every description. "
+        f"The arrow H is the angular momentum, which keeps its direction. In the corner stands the triad of N.",
         scale=SIZE,
     )
     corner = np.array((-136, -108, 0)) / SIZE @ drawing.view
