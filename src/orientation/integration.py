@@ -7,9 +7,6 @@ it is the right one depends on them.
 from collections.abc import Callable
 from typing import Any
 
-from collections.abc import Callable
-from typing import Any
-
 from ._numbers_and_symbols import number_array
 from ._types import Result, Values
 from .direction_cosines import check_dcm

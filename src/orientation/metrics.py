@@ -2,8 +2,6 @@
 
 from typing import Any
 
-from typing import Any
-
 from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate, number_array
 from ._types import Result, Values
 from .direction_cosines import DCM_GUARD, check_dcm, nearest_dcm
