@@ -161,3 +161,14 @@ def test_kinds_are_kept_while_only_the_prose_changes(tmp_path, monkeypatch):
         assert cells.kinds_of(page) == [{"needs": []}]
     assert len(ran) == 2
     assert len([json.loads(path.read_text()) for path in (tmp_path / "kept").rglob("*.json")]) == 1
+
+
+def test_code_is_parsed_from_several_threads():
+    """Python 3.11 ends with a SystemError where two threads make syntax trees at the same time."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    from website.used import parse
+
+    code = "x = " + " + ".join(f"f({number}, [{number}, (a, b)])" for number in range(60))
+    with ThreadPoolExecutor(4) as pool:
+        assert len(list(pool.map(parse, [code] * 400))) == 400

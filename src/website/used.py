@@ -8,6 +8,7 @@ What is not reached, such as the grader, does not make a chapter run again.
 import ast
 import hashlib
 import re
+import threading
 from functools import cache
 from pathlib import Path
 
@@ -19,6 +20,13 @@ PLUGIN = "orientation_course"
 SEALED = SOURCES / PLUGIN / "sealed"
 #: Versions of everything else that is imported.
 PINS = REPOSITORY / "constraints.txt"
+_PARSING = threading.Lock()
+
+
+def parse(code):
+    """The syntax tree of some code, from any thread: Python 3.11 fails when two threads make trees at once."""
+    with _PARSING:
+        return ast.parse(code)
 
 
 def file_of(module):
@@ -30,7 +38,7 @@ def file_of(module):
 def modules_imported(code, module=None):
     """The names of our modules that ``code`` imports; ``module`` is where it stands, for relative imports."""
     found = set()
-    for node in ast.walk(ast.parse(code)):
+    for node in ast.walk(parse(code)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -100,7 +108,7 @@ def code_of(notebook):
     for cell in notebook.cells:
         if cell.cell_type == "code":
             try:
-                ast.parse(cell.source)
+                parse(cell.source)
             except SyntaxError:
                 continue
             codes.append(cell.source)

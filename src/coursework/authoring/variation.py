@@ -124,7 +124,6 @@ def drawn_in(text):
     ]
     if len(calls) != 1:
         raise AuthorError(
-            f"Between the marks for variants stands one `name = draw(...)`; here are {len(calls)}:\n"
-            f"{region[1]}"
+            f"Between the marks for variants stands one `name = draw(...)`; here are {len(calls)}:\n{region[1]}"
         )
     return calls[0]

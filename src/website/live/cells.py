@@ -24,7 +24,7 @@ import nbformat
 
 from ..execution import STORED
 from ..paths import PACKAGES, REPOSITORY, fingerprint
-from ..used import fingerprint_of_used
+from ..used import fingerprint_of_used, parse
 
 PYTHON = Path(__file__).parent / "python"
 RESULTS = REPOSITORY / "_build" / "runtime"
@@ -117,7 +117,7 @@ def names_bound(code):
 
 def names_taken(code):
     """The names that a cell may take from the cells before it: all it uses, but for what it imports."""
-    tree = ast.parse(code)
+    tree = parse(code)
     imported = {
         alias.asname or alias.name.partition(".")[0]
         for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom)) for alias in node.names
