@@ -1,7 +1,7 @@
 """Every question of the book, tried as students will try it."""
 
 import pytest
-from test_release import CELLS, COURSE, made_in, write_source
+from test_release import CELLS, COURSE, made_in, needs_solutions, write_source
 
 from coursework.__main__ import main
 from coursework.authoring import release
@@ -23,6 +23,7 @@ def test_every_question_passes_and_names_its_mistakes(name):
         assert leaks([source], released_texts(COURSE.exercises, COURSE.sealed, "none")) == []
 
 
+@needs_solutions
 @pytest.mark.long
 def test_nothing_leaks_into_the_archive(tmp_path):
     archive = pack(COURSE, tmp_path / "exercises.zip")

@@ -17,6 +17,8 @@ from coursework.authoring.release import release
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, shown
 from coursework.checking import questions, variants
+from coursework.checking.plain import to_plain
+from coursework.grading import marking
 
 NAME = "levers/see-saw"
 TEXT = "## See-saw\n\nA force of ${{force}}$ N acts ${{arm}}$ m from the hinge. Give its moment as `moment`, in N m."
@@ -72,6 +74,10 @@ def student_with(number):
     )
 
 
+def variant(student):
+    return variants.variant_of(student, NAME, 6)
+
+
 @pytest.mark.parametrize("number", range(6))
 def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number):
     coursework.me(student_with(number) if number else "")
@@ -113,6 +119,23 @@ def test_the_grader_finds_the_same_variant_from_the_roster():
         assert variants.variant_of(spelling, "levers/see-saw", 16) == variants.variant_of(
             "ada@uni.example", "levers/see-saw", 16
         )
+
+
+def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course, tmp_path):
+    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path)
+    assert len(found[NAME]["others"]) == 5 and "others" not in found["levers/plain"]
+    for number in (0, 4):
+        student = student_with(number) if number else next(f"{k}" for k in range(99) if not variant(f"{k}"))
+        own = marking.of_student(found, student)
+        for other in range(6):
+            given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public["given"]
+            plain = to_plain(given["force"] * given["arm"])
+            mark = marking.mark(NAME, own[NAME], {"outcome": "recorded", "plain": plain})
+            expected = ("correct", "", 1) if other == number else ("wrong", "other numbers", 0)
+            assert (mark["outcome"], mark["note"], mark["points"]) == expected
+        plain = {"outcome": "recorded", "plain": to_plain(7)}
+        assert marking.mark("levers/plain", own["levers/plain"], plain)["points"] == 1
+        assert marking.asked_of_sandbox(own)[NAME]["given"] == own[NAME]["public"]["given"]
 
 
 def test_an_edition_draws_afresh():

@@ -63,6 +63,14 @@ def find_course(start="."):
     )
 
 
+def edition_of(folder):
+    """The edition of the course that a folder belongs to; empty where it belongs to none."""
+    try:
+        return find_course(folder).edition
+    except AuthorError:
+        return ""
+
+
 def _read(path):
     try:
         said = tomllib.loads(path.read_text("utf8"))

@@ -40,10 +40,7 @@ def exercise_notebook(source):
     for number, cell in enumerate(source.notebook.cells):
         cell = copy.deepcopy(cell)
         cell.metadata = {}
-        varied = drawn_in(cell.source) if cell.cell_type == "code" else None
-        if varied:
-            cells.append(nbformat.v4.new_code_cell(f'{varied[0]} = variant("{varied[1]}")\n{varied[0]}'))
-        elif cell.cell_type == "markdown" and number and drawn_in(source.notebook.cells[number - 1].source):
+        if cell.cell_type == "markdown" and number and drawn_in(source.notebook.cells[number - 1].source):
             continue  # the text of a question with variants is shown by the cell before
         elif number in source.figures:
             cells.append(nbformat.v4.new_markdown_cell(_image(source.figures[number])))

@@ -15,7 +15,7 @@ import coursework
 from coursework.checking.variants import Given
 
 from . import author
-from .variation import COUNT, Rule, drawn_in, shown
+from .variation import COUNT, VARIANTS, Rule, drawn_in, shown
 
 #: The source whose questions stand inside the chapters: only its sealed file is made.
 CHAPTERS = "chapters"
@@ -193,12 +193,18 @@ def answered_in(text, owners):
 
 def solved(text):
     """A cell with its solution, without the marks around it and without hidden tests."""
-    return HIDDEN.sub("", SOLUTION.sub(lambda region: region[1], text)).rstrip()
+    return HIDDEN.sub("", SOLUTION.sub(lambda region: region[1], in_variants(text))).rstrip()
 
 
 def posed(text, owners):
     """The same cell as students get it: with blanks, and without hidden tests."""
-    return HIDDEN.sub("", SOLUTION.sub(lambda region: blank(region[1], owners), text)).rstrip()
+    return HIDDEN.sub("", SOLUTION.sub(lambda region: blank(region[1], owners), in_variants(text))).rstrip()
+
+
+def in_variants(text):
+    """A cell that says what may vary as students get it: it shows their variant."""
+    found = drawn_in(text)
+    return text if found is None else VARIANTS.sub("", text) + f'{found[0]} = variant("{found[1]}")\n{found[0]}'
 
 
 def blank(region, owners):

@@ -17,7 +17,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
 
-from ..authoring.course import find_course
+from ..authoring.course import edition_of, find_course
 from . import intake, marking
 from .store import FORMAT, Store, as_text, write
 
@@ -50,6 +50,7 @@ class Course:
 
     def __init__(self, solutions=None, assignments=None):
         folder = Path(solutions or find_course().sources)
+        self.edition = edition_of(folder)
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
         if not self.sources:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")
@@ -88,7 +89,7 @@ class Course:
     def questions(self, assignments, kept):
         """The questions of some assignments, by assignment and name."""
         stems = sorted({stem for assignment in assignments for stem in self.assignments[assignment]})
-        found = marking.load_questions([self.sources[stem] for stem in stems], kept)
+        found = marking.load_questions([self.sources[stem] for stem in stems], kept, self.edition)
         return {assignment: {name: found[name] for name in self.names[assignment]} for assignment in assignments}
 
 
@@ -242,7 +243,7 @@ class _Jobs:
 
     def __iter__(self):
         for order, one in enumerate(self.work):
-            asked = marking.asked_of_sandbox(self.questions[one.assignment])
+            asked = marking.asked_of_sandbox(marking.of_student(self.questions[one.assignment], one.student))
             for part, notebook in enumerate(one.notebooks):
                 yield {"id": f"{order} {part}", "cells": notebook.cells, "questions": asked, "seed": 0}
 
@@ -345,7 +346,7 @@ def _says_little(answer):
 def marked(record, questions, decisions=None):
     """A record with the verdicts on its answers."""
     marks = {}
-    for name, question in questions.items():
+    for name, question in marking.of_student(questions, record["student"]).items():
         found = marking.mark(name, question, record["answers"].get(name, {"outcome": "missing"}), record["finished"])
         decided = (decisions or {}).get((record["student"], name))
         if decided is not None and found["outcome"] == "undecided":

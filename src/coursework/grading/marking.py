@@ -18,6 +18,7 @@ from ..checking.plain import NotPlain, read_plain
 from ..checking.plugins import folders_of, packages
 from ..checking.questions import compare
 from ..checking.reply import Reply
+from ..checking.variants import variant_of
 from .store import write
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
@@ -39,9 +40,35 @@ def names_asked(path):
     return checked_names(SimpleNamespace(cells=cells))
 
 
-def questions_of(path):
+def questions_of(path, edition=""):
     """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
-    return {name: about(question) for name, question in read_source(path).questions.items()}
+    source = read_source(path, edition=edition)
+    found = {name: about(question) for name, question in source.questions.items()}
+    for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
+        for name, question in read_source(path, number, edition).questions.items():
+            found[name].setdefault("others", []).append(about(question))
+    return found
+
+
+def of_student(questions, identity):
+    """The questions of a student, each in the student's own variant.
+
+    Parameters
+    ----------
+    questions : dict
+        As :func:`load_questions` gives them.
+    identity : str
+        Of the student, as the roster has it: what a notebook says of itself does not count.
+    """
+    own = {}
+    for name, question in questions.items():
+        variants = [question, *question.get("others", [])]
+        number = variant_of(identity, name, len(variants), question["public"].get("edition", ""))
+        own[name] = variants[number]
+        if len(variants) > 1:
+            siblings = [other for order, other in enumerate(variants) if order != number]
+            own[name] = {**own[name], "siblings": siblings}
+    return own
 
 
 def about(question):
@@ -71,7 +98,7 @@ def _canonical_of(question):
     return [MP.nstr(number, 30) for number in canonical(question.public, reading)]
 
 
-def load_questions(paths, kept):
+def load_questions(paths, kept, edition=""):
     """The questions of several notebooks with solutions, by name.
 
     What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
@@ -79,9 +106,12 @@ def load_questions(paths, kept):
     """
     ours, found = _digest_of_package(), {}
     for path in map(Path, paths):
-        place = Path(kept) / f"{path.stem}-{hashlib.sha256(ours + path.read_bytes()).hexdigest()[:16]}.json"
+        place = (
+            Path(kept)
+            / f"{path.stem}-{hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]}.json"
+        )
         if not place.exists():
-            write(place, json.dumps(questions_of(path), ensure_ascii=False))
+            write(place, json.dumps(questions_of(path, edition), ensure_ascii=False))
         found.update(json.loads(place.read_text("utf8")))
     return found
 
@@ -108,6 +138,8 @@ def asked_of_sandbox(questions):
             if question["public"]["kind"] != "function"
             else {"arguments": question["public"]["calls"], "as": question["public"]["takes"]},
         }
+        # The numbers of the student's own variant, which its notebook may use by name.
+        | ({"given": question["public"]["given"]} if question["public"].get("given") else {})
         for name, question in questions.items()
     }
 
@@ -135,6 +167,10 @@ def mark(name, question, answer, finished=True):
         question, and ``group``, which identical answers have in common.
     """
     reply, text = judge(name, question, answer, finished)
+    if reply.outcome == "wrong" and any(
+        judge(name, other, answer)[0].outcome == "correct" for other in question.get("siblings", [])
+    ):
+        reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
     notes = question["known"].get(text, {}).get("notes") if reply.outcome == "wrong" else None
     share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     return {

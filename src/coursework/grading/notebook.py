@@ -27,6 +27,7 @@ import types
 import warnings
 
 from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.variants import Given
 
 LONGEST_ERROR = 500
 # Magics whose body is the student's code; the others are about the notebook and do nothing here.
@@ -141,7 +142,8 @@ class _Notebook:
             del sys.modules[name]
         package = types.ModuleType("coursework")
         package.check = self.check
-        package.hint = package.progress = nothing
+        package.hint = package.progress = package.me = nothing
+        package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
         sys.modules["coursework"] = package
         sys.argv = ["notebook"]
         sys.path.insert(0, self.folder)

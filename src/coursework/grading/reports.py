@@ -31,6 +31,7 @@ DEEDS = {
     "complement": "gave the complementary angle",
     "not turned": "left the components as they were, along the first frame",
     "turned the wrong way": "multiplied by the transpose",
+    "other numbers": "answered with other numbers than those given to them",
     "stray symbol": "used a symbol that the question does not have",
     "undefined": "gave something without a finite value",
     "too large": "gave something too large to be worked out",

@@ -442,6 +442,7 @@ class _Once:
                 "seed": job.get("seed", 0),
                 "variables": {q: about["variable"] for q, about in job["questions"].items() if about.get("variable")},
                 "calls": {q: about["calls"] for q, about in job["questions"].items() if about.get("calls")},
+                "given": {q: about["given"] for q, about in job["questions"].items() if about.get("given")},
             }
         ).encode()
         self.records = records.Records(len(job["cells"]))
