@@ -117,6 +117,7 @@ def test_the_preview_shows_what_students_hear(statics, tmp_path):
     ):
         assert part in text
     assert "slope" not in text and "Leaks" not in text
+    assert "<math" in text and "$b$" not in text
     with pytest.raises(AuthorError, match="first-steps.ipynb has first-steps/area, first-steps/slope"):
         trial(find_course(statics), "first-steps/none", tmp_path / "try.html")
 

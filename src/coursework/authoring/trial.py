@@ -1,6 +1,7 @@
 """The author's preview of a question: its text, and everything that a student may hear about an answer."""
 
 import html
+import re
 from pathlib import Path
 
 from ..checking.reply import to_html
@@ -40,7 +41,7 @@ def trial(course, name, page):
     )
     findings = [try_question(question) for question in chosen]
     Path(page).parent.mkdir(parents=True, exist_ok=True)
-    Path(page).write_text(write_page(findings, None, texts), "utf8")
+    Path(page).write_text(_with_mathematics(write_page(findings, None, texts)), "utf8")
     return page
 
 
@@ -53,6 +54,13 @@ def text_of(source, question):
         elif f"check({question.name!r}" in cell.source.replace('"', "'"):
             return above
     return above
+
+
+def _with_mathematics(page):
+    """The page with its formulas as browsers show them."""
+    from latex2mathml.converter import convert
+
+    return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: convert(html.unescape(found[2])), page)
 
 
 def _hints(question):
