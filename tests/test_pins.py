@@ -2,8 +2,11 @@
 
 import json
 import re
+import shutil
+import subprocess
 import sys
 import tomllib
+from pathlib import Path
 
 import pytest
 from conftest import REPOSITORY
@@ -72,6 +75,30 @@ def test_nothing_is_renewed_by_a_newer_python(monkeypatch):
     monkeypatch.setattr(sys, "version_info", (3, 99, 0, "final", 0))
     with pytest.raises(SystemExit, match="Python that the book supports, 3.11.*this is 3.99"):
         pins.main()
+
+
+def newer_pythons():
+    """The Pythons of this machine that are newer than this one, and that the README names; the newest last."""
+    named = re.findall(r"3\.(\d+)", re.search(r"Python 3[^(]*", (REPOSITORY / "README.md").read_text("utf8"))[0])
+    for minor in sorted(int(text) for text in named if int(text) > sys.version_info.minor):
+        found = shutil.which(f"python3.{minor}")
+        yield from [found] if found else []  # which may be a name without a Python behind it
+        yield from sorted(Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/python"))
+
+
+@pytest.mark.long
+def test_a_newer_python_needs_no_compiler(tmp_path):
+    """QuickJS had no wheel past 3.12: setting up ended in "No such file: gcc"."""
+    answering = [one for one in newer_pythons() if subprocess.run([one, "-c", ""], capture_output=True).returncode == 0]
+    if not answering:
+        pytest.skip("there is no newer Python here")
+    subprocess.run([answering[-1], "-m", "venv", tmp_path / "newer"], check=True)
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
+    command = [tmp_path / "newer" / "bin" / "python", "-m", "pip", "install", "--dry-run", "--only-binary=:all:"]
+    command += ["--quiet", "--constraint", pins.CONSTRAINTS]
+    wanted = [*project["dependencies"], *sum(project["optional-dependencies"].values(), [])]
+    done = subprocess.run([*command, *wanted], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
 
 
 def test_every_command_that_is_named_exists():

@@ -10,18 +10,20 @@ from pathlib import Path
 import pytest
 
 from coursework.checking import plugins, questions
+from website.paths import PACKAGES
 
 SOURCES = Path(__file__).resolve().parent.parent / "src"
 #: What the modules of a room may import of this repository's packages, the room itself not named.
 MAY_IMPORT = {
     "orientation": (),
     "orientation_figures": ("orientation",),
+    "orientation_recordings": (),
     "coursework/checking": (),
     "coursework/authoring": ("coursework.checking",),
     "coursework/grading": ("coursework.checking", "coursework.authoring"),
     "orientation_course": ("coursework", "orientation"),
 }
-OURS = {"orientation", "orientation_figures", "orientation_course", "coursework", "website"}
+OURS = {*PACKAGES, "website"}
 
 
 def imported(path):
@@ -44,6 +46,15 @@ def test_imports_run_one_way(room):
             if name.partition(".")[0] in OURS and not allowed and name != "coursework":
                 found.append(f"{path.relative_to(SOURCES)} imports {name}")
     assert found == []
+
+
+def test_one_list_of_packages():
+    """That of the site, of the folders, and of the program in Pyodide, which can import neither."""
+    folders = {path.parent.name for path in SOURCES.glob("*/__init__.py")}
+    assert folders == OURS
+    program = ast.parse((SOURCES / "website" / "live" / "compile_wheels.py").read_text("utf8"))
+    (ours,) = (one.value for one in program.body if isinstance(one, ast.Assign) and one.targets[0].id == "OURS")
+    assert sorted(ast.literal_eval(ours)) == sorted(f"{name}/" for name in PACKAGES)
 
 
 def test_checking_needs_no_course():
