@@ -61,9 +61,38 @@ $$ a = b $$ (eq-second)
 
 ```{exercise} Try
 :label: exercise-one
+:difficulty: 2
+:minutes: 15
 
 Do it.
 ```
+
+```{predict}
+:label: predict-one
+:answer: B
+Which?
+
+$x$
+: It is *not* this one.
+
+$y$
+: This one.
+```
+
+````{recap}
+```{question}
+:label: question-one
+:number: 0.5
+:tolerance: 0.01
+How much?
+
+0.5
+: Half.
+
+anything else
+: Think of a half.
+```
+````
 """
 
 
@@ -124,7 +153,11 @@ def test_good_book(tmp_path):
         "| a | b |\n| --- | --- |\n| $x^2$ | `code` |",
         "1. first\n\n   - nested *point*",
         "> Quoted",
-        "> **Exercise 1.1 (Try)**\n>\n> Do it.",
+        "> **Exercise 1.1 (Try)**\n>\n> Difficulty 2 of 3, about 15 minutes\n>\n> Do it.",
+        "> **Predict, then see (1)**\n>\n> Which?\n>\n> - **A.** $x$\n> - **B.** $y$",
+        "> **Recap**\n>\n> **Question 1.**\n>\n> How much?",
+        "## Answers to the predictions and the recap\n\n**Prediction 1.**\n\n"
+        "- **A**, not so: It is *not* this one.\n- **B**, right: This one.\n\n**Question 1.**\n\n- **0.5**, right: Half.",
         "**Figure 1.1.** A *line*, as in (1.2).",
     ):
         assert expected in text, text
@@ -146,8 +179,13 @@ FAULTS = {
     "a figure says nothing": (chapter(code=FIGURE.format("")), "no alternative text"),
     "a figure says too little": (chapter(code=FIGURE.format('role="img" aria-label="figure"')), "found 'figure'"),
     "a plot says nothing": (chapter(code=PLOT), "no alternative text"),
+    "no choice is right": (chapter(GOOD_TEXT.replace(":answer: B", ":answer: C")), "the right answer is C"),
+    "a question has no replies": (chapter(GOOD_TEXT.replace("\n: ", "\n")), "must end in its choices"),
+    "a question has no label": (chapter(GOOD_TEXT.replace(":label: predict-one\n", "")), "needs a `:label:`"),
+    "a number has no other": (chapter(GOOD_TEXT.replace("anything else", "0.7")), "to `anything else`"),
+    "an exercise is too hard": (chapter(GOOD_TEXT.replace("difficulty: 2", "difficulty: 4")), "from 1 to 3"),
 }
-LABELS = ("chapter-one", "eq-first", "eq-second", "exercise-one", "fig-line")
+LABELS = ("chapter-one", "eq-first", "eq-second", "exercise-one", "fig-line", "predict-one", "question-one")
 
 
 def file_name(fault):

@@ -4,10 +4,25 @@ Each module has one purpose and a ``setup`` of its own; none of them knows
 what the book is about.
 """
 
-from . import accessible, alternative_text, execution, fonts, lite, live, mathematics, moving, page, take_away
+from . import (
+    accessible,
+    alternative_text,
+    execution,
+    exercises,
+    fonts,
+    lite,
+    live,
+    mathematics,
+    moving,
+    page,
+    progress,
+    questions,
+    take_away,
+)
 
 
 def setup(app):
-    for module in (execution, fonts, mathematics, alternative_text, accessible, take_away, page, moving, live, lite):
+    pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress)
+    for module in (*pages, take_away, page, moving, live, lite):
         module.setup(app)
     return {"version": "1.0", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -10,6 +10,8 @@ from textwrap import indent
 from docutils import nodes
 from sphinx import addnodes
 
+from . import questions
+
 SILENT = (
     nodes.comment, nodes.target, nodes.raw, nodes.system_message, nodes.substitution_definition,
     addnodes.toctree, addnodes.index, addnodes.highlightlang,
@@ -28,6 +30,7 @@ class MarkdownWriter:
         self.section_numbers = env.toc_secnumbers.get(docname, {})
         self.names = env.config.numfig_format
         self.pieces = []  # (is_cell, Markdown or the cell's node)
+        self.answers = []  # to the questions of the page, which stand at its end
 
     # ---- what has a number -------------------------------------------------
 
@@ -109,6 +112,8 @@ class MarkdownWriter:
             return self.figure(node, level)
         if isinstance(node, nodes.block_quote):
             return quote(self.blocks(node.children, level))
+        if isinstance(node, questions.question):
+            return self.question(node, level)
         if isinstance(node, (nodes.Admonition, nodes.topic, nodes.sidebar)):
             return self.admonition(node, level)
         if isinstance(node, nodes.TextElement):
@@ -155,11 +160,33 @@ class MarkdownWriter:
         title = (self.number("exercise", node) + " " + title).strip()
         return quote(f"**{title}**\n\n{self.blocks(children, level)}".strip())
 
+    def question(self, node, level):
+        """A question with its choices; the replies to them are kept for the end of the page."""
+        name = questions.name_of(node)
+        title = f"Predict, then see ({node['place']})" if node["predicts"] else f"{name}."
+        parts, replies = [f"**{title}**"], []
+        for child in node.children:
+            if isinstance(child, questions.choice_list):
+                choices = [f"- **{choice['letter']}.** {self.blocks(choice.children)}" for choice in child.children]
+                parts.append("\n".join(choices))
+            elif isinstance(child, questions.reply_list):
+                for reply in child.children:
+                    verdict = "right" if reply["right"] else "not so"
+                    body = indent(self.blocks(reply.children), "  ").lstrip()
+                    replies.append(f"- **{reply['name']}**, {verdict}: {body}")
+            else:
+                parts.append(self.block(child, level))
+        self.answers.append("\n\n".join([f"**{name}.**", "\n".join(replies)]))
+        text = "\n\n".join(filter(None, parts))
+        return quote(text) if node["predicts"] else text
+
     # ---- the page ----------------------------------------------------------
 
     def page(self, document):
         """The page as a list of ``(is_cell, text or node)``, in order."""
         self.walk(document, 0)
+        if self.answers:
+            self.say("\n\n".join(["## Answers to the predictions and the recap", *self.answers]))
         return self.pieces
 
     def say(self, text):

@@ -101,12 +101,28 @@ def keep_punctuation(formula):
         after.replace_with(after[1:])
 
 
+def move_answers(text):
+    """Put the replies to the questions of a page, which a fold would hide, at its end."""
+    folds = text.select("details.replies")
+    if not folds:
+        return
+    answers = BeautifulSoup('<section id="answers"><h2>Answers</h2></section>', "html.parser").section
+    for fold in folds:
+        box = fold.find_parent(class_="question")
+        name = box.select_one(".admonition-title, .question-name").get_text().strip()
+        answers.append(BeautifulSoup(f'<p class="question-name leads-on">{name}</p>', "html.parser"))
+        answers.append(fold.ul.extract())
+        fold.decompose()
+    text.section.append(answers)
+
+
 def article(site, page):
     """The text of a page, ready to stand in one document with the others."""
     soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
     text = soup.select_one("article")
     for element in text.select(ONLY_ON_SCREEN):
         element.decompose()
+    move_answers(text)
     # A PDF has no MathML: screen readers get the formula as it is written in TeX.
     for formula in text.select(".katex"):
         tex = formula.select_one("annotation").get_text()
