@@ -158,7 +158,7 @@ def test_right_answer_of_the_checker_counts(context, site):
     page = opened(context, site)
     page.evaluate(
         """document.querySelector("article").insertAdjacentHTML("beforeend",
-        '<div class="coursework-reply" data-outcome="correct"><p><strong><span aria-hidden="true">+</span> Correct</strong>'
+        '<div class="coursework-reply" data-outcome="correct"><p><strong><span aria-hidden="true">+</span></strong>'
         + ' <span>chapters/right-handed</span></p></div>')"""
     )
     page.wait_for_function(f"({KEPT})().pages?.['{CHAPTER}']?.checked.includes('chapters/right-handed')")

@@ -10,6 +10,7 @@ from .motion import MotionFigure
 from .nine_numbers import NineNumbersFigure
 from .phone import PhoneFigure
 from .quaternion import QuaternionFigure
+from .simple import SimpleFigure
 from .successive import SuccessiveFigure
 from .triad import TriadFigure
 
@@ -21,6 +22,7 @@ __all__ = [
     "PhoneFigure",
     "QuaternionFigure",
     "SequenceExplorer",
+    "SimpleFigure",
     "SuccessiveFigure",
     "TriadFigure",
 ]
