@@ -157,7 +157,8 @@ def test_good_book(tmp_path):
         "> **Predict, then see (1)**\n>\n> Which?\n>\n> - **A.** $x$\n> - **B.** $y$",
         "> **Recap**\n>\n> **Question 1.**\n>\n> How much?",
         "## Answers to the predictions and the recap\n\n**Prediction 1.**\n\n"
-        "- **A**, not so: It is *not* this one.\n- **B**, right: This one.\n\n**Question 1.**\n\n- **0.5**, right: Half.",
+        "- **A**, not so: It is *not* this one.\n- **B**, right: This one.\n\n"
+        "**Question 1.**\n\n- **0.5**, right: Half.",
         "**Figure 1.1.** A *line*, as in (1.2).",
     ):
         assert expected in text, text

@@ -16,8 +16,8 @@ def drawing(figure):
         for name, row in zip("xyz", figure.dcm, strict=True)
     ]
     drawing = Drawing(
-        f"The triads of the frames N and A from one origin. They share {figure.axis}, and A is turned about it through theta, "
-        f"{math.degrees(figure.angle):.0f} degrees. Along N, {', '.join(rows)}.",
+        f"The triads of the frames N and A from one origin. They share {figure.axis}, and A is turned about it "
+        f"through theta, {math.degrees(figure.angle):.0f} degrees. Along N, {', '.join(rows)}.",
         scale=SIZE,
     )
     axis = np.eye(3)[k]
