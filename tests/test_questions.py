@@ -10,6 +10,9 @@ CHAPTER = "chapters/reference-frames"
 COVERING = '.question[data-covers]:not([data-covers="0"])'
 KEPT = "() => JSON.parse(Object.entries(localStorage).find(([key]) => key.startsWith('progress of'))?.[1] ?? '{}')"
 
+SHOWN = """() => [...document.querySelectorAll("article section > :not(section)")].flatMap(
+  (block, place) => block.checkVisibility() ? [place] : [])"""
+
 
 @pytest.fixture
 def context(browser):
@@ -168,3 +171,28 @@ def test_paper_shows_the_answers(context, site):
     page = opened(context, site)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert page.locator("details.replies:not([open])").count() == 0 and page.locator(".covered").count() == 0
+
+
+def test_lecture_mode_goes_through_the_page_step_by_step(context, site):
+    page = opened(context, site)
+    whole = page.locator("article section > :not(section)").count()
+    page.keyboard.press("l")
+    bar = page.locator(".lecture-bar")
+    assert bar.inner_text().startswith("1 of ")
+    steps = int(bar.inner_text().split()[-1])
+    assert steps >= 10
+    seen = set()
+    for step in range(steps):
+        assert bar.inner_text() == f"{step + 1} of {steps}"
+        shown = page.evaluate(SHOWN)
+        assert shown
+        seen |= set(shown)
+        page.keyboard.press(["ArrowRight", "PageDown", " "][step % 3])
+    hidden = page.evaluate("[...document.querySelectorAll('.uncovered, .practise')].length")
+    assert len(seen) >= whole - hidden - 2, "no block of the page is left out"
+    page.keyboard.press("Home")
+    assert bar.inner_text().startswith("1 of ")
+    assert violations(page) == []
+    page.keyboard.press("Escape")
+    assert bar.count() == 0
+    assert page.locator("h1").is_visible()

@@ -21,6 +21,9 @@ from .paths import NODE, NODE_MODULES, WEBSITE, where
 SCRIPT = WEBSITE / "katex.mjs"
 KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 
+PUNCTUATION = tuple(".,;:!?)")
+SHORT = 30  # signs of a formula that need not be broken
+
 logger = logging.getLogger(__name__)
 
 
@@ -79,6 +82,18 @@ def render(node, display):
         return f'<code class="bad-tex">{escape(tex)}</code>'
 
 
+def keep_punctuation(app, doctree, docname):
+    """Let no line begin with the full stop or comma after a short formula."""
+    for formula in list(doctree.findall(nodes.math)):
+        parent = formula.parent
+        place = parent.index(formula)
+        after = parent[place + 1] if place + 1 < len(parent) else None
+        if isinstance(after, nodes.Text) and after[:1] in PUNCTUATION and len(formula.astext()) < SHORT:
+            together = nodes.inline("", "", classes=["together"])
+            parent[place : place + 2] = [together, nodes.Text(after[1:])]
+            together += [formula, nodes.Text(after[0])]
+
+
 def visit_inline(translator, node):
     translator.body.append(f'<span class="math">{render(node, display=False)}</span>')
     raise nodes.SkipNode
@@ -97,4 +112,5 @@ def visit_display(translator, node):
 
 
 def setup(app):
+    app.connect("doctree-resolved", keep_punctuation)
     app.add_html_math_renderer("katex", inline_renderers=(visit_inline, None), block_renderers=(visit_display, None))

@@ -13,7 +13,7 @@ from pathlib import Path
 from urllib.parse import urldefrag
 
 import pikepdf
-from bs4 import BeautifulSoup, Comment, NavigableString
+from bs4 import BeautifulSoup, Comment
 
 import orientation
 
@@ -28,7 +28,6 @@ FACES = (
     ("Source Code Pro", "source-code-pro", 400),
     ("Source Code Pro", "source-code-pro", 700),
 )
-SHORT = 30  # signs of a formula that need not be broken
 LONG = 14  # lines of code that need not stay on one page
 # What only a screen can do, or what stands in the way on paper: links to a place beside themselves, the
 # code that draws figures, controls, the list of links on the front page.
@@ -91,16 +90,6 @@ def target(page, address):
     return place(name.removesuffix(".html"), fragment) if name.endswith(".html") else None
 
 
-def keep_punctuation(formula):
-    """Let no line begin with the full stop or comma after a short formula."""
-    after = formula.next_sibling
-    if isinstance(after, NavigableString) and after[:1] in set(".,;:!?)") and len(formula.get_text()) < SHORT:
-        together = BeautifulSoup('<span style="white-space: nowrap"></span>', "html.parser").span
-        formula.wrap(together)
-        together.append(after[:1])
-        after.replace_with(after[1:])
-
-
 def move_answers(text):
     """Put the replies to the questions of a page, which a fold would hide, at its end."""
     folds = text.select("details.replies")
@@ -129,7 +118,6 @@ def article(site, page):
         formula.select_one(".katex-mathml").decompose()
         del formula.select_one(".katex-html")["aria-hidden"]
         formula["role"], formula["aria-label"] = "img", re.sub(r"\s+", " ", tex)
-        keep_punctuation(formula.parent)
     for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
         comment.extract()
     for paragraph in text.find_all("p"):
@@ -218,7 +206,7 @@ def faces():
 
 def title_page(front, title):
     """The title page, from the beginning of the front page; what remains is a preface."""
-    figure = front.select_one("figure.orientation-figure").extract()
+    figure = front.select_one("figure.orientation-figure:not(.moving)").extract()
     words = front.section.find_all("p", recursive=False)
     question, beginning = words[0].extract(), words[1].extract()
     front.h1.string = "About this book"
