@@ -111,6 +111,8 @@ def article(site, page):
     text = soup.select_one("article")
     for element in text.select(ONLY_ON_SCREEN):
         element.decompose()
+    for heading in text.select("section > :is(h2, h3):only-child"):
+        heading.parent.decompose()  # all that stood under it was for the screen
     move_answers(text)
     # A PDF has no MathML: screen readers get the formula as it is written in TeX.
     for formula in text.select(".katex"):
