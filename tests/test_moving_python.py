@@ -60,7 +60,7 @@ def refused(error, ask):
 SET = {
     "triad": ("angle", 0.3), "gimbal": ("angles", (0.1, 0.2, 0.3)), "nine_numbers": ("matrix", ((1.0,) * 3,) * 3),
     "successive": ("turns", (("z", 0.3),)), "quaternion": ("first", (0.1, 0.2, 0.3)), "motion": ("time", 3.0),
-    "phone": ("angles", (0.1, 0.2, 0.3)),
+    "phone": ("angles", (0.1, 0.2, 0.3)), "simple": ("angle", 0.25),
 }
 COMPUTED = {"nine_numbers": "nearest"}
 figures = [getattr(moving, name) for name in moving.__all__ if name not in ("MovingFigure", "SequenceExplorer")]
