@@ -175,7 +175,7 @@ def test_paper_shows_the_answers(context, site):
 
 def test_lecture_mode_goes_through_the_page_step_by_step(context, site):
     page = opened(context, site)
-    whole = page.locator("article section > :not(section)").count()
+    before = set(page.evaluate(SHOWN))
     page.keyboard.press("l")
     bar = page.locator(".lecture-bar")
     assert bar.inner_text().startswith("1 of ")
@@ -188,8 +188,7 @@ def test_lecture_mode_goes_through_the_page_step_by_step(context, site):
         assert shown
         seen |= set(shown)
         page.keyboard.press(["ArrowRight", "PageDown", " "][step % 3])
-    hidden = page.evaluate("[...document.querySelectorAll('.uncovered, .practise')].length")
-    assert len(seen) >= whole - hidden - 2, "no block of the page is left out"
+    assert before <= seen, "no block of the page is left out"
     page.keyboard.press("Home")
     assert bar.inner_text().startswith("1 of ")
     assert violations(page) == []
