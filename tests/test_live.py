@@ -558,10 +558,11 @@ def test_edits_survive_a_reload_and_can_be_undone(browser, site):
     assert "Your edits are here again" in page.words()
     assert not [url for url in page.asked[-20:] if url.endswith(".wasm")], "only the editor is loaded"
     page.page.click(".live-bar button:has-text('Book’s code')")
+    page.page.click(".live-bar button:has-text('Bring it back')")
     assert page.cell(3).locator(".cm-content").inner_text() == original
     page.page.reload()
-    page.page.wait_for_load_state("networkidle")
-    assert page.page.locator(".cm-content").count() == 0
+    page.page.locator(".live-earlier summary").click()
+    assert "print('mine')" in page.page.inner_text(".live-earlier")
     opened.remove(page.page)
     context.close()
 

@@ -34,6 +34,7 @@ class Handler(SimpleHTTPRequestHandler):
         if self.isolated and not self.path.startswith("/lite/"):
             self.send_header("Cross-Origin-Opener-Policy", "same-origin")
             self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+            self.send_header("Cross-Origin-Resource-Policy", "cross-origin")  # for frames without an origin
         super().end_headers()
 
     def log_message(self, *arguments):

@@ -32,6 +32,11 @@ def notebook_pages():
     return [page for page in pages() if Path(f"{page}.ipynb").is_file()]
 
 
+def notebook_address(page):
+    """Where in the site the notebook of a page is."""
+    return f"{FOLDER}/{page if page.startswith('exercises/') else page.rsplit('/', 1)[-1]}.ipynb"
+
+
 def is_notebook(app, pagename, doctree):
     return doctree is not None and str(app.env.doc2path(pagename)).endswith(".ipynb")
 
@@ -95,7 +100,7 @@ def write_page(app, pagename, templatename, context, doctree):
     notebook.metadata = {"jupytext": NO_METADATA}
     target.with_suffix(".py").write_text(jupytext.writes(notebook, fmt="py:percent"), "utf8")
     context["downloads"] = [
-        {"path": f"{FOLDER}/{target.name}.ipynb", "text": "Notebook", "note": "for Jupyter, with the prose"},
+        {"path": notebook_address(pagename), "text": "Notebook", "note": "for Jupyter, with the prose"},
         {"path": f"{FOLDER}/{target.name}.py", "text": "Python script", "note": "the prose as comments"},
         {
             "path": f"{FOLDER}/{wheel_name()}",
@@ -111,7 +116,7 @@ def exercise_downloads(app, pagename):
     target.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(app.env.doc2path(pagename), target)
     return [
-        {"path": f"{FOLDER}/{pagename}.ipynb", "text": "Notebook", "note": "to answer in Jupyter and hand in"},
+        {"path": notebook_address(pagename), "text": "Notebook", "note": "to answer in Jupyter and hand in"},
         {"path": f"{FOLDER}/{ARCHIVE}", "text": "All exercises", "note": "with the package and how to start"},
     ]
 

@@ -6,20 +6,22 @@ them what a notebook's kernel needs. A lock file of its own lists them all, so t
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+from array import array
+from collections import Counter
 from hashlib import sha256
 from pathlib import Path
 
 import nbformat
 import yaml
 
-from ..live import runtime
+from ..live import runtime, scripts
 from ..live.cells import kinds_of_cells
 from ..paths import BUILD, fingerprint, moment_of_sources
-from ..take_away import FOLDER as TAKE_AWAY
-from ..take_away import first_words, is_notebook, notebook_pages
+from ..take_away import first_words, is_notebook, notebook_address, notebook_pages
 
 HERE = Path(__file__).parent
 FOLDER = "lite"
@@ -55,6 +57,37 @@ def write_lock(site):
     return sorted({*added, *runtime.with_dependencies([runtime.DISTRIBUTION], packages)})
 
 
+def fingerprint_of_code(text):
+    """The short hash that the scripts of the page make of a cell's code (``fingerprint`` in live/js/answers.js)."""
+    a, b, word = 0xDEADBEEF, 0x41C6CE57, 0xFFFFFFFF
+    for unit in array("H", text.encode("utf-16-le")):
+        a = (a ^ unit) * 2654435761 & word
+        b = (b ^ unit) * 1597334677 & word
+    a = ((a ^ a >> 16) * 2246822507 ^ (b ^ b >> 13) * 3266489909) & word
+    b = ((b ^ b >> 16) * 2246822507 ^ (a ^ a >> 13) * 3266489909) & word
+    number, digits = (b & 0x1FFFFF) << 32 | a, ""
+    while number:
+        number, digit = divmod(number, 36)
+        digits = "0123456789abcdefghijklmnopqrstuvwxyz"[digit] + digits
+    return digits or "0"
+
+
+def stamp(notebook):
+    """Say in the notebook what the book had in each of its code cells, by the names that the page gives them.
+
+    A copy that a reader keeps can then be told from a newer edition, and its answers from the book's code.
+    """
+    seen, cells = Counter(), {}
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            print_ = fingerprint_of_code(cell.source.rstrip())
+            name = cell.metadata.get("nbgrader", {}).get("grade_id") or f"{print_}-{seen[print_]}"
+            seen[print_] += not cell.metadata.get("nbgrader", {}).get("grade_id")
+            cells[cell.id] = [name, print_]
+    notebook.metadata["book"] = {"cells": cells}
+    return notebook
+
+
 def announce_numpy(notebook, kinds, place):
     """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws with it.
 
@@ -73,9 +106,9 @@ def announce_numpy(notebook, kinds, place):
 
 def notebook_for(site, page, settings):
     """The notebook of a page: exercises as they were released, others as they are taken away."""
+    notebook = stamp(nbformat.read(site / notebook_address(page), as_version=4))
     if page.startswith("exercises/"):
-        return (site / TAKE_AWAY / f"{page}.ipynb").read_text("utf8")
-    notebook = nbformat.read(site / TAKE_AWAY / f"{page.rsplit('/', 1)[-1]}.ipynb", as_version=4)
+        return nbformat.writes(notebook)
     first = notebook.cells[0]
     notes = [line for line in first.source.splitlines() if line.startswith(first_words(settings["title"]))]
     if len(notes) != 1:
@@ -124,15 +157,27 @@ def write_workshop(site, settings, names):
         (WORKSHOP / name).write_text(json.dumps(content, indent=1), "utf8")
 
 
+def bring_answers_first(target):
+    """Have the interface wait, before it opens a notebook, for what brings the page's answers into it."""
+    page = target / APPS[0] / "index.html"
+    before = page.read_text("utf8")
+    start = re.compile(r"await import\(\s*'\.\./config-utils\.js")
+    wait = f"await (await import('../../{scripts.folder_name()}/notebook.js')).prepare();\n        "
+    after, count = start.subn(lambda found: wait + found[0], before)
+    if count != 1:
+        raise RuntimeError(f"{page} starts in another way than it did: answers of the pages would not come into it")
+    page.write_text(after, "utf8")
+
+
 def write(site):
     """Write the notebook interface into ``site``, a folder with the built pages, if anything has changed."""
     settings = yaml.safe_load(Path("_config.yml").read_text("utf8"))
     names = write_lock(site)
     write_workshop(site, settings, names)
     target = site / FOLDER
-    stamp = target / "made-from.txt"
-    made_from = fingerprint(WORKSHOP, HERE, *(LABEXTENSIONS / name for name in EXTENSIONS))
-    if stamp.exists() and stamp.read_text("utf8") == made_from:
+    made = target / "made-from.txt"
+    made_from = fingerprint(WORKSHOP, HERE, *(LABEXTENSIONS / name for name in EXTENSIONS)) + scripts.folder_name()
+    if made.exists() and made.read_text("utf8") == made_from:
         return
     shutil.rmtree(target, ignore_errors=True)
     # It drops local settings without a word if it finds the notes of an older run: the workshop is new each time.
@@ -141,7 +186,8 @@ def write(site):
     done = subprocess.run(command, cwd=WORKSHOP, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if done.returncode:
         sys.exit(f"JupyterLite was not built:\n{done.stdout.decode()}")
-    stamp.write_text(made_from, "utf8")
+    bring_answers_first(target)
+    made.write_text(made_from, "utf8")
 
 
 def add_link(app, pagename, templatename, context, doctree):

@@ -18,6 +18,7 @@ from pathlib import Path
 from docutils import nodes
 from sphinx.errors import ExtensionError
 
+from ..take_away import notebook_address
 from . import runtime, scripts
 from .cells import kinds_of_cells, on_the_page
 from .listing import NeedsMore
@@ -55,11 +56,12 @@ def add_live_code(app, pagename, templatename, context, doctree):
         {
             "page": pagename,
             "runtime": pathto(f"{runtime.FOLDER}/", 1),
-            "script": pathto(f"{scripts.folder_name()}/live.js", 1),
+            "scripts": pathto(f"{scripts.folder_name()}/", 1),
+            "notebook": pathto(notebook_address(pagename), 1),
             "cells": {
                 index: told
                 for index, kind in enumerate(kinds)
-                if (told := {key: kind[key] for key in ("needs", "skip", "before") if kind[key]})
+                if (told := {key: kind[key] for key in ("needs", "skip", "before", "name") if kind[key]})
             },
         },
         separators=(",", ":"),

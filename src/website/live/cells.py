@@ -137,7 +137,7 @@ def needs_of_names(names, codes, kinds):
 
 
 def classify(cells):
-    """For each code cell what it needs beyond SymPy, and whether a run of the page may leave it out.
+    """For each code cell what it needs beyond SymPy, whether a run may leave it out, and its name for graders.
 
     A run leaves out a cell that only draws a figure, needs more for it, and gives names to other such cells
     at most: its picture is there already. A result that differs from the stored one without such a reason is an error.
@@ -163,8 +163,12 @@ def classify(cells):
                     f"{cell.source}\n{outcome.get('traceback', told['messages'])}"
                 )
         tags = cell.metadata.get("tags", [])
-        shown = not HIDDEN & set(tags)
-        kinds.append({"needs": sorted(needs), "figure": "hide-input" in tags, "shown": shown, "code": cell.source})
+        kinds.append(
+            {
+                "needs": sorted(needs), "figure": "hide-input" in tags, "shown": not HIDDEN & set(tags),
+                "code": cell.source, "name": cell.metadata.get("nbgrader", {}).get("grade_id"),
+            }
+        )  # fmt: skip
     wanted = set()  # the names that the cells below take, those that are left out not counted
     for code, kind in zip(reversed(codes), reversed(kinds)):
         kind["skip"] = bool(kind["figure"] and kind["needs"] and not names_bound(code) & wanted)

@@ -36,8 +36,8 @@ def write(site):
         shutil.copytree(JS, workshop / "js")
         write_python(workshop / "python")
         esbuild(
-            workshop / "js" / "live.js", workshop / "js" / "worker.js", "--bundle", "--format=esm",
-            "--loader:.py=text", f"--outdir={target}",
+            *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js")),
+            "--bundle", "--format=esm", "--loader:.py=text", f"--outdir={target}",
         )  # fmt: skip
     shutil.copyfile(JS / "live.css", target / "live.css")
     static = site / "_static"

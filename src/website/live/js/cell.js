@@ -8,7 +8,8 @@ import { classHighlighter } from "@lezer/highlight";
 import { element, preformatted, shown, wake } from "./output.js";
 
 export class Cell {
-  // ``box`` is the cell's element, ``number`` counts from 1, ``kind`` is what the build found out about it.
+  // ``box`` is the cell's element, ``number`` counts from 1, ``kind`` is what the build found out about it; ``id``,
+  // which the page gives, is the name under which its text is kept.
   constructor(box, number, kind, page) {
     Object.assign(this, { box, number, kind, page, name: `cell ${number}`, ran: false });
     this.input = box.querySelector(".cell_input");
@@ -44,6 +45,7 @@ export class Cell {
     const run = () => (this.page.run(this), true);
     const leave = () => (this.button.focus(), true);
     const changed = EditorView.updateListener.of(({ docChanged }) => docChanged && this.changed());
+    this.known ??= this.original;
     this.editor = new EditorView({
       state: EditorState.create({
         doc: this.original,
@@ -69,6 +71,7 @@ export class Cell {
     this.back.setAttribute("aria-label", `Bring back the book’s code of ${this.name}`);
     this.back.addEventListener("click", () => (this.write(this.original), this.editor.focus()));
     this.button.before(this.back);
+    this.showEarlier();
   }
 
   // An edited cell has to run again before the cells below it.
@@ -76,12 +79,44 @@ export class Cell {
     this.ran = false;
     this.back.hidden = !this.edited;
     this.box.classList.toggle("edited", this.edited);
-    this.page.keep();
+    if (!this.following) this.page.keep(this);
   }
 
   write(code) {
     this.edit();
     this.editor.dispatch({ changes: { from: 0, to: this.editor.state.doc.length, insert: code } });
+    this.showEarlier();
+  }
+
+  // Another tab, or the notebook, holds this text now.
+  follow(code) {
+    this.known = code;
+    if (code === this.code) return;
+    this.following = true;
+    this.write(code);
+    this.following = false;
+  }
+
+  // Texts that stood here before, to be brought back.
+  showEarlier() {
+    const texts = this.page.answers.earlier(this.id, this.code, this.original);
+    this.earlier?.remove();
+    this.earlier = null;
+    if (!texts.length) return;
+    const use = (code) => {
+      const button = element("button", "", "Bring it back");
+      button.type = "button";
+      button.addEventListener("click", () => {
+        this.page.answers.setAside(this.id, this.code);
+        this.write(code);
+        this.editor.focus();
+      });
+      return button;
+    };
+    this.earlier = element("details", "live-note live-choice live-earlier",
+      element("summary", "", `What you wrote here before (${texts.length})`),
+      ...texts.flatMap(({ code }) => [preformatted("stream", code), use(code)]));
+    this.input.after(this.earlier);
   }
 
   // --- results ---------------------------------------------------------------------------------
@@ -129,10 +164,17 @@ export class Cell {
     if (message.type === "stream") this.replace([...this.fresh]); // what is printed is seen at once
   }
 
-  // The cell was not run: what stands below it stays, and ``note`` says why.
+  // What the book's code gives, beside a note: folded where the code above it is another one.
+  get bookResult() {
+    if (!this.built.length) return [];
+    if (!this.edited) return [element("p", "live-built", "The book’s result:"), ...this.built];
+    return [element("details", "live-built", element("summary", "", "The result of the book’s code"), ...this.built)];
+  }
+
+  // The cell was not run: what the book has printed stays, and ``note`` says why.
   leave(note) {
     this.box.classList.remove("running", "waiting");
-    this.replace([...this.built, note]);
+    this.replace(this.edited ? [note, ...this.bookResult] : [...this.built, note]);
     this.ran = false;
   }
 
@@ -141,15 +183,7 @@ export class Cell {
     this.box.classList.remove("running", "waiting");
     this.box.classList.toggle("failed", Boolean(note));
     const nodes = [...this.fresh];
-    if (note) {
-      nodes.push(note);
-      if (this.built.length && !this.edited) {
-        nodes.push(element("p", "live-built", "The book’s result:"), ...this.built);
-      } else if (this.built.length) {
-        const fold = element("details", "live-built", element("summary", "", "The result of the book’s code"), ...this.built);
-        nodes.push(fold);
-      }
-    }
+    if (note) nodes.push(note, ...this.bookResult);
     this.replace(nodes);
     this.ran = true;
   }

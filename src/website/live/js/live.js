@@ -1,7 +1,8 @@
 // Loaded when the reader first asks for code to run: the page's cells, the bar below, and the order of runs.
 import { Cell } from "./cell.js";
-import { fingerprint, load, save } from "./edits.js";
+import { Answers, fingerprint, nameCells, PREFIX } from "./answers.js";
 import { named } from "./names.js";
+import { bringTogether, readCopy } from "./notebooks.js";
 import { element, preformatted } from "./output.js";
 import { Python } from "./python.js";
 
@@ -10,17 +11,18 @@ const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one :
 class Page {
   constructor({ data, boxes, bar }) {
     this.runtime = new URL(data.runtime, location.href).href;
-    this.key = `code of ${data.page}`;
+    this.answers = new Answers(data.page);
     this.bar = bar;
     this.cells = boxes.map((box, index) => new Cell(box, index + 1, data.cells[index] ?? {}, this));
+    const ids = nameCells(this.cells.map(({ kind, original }) => ({ name: kind.name, original })));
+    this.cells.forEach((cell, index) => (cell.id = ids[index]));
     this.queue = [];
     this.buttons = bar.buttons({
       "Run the page": () => this.run(),
       Stop: () => this.stop(),
       "Start afresh": () => this.reset(),
-      "Book’s code": () => this.undoEdits(),
+      "Book’s code": () => this.askToUndo(),
     });
-    this.bring();
     this.show();
   }
 
@@ -31,56 +33,108 @@ class Page {
 
   // --- the reader's edits ----------------------------------------------------------------------
 
-  keep() {
-    const edits = this.cells.filter((cell) => cell.edited)
-      .map(({ number, original, code }) => ({ number, original: fingerprint(original), code }));
-    const kept = save(this.key, [...edits, ...(this.unplaced ?? [])]);
-    if (!kept && edits.length) this.bar.say("This browser does not keep your edits: they last until you leave the page.");
+  // One cell's text has changed here: its entry, and no other, is written.
+  keep(cell) {
+    const { id, number, original, code } = cell;
+    let kept = true;
+    if (cell.edited) {
+      kept = this.answers.write(id, { code, number, original: fingerprint(original), at: Date.now() }, cell.known);
+    } else {
+      this.answers.remove(id);
+    }
+    cell.known = code;
+    if (!kept || window.keepsNothing) {
+      this.bar.say(`${window.keepsNothing ? "Your browser forbids this page to keep anything" : "This browser has no room left for your answers"}: what you write lasts until you leave the page. “Take away: with my answers” saves it.`);
+    }
     this.show();
   }
 
-  // Put kept edits back where the book's code is still the same; elsewhere ask.
-  bring() {
-    const edits = load(this.key);
-    this.unplaced = [];
-    for (const edit of edits) {
-      const same = (cell) => fingerprint(cell.original) === edit.original && !cell.edited;
-      const cell = [this.cells[edit.number - 1], ...this.cells].find((cell) => cell && same(cell));
-      if (cell) cell.write(edit.code);
-      else this.unplaced.push(edit);
-    }
-    for (const edit of this.unplaced) this.offer(edit);
-    if (edits.length) {
-      this.edit();
-      this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
+  // Put what is kept back where the book's code is still the same; elsewhere ask.
+  async bring() {
+    this.answers.bringOld(this.cells.map(({ id }) => id), this.cells.map(({ original }) => original));
+    await this.lookAtNotebook();
+    if (this.reread()) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
+    addEventListener("storage", ({ key }) => {
+      if (key === null || (key.startsWith(PREFIX) && key.includes(` ${this.answers.page} `))) this.reread();
+    });
+    // A tab that slept has missed what others wrote.
+    const wake = async () => document.hidden || (await this.lookAtNotebook(), this.reread());
+    document.addEventListener("visibilitychange", wake);
+    addEventListener("pageshow", ({ persisted }) => persisted && wake());
+  }
+
+  // The page's notebook in JupyterLite, if this browser keeps one, may hold newer answers.
+  async lookAtNotebook() {
+    if (!localStorage.getItem(this.answers.agreed)) return;
+    try {
+      const copy = await readCopy(`${this.answers.page}.ipynb`);
+      if (copy) bringTogether(this.answers.page, copy);
+    } catch (error) {
+      console.warn(`The notebook of this page could not be read: ${error.message}`);
     }
   }
 
-  offer(edit) {
-    const cell = this.cells[Math.min(edit.number, this.cells.length) - 1];
+  // Make the cells hold what is kept. Returns how many texts there are.
+  reread() {
+    const kept = this.answers.all();
+    const all = kept.size;
+    this.offers ??= new Map();
+    for (const cell of this.cells) {
+      const entry = kept.get(cell.id);
+      if (entry && entry.original !== fingerprint(cell.original)) continue;
+      kept.delete(cell.id);
+      if (entry || cell.edited) cell.follow(entry ? entry.code : cell.original);
+      if (cell.editor) cell.showEarlier();
+    }
+    for (const [name, box] of this.offers) if (!kept.has(name)) box.remove(), this.offers.delete(name);
+    for (const [name, entry] of kept) if (!this.offers.has(name)) this.offer(name, entry);
+    const aside = this.cells.some((cell) => this.answers.earlier(cell.id, cell.original).length);
+    if (all || aside) this.edit();
+    this.show();
+    return all;
+  }
+
+  offer(name, entry) {
+    const cell = this.cells.find(({ id }) => id === name)
+      ?? this.cells[Math.min(Math.max(entry.number, 1), this.cells.length) - 1];
     const choose = (text, action) => {
       const button = element("button", "", text);
       button.type = "button";
       button.addEventListener("click", () => {
-        box.remove();
-        this.unplaced = this.unplaced.filter((other) => other !== edit);
+        this.answers.setAside(cell.id, entry.code, entry.at);
+        this.answers.remove(name);
         action();
-        this.keep();
+        this.reread();
       });
       return button;
     };
+    this.edit();
     const box = element("div", "live-note live-choice",
       element("p", "", "The book’s code here has changed since you edited it. This was yours:"),
-      preformatted("stream", edit.code),
-      choose("Use mine", () => cell.write(edit.code)), " ", choose("Keep the book’s", () => {}));
+      preformatted("stream", entry.code),
+      choose("Use mine", () => cell.write(entry.code)), " ", choose("Keep the book’s", () => {}));
     box.setAttribute("role", "group");
     box.setAttribute("aria-label", `An older edit of ${cell.name}`);
     cell.input.after(box);
+    this.offers.set(name, box);
   }
 
-  undoEdits() {
-    for (const cell of this.cells.filter((cell) => cell.edited)) cell.write(cell.original);
-    this.bar.say("All cells hold the book’s code again.");
+  // One press must not take away the work of an hour.
+  askToUndo() {
+    const edited = this.cells.filter((cell) => cell.edited);
+    this.bar.ask(`Bring back the book’s code in ${plural(edited.length, "cell")}? What you wrote there is kept below each cell.`, {
+      "Bring it back": () => {
+        const mine = edited.map((cell) => [cell, cell.code]);
+        for (const cell of edited) cell.write(cell.original);
+        this.bar.ask("All cells hold the book’s code again.", {
+          Undo: () => {
+            for (const [cell, code] of mine) cell.write(code);
+            this.bar.say("Your code is back.");
+          },
+        });
+      },
+      "Keep mine": () => this.bar.say("Nothing was changed."),
+    });
   }
 
   // --- what is to run --------------------------------------------------------------------------
@@ -249,10 +303,12 @@ class Page {
   }
 }
 
-export function open(parts) {
+export async function open(parts) {
   const style = element("link");
   style.rel = "stylesheet";
   style.href = new URL("./live.css", import.meta.url);
   document.head.append(style);
-  return new Page(parts);
+  const page = new Page(parts);
+  await page.bring();
+  return page;
 }

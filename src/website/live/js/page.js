@@ -9,6 +9,7 @@
   bar.setAttribute("aria-label", "Python on this page");
   const words = make("p", { id: "live-words" });
   words.setAttribute("role", "status");
+  const choices = make("span", { className: "live-choices" });
   const progress = make("progress", { hidden: true });
   progress.setAttribute("aria-label", "Loading Python");
   const bytes = make("span", { className: "live-bytes" });
@@ -17,26 +18,34 @@
   const close = make("button", { type: "button", className: "live-close", title: "Close this bar" }, "×");
   close.setAttribute("aria-label", "Close this bar");
   close.addEventListener("click", () => (bar.hidden = true));
-  bar.append(words, bytes, progress, keys, close);
+  bar.append(words, choices, bytes, progress, keys, close);
   document.body.append(bar);
+  const button = (text, action) => {
+    const made = make("button", { type: "button" }, text);
+    made.addEventListener("click", action);
+    return made;
+  };
   const tools = {
     say(text) {
       bar.hidden = false;
       words.textContent = text;
+      choices.replaceChildren();
+    },
+    ask(text, actions) {
+      tools.say(text);
+      choices.append(...Object.entries(actions).map(([name, action]) => button(name, action)));
+      choices.firstChild.focus();
     },
     progress(loaded, all) {
       progress.hidden = loaded === null;
       bytes.textContent = loaded === null ? "" : `${Math.round(loaded / 1e6)} of ${Math.round(all / 1e6)} MB`;
       if (loaded !== null) Object.assign(progress, { max: all, value: loaded });
     },
-    buttons(actions) {
-      return Object.entries(actions).map(([text, action]) => {
-        const button = make("button", { type: "button" }, text);
-        button.addEventListener("click", action);
-        close.before(button);
-        return button;
-      });
-    },
+    buttons: (actions) => Object.entries(actions).map(([text, action]) => {
+      const made = button(text, action);
+      close.before(made);
+      return made;
+    }),
   };
 
   const fromDisk = location.protocol === "file:";
@@ -48,11 +57,12 @@
   });
 
   let page;
+  const script = (name) => import(new URL(data.scripts + name, location.href));
+  const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
   const ask = async (number) => {
     if (fromDisk) return tools.say(FROM_DISK);
     try {
-      page ??= import(new URL(data.script, location.href)).then(({ open }) => open({ data, boxes, bar: tools }));
-      const opened = await page;
+      const opened = await open();
       if (number !== undefined) opened.run(opened.cells[number]);
     } catch (error) {
       page = undefined;
@@ -61,15 +71,32 @@
   };
 
   boxes.forEach((box, number) => {
-    const button = make("button", { type: "button", className: "run-cell" }, "Run");
-    button.setAttribute("aria-label", `Run cell ${number + 1}`);
-    button.addEventListener("click", () => ask(number));
-    box.querySelector(".cell_input").append(button);
+    const run = button("Run", () => ask(number));
+    run.className = "run-cell";
+    run.setAttribute("aria-label", `Run cell ${number + 1}`);
+    box.querySelector(".cell_input").append(run);
   });
   document.querySelector("button.run-page").addEventListener("click", () => ask(-1));
-  try {
-    if (localStorage.getItem(`code of ${data.page}`)) ask();
-  } catch {
-    // Without storage there is nothing to bring back.
+
+  // Take away and bring back: the page's answers as a notebook, all answers of the book as one file.
+  const originals = boxes.map((box) => box.querySelector(".cell_input pre").textContent.trimEnd());
+  for (const choice of document.querySelectorAll("button[data-answers]")) {
+    choice.addEventListener("click", async () => {
+      if (fromDisk) return tools.say(FROM_DISK);
+      try {
+        const { [choice.dataset.answers]: act } = await script("take-away.js");
+        tools.say(await act(data, originals));
+        if (/load|restore/.test(choice.dataset.answers)) (await open()).reread();
+      } catch (error) {
+        tools.say(`That did not work: ${error.message}.`);
+      }
+    });
   }
+
+  // What the reader has written here before comes back, also from another tab; see answers.js for the keys.
+  const place = new URL("../", document.currentScript.src).pathname;
+  const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`];
+  const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));
+  if (Object.keys(localStorage).some(isOwn)) ask();
+  else addEventListener("storage", ({ key }) => page || (isOwn(key) && ask()));
 }

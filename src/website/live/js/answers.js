@@ -1,0 +1,122 @@
+// What the reader writes, kept in this browser. Each cell of each page has an entry of its own, so that two
+// tabs never write over each other's cells; and a text that gives way to another one is set aside, not lost.
+// The keys carry the site's path: two books, or two editions, at one address keep apart what belongs to them.
+
+export const SITE = new URL("../../", import.meta.url).pathname;
+export const PREFIX = `book ${SITE} `;
+
+export function fingerprint(text) {
+  let a = 0xdeadbeef, b = 0x41c6ce57; // cyrb53, a short hash that is good enough to tell texts apart
+  for (let k = 0; k < text.length; k++) {
+    const unit = text.charCodeAt(k);
+    a = Math.imul(a ^ unit, 2654435761);
+    b = Math.imul(b ^ unit, 1597334677);
+  }
+  a = Math.imul(a ^ (a >>> 16), 2246822507) ^ Math.imul(b ^ (b >>> 13), 3266489909);
+  b = Math.imul(b ^ (b >>> 16), 2246822507) ^ Math.imul(a ^ (a >>> 13), 3266489909);
+  return (4294967296 * (2097151 & b) + (a >>> 0)).toString(36);
+}
+
+// Names that cells keep when others come or go: the name that a grader knows, or else one made of the code.
+export function nameCells(cells) {
+  const seen = {};
+  return cells.map(({ name, original }) => {
+    if (name) return name;
+    const print = fingerprint(original);
+    seen[print] = (seen[print] ?? -1) + 1;
+    return `${print}-${seen[print]}`;
+  });
+}
+
+function parsed(key) {
+  try {
+    return JSON.parse(localStorage.getItem(key));
+  } catch {
+    return null;
+  }
+}
+
+// Returns whether the browser has kept it.
+function put(key, value) {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+export class Answers {
+  constructor(page) {
+    this.page = page;
+    this.answer = `${PREFIX}answer ${page} `;
+    this.aside = `${PREFIX}earlier ${page} `;
+    this.agreed = `${PREFIX}agreed ${page}`;
+  }
+
+  // The entries whose keys begin with ``start``: what follows it, and the value.
+  static entries(start) {
+    const keys = Object.keys(localStorage).filter((key) => key.startsWith(start));
+    return keys.map((key) => [key.slice(start.length), parsed(key)]).filter(([, value]) => value);
+  }
+
+  all() {
+    return new Map(Answers.entries(this.answer));
+  }
+
+  // {code, number, original, at}: the text, the cell's place, the fingerprint of the book's code, milliseconds.
+  read(name) {
+    return parsed(this.answer + name);
+  }
+
+  // Keep a text; ``known`` is the one that it takes the place of. Another one that stands there comes from elsewhere.
+  write(name, entry, known) {
+    const there = this.read(name);
+    if (there && there.code !== known && there.code !== entry.code) this.setAside(name, there.code, there.at);
+    return put(this.answer + name, entry);
+  }
+
+  remove(name) {
+    const there = this.read(name);
+    if (there) this.setAside(name, there.code, there.at);
+    localStorage.removeItem(this.answer + name);
+  }
+
+  setAside(name, code, at = Date.now()) {
+    return put(`${this.aside}${name} ${fingerprint(code)}`, { code, at });
+  }
+
+  // The texts that this cell has held, the newest first, without those in ``shown``.
+  earlier(name, ...shown) {
+    return Answers.entries(`${this.aside}${name} `).map(([, entry]) => entry)
+      .filter(({ code }) => !shown.includes(code)).sort((one, other) => other.at - one.at);
+  }
+
+  // What this page and its notebook last agreed on: fingerprints by the names of the cells.
+  agreement() {
+    return parsed(this.agreed) ?? {};
+  }
+
+  agree(prints) {
+    put(this.agreed, { ...this.agreement(), ...prints });
+  }
+
+  forgetAgreement() {
+    localStorage.removeItem(this.agreed);
+  }
+
+  // The first edition kept all edits of a page in one list, under a name that other books may share: it stays
+  // where it is, and is read once.
+  bringOld(names, originals) {
+    const old = parsed(`code of ${this.page}`);
+    if (!Array.isArray(old) || parsed(`${PREFIX}old ${this.page}`)) return;
+    for (const { number, original, code } of old) {
+      const places = [number - 1, ...originals.keys()];
+      const place = places.find((k) => originals[k] !== undefined && fingerprint(originals[k]) === original
+        && !this.read(names[k]));
+      const name = place === undefined ? `old-${fingerprint(code)}` : names[place];
+      this.write(name, { code, number, original, at: 0 });
+    }
+    put(`${PREFIX}old ${this.page}`, true);
+  }
+}

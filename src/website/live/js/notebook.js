@@ -1,0 +1,95 @@
+// Runs before JupyterLite opens a notebook: brings the answers of its page into it, and asks where the book has changed.
+import { Answers, SITE } from "./answers.js";
+import { bookCells, bringTogether, edition, newFile, readCopy, writeCopy } from "./notebooks.js";
+
+const plain = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
+const element = (tag, properties, ...children) => {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+};
+
+// Copies of the first edition say nothing of where they come from: name their cells as the book's notebook does.
+// Returns whether such a copy is that notebook, but for answers.
+function stamp(copy, book) {
+  const cells = {}, ours = book.metadata.book.cells;
+  const graded = (cell) => cell.metadata?.nbgrader?.grade_id;
+  let same = copy.cells.length === book.cells.length;
+  for (const mine of book.cells) {
+    const found = copy.cells.find((cell) => (graded(mine) ? graded(cell) === graded(mine) : cell.id === mine.id));
+    if (found && mine.id in ours && found.cell_type === "code") cells[found.id] = ours[mine.id];
+    same &&= found && (mine.metadata?.nbgrader?.solution || plain(found.source) === plain(mine.source));
+  }
+  copy.metadata.book = { ...book.metadata.book, cells };
+  return same;
+}
+
+// Ask before the interface is there. Resolves to the place of the button that was pressed.
+function ask(title, words, ...choices) {
+  return new Promise((resolve) => {
+    const buttons = choices.map((choice, place) => element("button", {
+      textContent: choice, onclick: () => (dialog.remove(), resolve(place)),
+      style: "display: block; margin: 0.6rem 0; padding: 0.5rem 1rem; font: inherit; text-align: left",
+    }));
+    const dialog = element("dialog", {
+      className: "book-choice", style: "max-width: 34rem; padding: 1.5rem; font: 1rem/1.5 system-ui, sans-serif",
+      oncancel: (event) => event.preventDefault(),
+    }, element("h1", { textContent: title, style: "font-size: 1.2rem; margin: 0 0 0.6rem" }),
+    element("p", { textContent: words }), ...buttons);
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}
+
+async function open(path) {
+  const answer = await fetch(`${SITE}lite/files/${path}`, { cache: "no-cache" });
+  if (!answer.ok) return; // a notebook of the reader's own
+  const book = await answer.json();
+  const originals = Object.fromEntries(bookCells(book).map(({ name, text }) => [name, text]));
+  const page = path.replace(/\.ipynb$/, "");
+  const copy = await readCopy(path);
+  let used = copy, changed = false;
+  if (copy) {
+    changed = !copy.content.metadata.book;
+    const same = changed ? stamp(copy.content, book) : edition(copy.content) === edition(book);
+    if (!same) used = await choose(path, copy, book);
+  } else {
+    used = newFile(path, book);
+    new Answers(page).forgetAgreement();
+  }
+  const { went } = bringTogether(page, used, originals);
+  if (changed || went.length || (copy && used !== copy)) {
+    await writeCopy(path, { ...used, last_modified: new Date().toISOString() });
+  }
+  new Answers(page).agree({}); // the page knows by this that there is something to look after
+}
+
+// The book's notebook is no longer the one that the copy was made of. Whatever is chosen, the copy stays.
+async function choose(path, copy, book) {
+  const written = bookCells(copy.content).filter(({ text, original }) => text && original !== null);
+  const name = path.replace(/\.ipynb$/, ` (my copy of ${copy.last_modified.slice(0, 16).replace(/[T:]/g, "-")}).ipynb`);
+  const choice = await ask("The book has a new version of this notebook",
+    "You have a copy of an older version, with what you wrote in it. The new version is opened with your answers in "
+    + `the cells that are still the same, and your copy stays beside it as “${name.split("/").at(-1)}”.`,
+    "Open the new version", "Open my copy as it is");
+  if (choice === 1) return copy;
+  await writeCopy(name, { ...copy, path: name, name: name.split("/").at(-1) });
+  const fresh = newFile(path, book);
+  const mine = new Map(written.map(({ name: cell, text, original }) => [cell, { text, original }]));
+  const stamps = new Map(Object.values(book.metadata.book.cells));
+  for (const { cell, name: of } of bookCells(fresh.content)) {
+    const text = mine.get(of);
+    if (text && stamps.get(of) === text.original) cell.source = text.text;
+  }
+  return fresh;
+}
+
+export async function prepare() {
+  const path = new URLSearchParams(location.search).get("path");
+  if (!path?.endsWith(".ipynb")) return;
+  try {
+    await open(path);
+  } catch (error) {
+    console.warn(`The answers of the page were not brought into the notebook: ${error.message}`);
+  }
+}

@@ -1,0 +1,103 @@
+// The notebooks that JupyterLite keeps in this browser, and how one of them and its page come to hold the same.
+import { Answers, fingerprint, nameCells, SITE } from "./answers.js";
+
+const DATABASE = `JupyterLite Storage - ${SITE}lite/`;
+const text = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
+const settled = (request) => new Promise((resolve, reject) => {
+  request.onsuccess = () => resolve(request.result);
+  request.onerror = () => reject(request.error);
+});
+
+// Calls ``use`` with the store of files, made as JupyterLite's own library makes it if there is none.
+async function files(mode, use) {
+  const known = (await indexedDB.databases?.() ?? [{ name: DATABASE }]).some(({ name }) => name === DATABASE);
+  if (!known && mode === "readonly") return undefined;
+  let database = await settled(indexedDB.open(DATABASE));
+  if (!database.objectStoreNames.contains("files")) {
+    const version = database.version + 1;
+    database.close();
+    if (mode === "readonly") return undefined;
+    const opening = indexedDB.open(DATABASE, version);
+    opening.onupgradeneeded = () => opening.result.createObjectStore("files");
+    database = await settled(opening);
+  }
+  try {
+    return await use(database.transaction("files", mode).objectStore("files"));
+  } finally {
+    database.close();
+  }
+}
+
+export const readCopy = (path) => files("readonly", (store) => settled(store.get(path)));
+export const writeCopy = (path, copy) => files("readwrite", (store) => settled(store.put(copy, path)));
+export const allCopies = async () => (await files("readonly", async (store) => {
+  const [keys, values] = await Promise.all([settled(store.getAllKeys()), settled(store.getAll())]);
+  return keys.map((key, k) => [key, values[k]]);
+})) ?? [];
+
+export function newFile(path, content) {
+  const now = new Date().toISOString();
+  return {
+    name: path.split("/").at(-1), path, last_modified: now, created: now, format: "json",
+    mimetype: "application/json", content, size: JSON.stringify(content).length, writable: true, type: "notebook",
+  };
+}
+
+// The code cells of a notebook that are the book's: their names, texts, and the code that the book had there.
+export function bookCells(notebook) {
+  const codes = notebook.cells.filter((cell) => cell.cell_type === "code");
+  const stamp = notebook.metadata?.book?.cells;
+  if (stamp) {
+    return codes.filter(({ id }) => id in stamp).map((cell) => ({
+      cell, name: stamp[cell.id][0], text: text(cell.source), original: stamp[cell.id][1],
+    }));
+  }
+  // Notebooks from elsewhere have no stamp: the names that graders use tell those cells apart.
+  const graded = (cell) => cell.metadata?.nbgrader?.grade_id;
+  const names = nameCells(codes.map((cell) => ({ name: graded(cell), original: text(cell.source) })));
+  return codes.map((cell, k) => ({ cell, name: names[k], text: text(cell.source), original: null }));
+}
+
+export const edition = (notebook) => JSON.stringify(Object.values(notebook.metadata?.book?.cells ?? {}));
+
+// Make the copy and the page hold the same. Of each cell the side that has changed since they last
+// agreed gives its text to the other one; where both have, the newer text stands and the other is set aside.
+// Returns the names of the cells that changed on the page, and in the copy.
+// ``originals``, the book's code by names, is given where the copy may be changed too.
+export function bringTogether(page, copy, originals) {
+  const answers = new Answers(page);
+  const agreement = answers.agreement(), agreed = {};
+  const came = [], went = [];
+  for (const { cell, name, text: there, original } of bookCells(copy.content)) {
+    const entry = answers.read(name);
+    if (entry && original && entry.original !== original) continue; // of another edition: the page asks
+    const changedThere = original === null || fingerprint(there) !== original;
+    if (entry ? entry.code.trimEnd() === there : !changedThere) {
+      agreed[name] = fingerprint(there);
+      continue;
+    }
+    const last = agreement[name] ?? original;
+    const copyMoved = fingerprint(there) !== last;
+    const here = entry ? fingerprint(entry.code.trimEnd()) : original;
+    const pageMoved = here !== last;
+    const pageWins = pageMoved && (!copyMoved || (entry?.at ?? 0) > Date.parse(copy.last_modified));
+    if (pageWins) {
+      const source = entry?.code ?? originals?.[name];
+      if (!originals || source === undefined) continue;
+      if (changedThere) answers.setAside(name, there, Date.parse(copy.last_modified));
+      Object.assign(cell, { source, outputs: [], execution_count: null });
+      agreed[name] = here;
+      went.push(name);
+    } else if (copyMoved) {
+      if (!changedThere) answers.remove(name);
+      else {
+        const number = entry?.number ?? Object.keys(copy.content.metadata.book?.cells ?? {}).indexOf(cell.id) + 1;
+        answers.write(name, { code: there, number, original: original ?? entry?.original, at: Date.now() });
+      }
+      agreed[name] = fingerprint(there);
+      came.push(name);
+    }
+  }
+  answers.agree(agreed);
+  return { came, went };
+}

@@ -1,0 +1,136 @@
+// What the reader takes away and brings back: the page's notebook with the answers in it, and all answers in one file.
+import { Answers, fingerprint, nameCells, PREFIX } from "./answers.js";
+import { allCopies, bookCells, readCopy, writeCopy } from "./notebooks.js";
+
+const text = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
+const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
+
+function save(name, content) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([content], { type: "application/json" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+function choose(kinds) {
+  return new Promise((resolve) => {
+    const field = Object.assign(document.createElement("input"), { type: "file", accept: kinds });
+    field.addEventListener("change", () => resolve(field.files[0]));
+    field.click();
+  });
+}
+
+// ``data`` is what the page says of itself; ``originals`` is the book's code in its cells.
+function named(data, originals) {
+  return nameCells(originals.map((original, k) => ({ name: data.cells[k]?.name, original })));
+}
+
+async function bookNotebook(data, originals) {
+  const answer = await fetch(new URL(data.notebook, location.href), { cache: "no-cache" });
+  if (!answer.ok) throw new Error(`the page’s notebook did not come (${answer.status})`);
+  const notebook = await answer.json();
+  const codes = notebook.cells.filter((cell) => cell.cell_type === "code");
+  if (codes.length !== originals.length || codes.some((cell, k) => text(cell.source) !== originals[k])) {
+    throw new Error("the book has changed since this page was opened: reload the page first");
+  }
+  return { notebook, codes };
+}
+
+// The page's notebook with the reader's answers, as a file.
+export async function handIn(data, originals) {
+  const { notebook, codes } = await bookNotebook(data, originals);
+  const kept = new Answers(data.page).all();
+  let answered = 0;
+  named(data, originals).forEach((name, k) => {
+    const entry = kept.get(name);
+    if (!entry || entry.original !== fingerprint(originals[k])) return;
+    Object.assign(codes[k], { source: entry.code, outputs: [], execution_count: null });
+    kept.delete(name);
+    answered += 1;
+  });
+  save(data.notebook.split("/").at(-1), `${JSON.stringify(notebook, null, 1)}\n`);
+  const left = kept.size ? ` ${count(kept.size, "text", "texts")} written for an older edition ${kept.size === 1 ? "is" : "are"} not in it: choose on the page first.` : "";
+  return `Saved with what you have written in ${count(answered, "cell")} of this page.${left}`;
+}
+
+// Answers out of such a notebook, or out of one that was written elsewhere.
+export async function load(data, originals) {
+  const file = await choose(".ipynb");
+  let notebook;
+  try {
+    notebook = JSON.parse(await file.text());
+    if (!Array.isArray(notebook.cells)) throw new Error();
+  } catch {
+    return `${file.name} is not a notebook: nothing was changed.`;
+  }
+  const answers = new Answers(data.page);
+  const names = named(data, originals);
+  const codes = notebook.cells.filter((cell) => cell.cell_type === "code");
+  const found = new Map(bookCells(notebook).map((cell) => [cell.name, cell.text]));
+  // What no grader names is told by its place in the notebook as it was taken away.
+  const inPlace = !notebook.metadata?.book && codes.length === originals.length;
+  if (!names.some((name, k) => found.has(name) && (data.cells[k]?.name || found.get(name) === originals[k]))) {
+    return `${file.name} is not the notebook of this page: nothing was changed.`;
+  }
+  let changed = 0, kept = true;
+  names.forEach((name, k) => {
+    const there = found.get(name) ?? (inPlace && !data.cells[k]?.name ? text(codes[k].source) : undefined);
+    const entry = answers.read(name);
+    if (there === undefined || there === originals[k] || there === entry?.code.trimEnd()) return;
+    kept &&= answers.write(name, { code: there, number: k + 1, original: fingerprint(originals[k]), at: Date.now() });
+    changed += 1;
+  });
+  if (!kept) return "This browser has no room for what is in the notebook, or keeps nothing: not all of it was loaded.";
+  const more = codes.length - originals.length;
+  const own = more > 0 ? ` ${count(more, "cell")} of yours that the page does not have ${more === 1 ? "stays" : "stay"} in the file.` : "";
+  return `${changed ? `${count(changed, "cell")} changed` : "Nothing is different"}: what stood in ${changed === 1 ? "it" : "them"} before is kept below each cell.${own}`;
+}
+
+// --- all answers of the book ----------------------------------------------------------------------
+
+const KIND = "answers to the exercises of a book";
+
+export async function backUp() {
+  const kept = Object.fromEntries(Answers.entries(PREFIX));
+  const notebooks = Object.fromEntries(await allCopies());
+  const day = new Date().toISOString().slice(0, 10);
+  save(`answers-${day}.json`, JSON.stringify({ kind: KIND, day, kept, notebooks }));
+  const answers = Object.keys(kept).filter((key) => key.startsWith("answer ")).length;
+  return `Saved: ${count(answers, "answer")} and ${count(Object.keys(notebooks).length, "notebook")}.`;
+}
+
+// Bring back what a backup holds. What is here and newer stays; the other text is set aside, or kept beside it.
+export async function restore() {
+  const file = await choose(".json");
+  let saved;
+  try {
+    saved = JSON.parse(await file.text());
+    if (saved.kind !== KIND) throw new Error();
+  } catch {
+    return `${file.name} is not a backup of this book: nothing was changed.`;
+  }
+  let brought = 0;
+  for (const [key, value] of Object.entries(saved.kept)) {
+    const [, page, name] = key.match(/^answer (\S+) (.*)$/s) ?? [];
+    const here = localStorage.getItem(PREFIX + key);
+    if (page && here) {
+      const answers = new Answers(page), mine = answers.read(name);
+      if (mine.code === value.code) continue;
+      if (mine.at >= value.at) answers.setAside(name, value.code, value.at);
+      else answers.write(name, value);
+      brought += 1;
+    } else if (!here) {
+      localStorage.setItem(PREFIX + key, JSON.stringify(value));
+      brought += Boolean(page);
+    }
+  }
+  for (const [path, copy] of Object.entries(saved.notebooks)) {
+    const mine = await readCopy(path);
+    if (JSON.stringify(mine?.content) === JSON.stringify(copy.content)) continue;
+    const place = mine ? path.replace(/(\.\w+)?$/, ` (from the backup of ${saved.day})$1`) : path;
+    await writeCopy(place, { ...copy, path: place, name: place.split("/").at(-1) });
+    brought += 1;
+  }
+  return `${count(brought, "answer or notebook", "answers and notebooks")} brought back; what was here and newer stands.`;
+}
