@@ -282,10 +282,11 @@ CHANGE_COPY = """async ([path, changes]) => {
     request.onerror = () => reject(request.error);
   });
   const [name] = (await indexedDB.databases()).map(({ name }) => name).filter((name) => name.startsWith('JupyterLite'));
-  const database = await settled(indexedDB.open(name ?? `JupyterLite Storage - /lite/`));
+  if (!name) return undefined;
+  const database = await settled(indexedDB.open(name));
   const copy = database.objectStoreNames.contains('files')
     ? await settled(database.transaction('files').objectStore('files').get(path)) : undefined;
-  if (!copy && !changes) return database.close();
+  if (!copy) return database.close();
   const text = (cell) => [cell.source].flat().join('');
   for (const cell of copy.content.cells) {
     const code = changes?.[cell.metadata.nbgrader?.grade_id];
@@ -479,7 +480,7 @@ def test_reader_is_told_that_nothing_can_be_kept(browser, site):
 def test_full_storage_is_told(context, site):
     tab = Tab(context, site).edit()
     tab.page.evaluate(
-        "() => { let text = 'x'.repeat(4e6); while (text.length > 4) { try { localStorage.setItem(`filler ${text.length}`,"
+        "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try { localStorage.setItem(`filler ${k++}`,"
         " text); } catch { text = text.slice(0, text.length / 2); } } }"
     )
     tab.write(ANSWER, "mine = 'a long answer that has no room'")
@@ -607,6 +608,8 @@ class Life:
         self.written.add(text)
 
     def load(self):
+        if self.edition:
+            return  # the notebook to take away is that of the first edition
         tab = self.tab()
         path = tab.take().path()
         tab.bring({"name": "mine.ipynb", "mimeType": "application/json", "buffer": path.read_bytes()})
@@ -617,8 +620,9 @@ class Life:
         seen = fresh.shown()
         fresh.page.close()
         copies = self.tabs[0].page.evaluate(
-            "async () => { const db = await new Promise((r) => { const o = indexedDB.open('JupyterLite Storage - /lite/');"
-            " o.onsuccess = () => r(o.result); }); const all = db.objectStoreNames.contains('files') ? await new Promise((r) =>"
+            "async () => { if (!(await indexedDB.databases()).length) return []; const db = await new Promise((r) =>"
+            " { const o = indexedDB.open('JupyterLite Storage - /lite/'); o.onsuccess = () => r(o.result); });"
+            " const all = db.objectStoreNames.contains('files') ? await new Promise((r) =>"
             " { const q = db.transaction('files').objectStore('files').getAll(); q.onsuccess = () => r(q.result); }) : [];"
             " db.close(); return all.map((copy) => copy.content.cells.map((cell) => [cell.source].flat().join('')).join('\\n')); }"
         )

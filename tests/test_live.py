@@ -650,15 +650,15 @@ dcm = orientation.dcm_from_body_fixed((psi, theta, phi), "zxy")
 assert orientation.same_orientation(dcm.T.T, dcm)
 assert orientation.simple_dcm("z", psi) * orientation.simple_dcm("z", psi).T != 0
 try:
-    orientation.dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy")
+    orientation.dcm_from_body_fixed([(0.1, 0.2, 0.3)], "zxy")
 except ImportError as error:
-    print("numbers need", error.name)
+    print("batches need", error.name)
 """
 
 
-def test_symbols_need_no_numpy():
+def test_batches_alone_need_numpy():
     done = subprocess.run([sys.executable, "-c", WITHOUT_NUMPY], capture_output=True, text=True)
-    assert (done.returncode, done.stdout.strip()) == (0, "numbers need numpy"), done.stderr
+    assert (done.returncode, done.stdout.strip()) == (0, "batches need numpy"), done.stderr
 
 
 def test_pages_that_need_numpy_do_not_import_it_in_vain():

@@ -5,8 +5,9 @@ returns scalar components. This file finds out what it was given (SymPy expressi
 or arrays that hold a batch), hands the components to the formula with the matching ``sin``, ``cos``
 and friends, and shapes the results.
 
-SymPy objects are recognised without importing SymPy, and NumPy is imported only when numbers come,
-so symbols work where there is no NumPy.
+SymPy objects are recognised without importing SymPy. One orientation in numbers is computed with Python's
+own floats, which is faster than with arrays, and needs NumPy for the result only: where there is none, as in
+a browser, the result is a :class:`~orientation._plain_arrays.PlainArray`. Batches need NumPy.
 """
 
 import functools
@@ -14,6 +15,8 @@ import math
 import numbers
 from collections.abc import Sequence
 from types import SimpleNamespace
+
+from ._plain_arrays import PlainArray
 
 #: Largest departure from orthogonality, or from unit length, that still counts as rounding.
 TOLERANCE = 1e-9
@@ -34,6 +37,8 @@ def is_symbolic(value):
     """Tell whether a value is a SymPy object, or a sequence or object array that holds one."""
     if isinstance(value, (list, tuple)):
         return any(is_symbolic(entry) for entry in value)
+    if isinstance(value, (PlainArray, float)):
+        return False
     if getattr(value, "dtype", None) == object:  # noqa: E721 (not the type of something: a kind of array)
         return is_symbolic(value.tolist())
     return hasattr(value, "free_symbols")
@@ -56,12 +61,64 @@ def evaluate(formula, shape, *arguments, guard=None, symbols=True):
     symbols : bool
         False for a formula that needs numbers, to choose its branch by their sizes.
     """
+    components = []
+    for _, value, item in arguments:
+        entries = _at_a_glance(value, item)
+        if entries is None:
+            break
+        components += entries
+    else:
+        return _evaluate_numbers(formula, shape, components, guard)
     if symbols and any(is_symbolic(value) for _, value, _ in arguments):
         return _evaluate_symbols(formula, shape, arguments, guard)
+    single = [one_item(value, item, name) for name, value, item in arguments]
+    if None not in single:
+        return _evaluate_numbers(formula, shape, [entry for entries in single for entry in entries], guard)
     arrays = [number_array(value, item, name) for name, value, item in arguments]
-    if all(array.ndim == len(item) for array, (_, _, item) in zip(arrays, arguments)):
-        return _evaluate_numbers(formula, shape, arrays, guard)
     return _evaluate_batch(formula, shape, arrays, arguments, guard)
+
+
+def _at_a_glance(value, item):
+    """The floats of one item as a list, where a look is enough to be sure that they are right; else None."""
+    kind = type(value)
+    if kind is float or kind is int:
+        entries = None if item else [value]
+    elif kind is tuple or kind is list:
+        if len(item) == 2 and len(value) == item[0] and all(type(row) is list and len(row) == item[1] for row in value):
+            value = [entry for row in value for entry in row]
+        elif len(item) != 1 or len(value) != item[0]:
+            return None
+        entries = value if _PLAIN.issuperset(map(type, value)) else None
+    elif kind is PlainArray and value.shape == item:
+        entries = value.entries()
+    elif kind.__name__ == "ndarray" and value.shape == item and value.dtype.char == "d":
+        entries = value.ravel().tolist()
+    else:
+        entries = None
+    try:
+        # The difference is not zero where a number is infinite or missing, or the sum is too large.
+        return entries if entries and (total := math.fsum(entries)) - total == 0 else None
+    except (OverflowError, ValueError):
+        return None
+
+
+_PLAIN = {float, int}
+
+
+def one_item(value, item, name):
+    """The floats of one item of the given shape as a list; None for what needs NumPy: a batch, or another shape."""
+    entries = _at_a_glance(value, item)
+    if entries is not None:
+        return list(map(float, entries))
+    if getattr(value, "ndim", len(item)) != len(item):
+        return None
+    if isinstance(value, (list, tuple)) and len(value) != sum(item[:1]):
+        return None
+    try:
+        entries = number_tuples(value, item, name)
+    except WrongShape:
+        return None  # a batch, or a mistake, which number_array explains
+    return [entry for row in entries for entry in row] if len(item) == 2 else list(entries) if item else [entries]
 
 
 def _evaluate_symbols(formula, shape, arguments, guard):
@@ -86,17 +143,20 @@ def _guard_exact_numbers(components, guard):
         explain(numbers, "")
 
 
-def _evaluate_numbers(formula, shape, arrays, guard):
-    import numpy
-
-    components = [entry for array in arrays for entry in array.ravel().tolist()]
+def _evaluate_numbers(formula, shape, components, guard):
     if guard:
         count, excess, explain = guard
         if not excess(NUMBERS, *components[:count]) <= TOLERANCE:
-            explain(components[:count], "")
+            explain([float(entry) for entry in components[:count]], "")
     result = formula(NUMBERS, *components)
-    # Adding zero turns -0 into 0, which would look like a wrong sign.
-    return numpy.array([entry + 0.0 for entry in result]).reshape(shape) if shape else result[0]
+    if not shape:
+        return result[0]
+    result = [entry + 0.0 for entry in result]  # adding zero turns -0 into 0, which would look like a wrong sign
+    try:
+        from numpy import array
+    except ModuleNotFoundError:
+        return PlainArray.of(result, shape)
+    return array(result).reshape(shape) if len(shape) > 1 else array(result)
 
 
 def _evaluate_batch(formula, shape, arrays, arguments, guard):

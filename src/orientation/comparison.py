@@ -10,7 +10,7 @@ import itertools
 import math
 from typing import NamedTuple
 
-from ._numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, symbol_components
+from ._numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, one_item, symbol_components
 from ._types import Result, Values
 from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
@@ -20,6 +20,10 @@ from .random_points import at_random_points, points_for, put_in, unknowns
 
 def _read(value, name):
     """Components of a matrix or a quaternion: SymPy expressions, floats, or the columns of a batch."""
+    if not is_symbolic(value):
+        for item in ((3, 3), (4,)):
+            if entries := one_item(value, item, name):
+                return entries
     for item in ((3, 3), (4,)):
         try:
             if is_symbolic(value):
@@ -28,7 +32,7 @@ def _read(value, name):
         except WrongShape:
             continue
         flat = array.reshape(*array.shape[: array.ndim - len(item)], math.prod(item))
-        return flat.tolist() if flat.ndim == 1 else [flat[..., k] for k in range(math.prod(item))]
+        return [flat[..., k] for k in range(math.prod(item))]
     raise ValueError(f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of shape (4,)")
 
 
@@ -162,7 +166,7 @@ def diagnose(
         angles = (
             symbol_components(angles, (3,), "angles")
             if is_symbolic(angles)
-            else number_array(angles, (3,), "angles").tolist()
+            else one_item(angles, (3,), "angles") or number_array(angles, (3,), "angles").tolist()
         )
     names = unknowns(given + expected + (angles or []))
     points = points_for(names)

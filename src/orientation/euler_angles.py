@@ -1,6 +1,6 @@
 """Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
 
-from ._numbers_and_symbols import evaluate, is_symbolic, number_array, symbol_components
+from ._numbers_and_symbols import evaluate, is_symbolic, number_array, one_item, symbol_components
 from ._types import Result, Values
 from .direction_cosines import AXES, DCM_GUARD
 
@@ -256,4 +256,5 @@ def lock_margin_formula(sequence):
 def _reversed(angles):
     if is_symbolic(angles):
         return symbol_components(angles, (3,), "angles")[::-1]
-    return number_array(angles, (3,), "angles")[..., ::-1]
+    entries = one_item(angles, (3,), "angles")
+    return entries[::-1] if entries else number_array(angles, (3,), "angles")[..., ::-1]

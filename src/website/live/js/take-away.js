@@ -30,10 +30,14 @@ async function bookNotebook(data, originals) {
   const answer = await fetch(new URL(data.notebook, location.href), { cache: "no-cache" });
   if (!answer.ok) throw new Error(`the page’s notebook did not come (${answer.status})`);
   const notebook = await answer.json();
-  const codes = notebook.cells.filter((cell) => cell.cell_type === "code");
-  if (codes.length !== originals.length || codes.some((cell, k) => text(cell.source) !== originals[k])) {
-    throw new Error("the book has changed since this page was opened: reload the page first");
-  }
+  // The notebook may hold cells that the page does not show.
+  const all = notebook.cells.filter((cell) => cell.cell_type === "code");
+  let next = 0;
+  const codes = originals.map((original) => {
+    while (next < all.length && text(all[next].source) !== original) next += 1;
+    return all[next++];
+  });
+  if (codes.includes(undefined)) throw new Error("the book has changed since this page was opened: reload the page first");
   return { notebook, codes };
 }
 
@@ -41,14 +45,17 @@ async function bookNotebook(data, originals) {
 export async function handIn(data, originals) {
   const { notebook, codes } = await bookNotebook(data, originals);
   const kept = new Answers(data.page).all();
+  const stamp = {};
   let answered = 0;
   named(data, originals).forEach((name, k) => {
     const entry = kept.get(name);
+    stamp[codes[k].id] = [name, fingerprint(originals[k])];
     if (!entry || entry.original !== fingerprint(originals[k])) return;
     Object.assign(codes[k], { source: entry.code, outputs: [], execution_count: null });
     kept.delete(name);
     answered += 1;
   });
+  notebook.metadata.book = { cells: stamp }; // by which it is loaded back
   save(data.notebook.split("/").at(-1), `${JSON.stringify(notebook, null, 1)}\n`);
   const left = kept.size ? ` ${count(kept.size, "text", "texts")} written for an older edition ${kept.size === 1 ? "is" : "are"} not in it: choose on the page first.` : "";
   return `Saved with what you have written in ${count(answered, "cell")} of this page.${left}`;

@@ -1,0 +1,124 @@
+"""One orientation in numbers where there is no NumPy: the same answers, looking the same."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from orientation._plain_arrays import PlainArray
+
+CALLS = """
+simple_dcm("z", 0.3)
+dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy")
+dcm_from_space_fixed((0.1, 0.2, 0.3), "zxz")
+body_fixed_from_dcm(dcm_from_body_fixed((0.4, 0.7, -0.3), "zxy"), "zxy")
+space_fixed_from_dcm(dcm_from_body_fixed((0.4, 0.7, -0.3), "zxy"), "zxy")
+dcm_from_axis_angle((1, 2, 2), 1.2)
+axis_angle_from_dcm(dcm_from_axis_angle((1, 2, 2), 1.2))
+axis_angle_from_dcm([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+quaternion_from_axis_angle((1, 2, 2), 1.2)
+-quaternion_from_axis_angle((1, 2, 2), 1.2)
+quaternion_from_dcm(simple_dcm("x", 3.1))
+quaternion_from_dcm(simple_dcm("x", 3.1)).round(4)
+dcm_from_quaternion((0.6, 0, 0, 0.8))
+multiply_quaternions((0.6, 0, 0, 0.8), (0, 1, 0, 0))
+interpolate_quaternions((1, 0, 0, 0), (0.6, 0.8, 0, 0), 0.25)
+dcm_from_rotation_vector((0.3, -0.4, 1.2))
+rotation_vector_from_dcm(dcm_from_rotation_vector((0.3, -0.4, 1.2))) / 2
+gimbal_lock_margin((0.3, 1.4, 0.1), "zxy")
+angular_velocity_matrix((0.1, 0.2, 0.3), "zxy")
+dcm_rate(simple_dcm("y", 0.1), (0, 0, 2.0))
+quaternion_rate((1, 0, 0, 0), (0, 0, 2.0))
+simple_dcm("z", 0.3) @ simple_dcm("x", 0.2).T
+simple_dcm("z", 0.3) @ [1, 2, 3]
+simple_dcm("z", 0.3)[0]
+simple_dcm("z", 0.3)[0, 1]
+simple_dcm("z", 0.3)[:2, 1]
+abs(simple_dcm("z", 0.3) - simple_dcm("z", 0.31)).max()
+simple_dcm("z", 0.3) * 2 + 1
+[row.tolist() for row in simple_dcm("z", 0.3)]
+same_orientation(quaternion_from_axis_angle((0, 0, 1), 0.3), -quaternion_from_axis_angle((0, 0, 2), 0.3))
+same_orientation(simple_dcm("z", 0.3), dcm_from_axis_angle((0, 0, 2), 0.3))
+diagnose(simple_dcm("z", 0.3).T, simple_dcm("z", 0.3)).causes
+check_dcm([[0.36, 0.48, -0.80], [-0.80, 0.60, 0.00], [0.48, 0.64, 0.60]])
+check_dcm([[0.4, 0.5, -0.80], [-0.80, 0.60, 0.00], [0.48, 0.64, 0.60]])
+dcm_from_quaternion((0.7, 0.7, 0.0, 0.0))
+dcm_from_axis_angle((0, 0, 0), 1.0)
+simple_dcm("z", float("nan"))
+simple_dcm("z", True)
+body_fixed_from_dcm(simple_dcm("z", __import__("sympy").Symbol("t")), "zxy")
+simple_dcm("z", __import__("sympy").pi / 6) * 2
+body_fixed_from_dcm(simple_dcm("z", __import__("sympy").pi / 6), "zxy")
+""".strip().splitlines()
+PROGRAM = """
+import json, sys
+if sys.argv[1] == "without":
+    sys.modules["numpy"] = None
+from orientation import *
+told = []
+for call in json.load(sys.stdin):
+    try:
+        value = eval(call)
+        told.append([repr(value), str(value)])
+    except Exception as error:
+        told.append([type(error).__name__, str(error)])
+json.dump(told, sys.stdout)
+"""
+
+
+def run(calls, how):
+    command = [sys.executable, "-c", PROGRAM, how]
+    return json.loads(
+        subprocess.run(command, input=json.dumps(calls), capture_output=True, text=True, check=True).stdout
+    )
+
+
+def test_answers_and_their_looks_are_the_same():
+    """Also the errors: a reader who has no NumPy is told the same thing."""
+    for call, without, with_numpy in zip(CALLS, run(CALLS, "without"), run(CALLS, "with"), strict=True):
+        assert without == with_numpy, call
+
+
+def test_what_needs_numpy_says_so():
+    """The page fetches it then: the error names the module."""
+    calls = ["simple_dcm('z', [0.1, 0.2])", "simple_dcm('z', 0.1).trace()", "simple_dcm('z', 0.1)[0, 0].round(2)"]
+    assert {kind for kind, _ in run(calls, "without")} == {"ModuleNotFoundError"}
+    assert "numpy" in run(calls, "without")[0][1]
+
+
+@pytest.mark.parametrize("shape", [(3,), (4,), (3, 3)])
+def test_shown_as_numpy_shows_it(shape):
+    random = np.random.default_rng(4)
+    for k in range(300):
+        array = random.normal(size=shape) * 10.0 ** random.integers(-2, 2)
+        array = array.round(int(random.integers(0, 5))) + 0.0 if k % 2 else array
+        array[random.random(shape) < 0.3] = random.choice([0.0, 1.0, -1.0])
+        plain = PlainArray.of(array.ravel().tolist(), shape)
+        assert (repr(plain), str(plain)) == (repr(array), str(array))
+
+
+def test_arithmetic_is_that_of_numpy():
+    random = np.random.default_rng(5)
+    for _ in range(50):
+        one, two, vector = random.normal(size=(3, 3)), random.normal(size=(3, 3)), random.normal(size=3)
+        plain, other, row = (PlainArray.of(array.ravel().tolist(), array.shape) for array in (one, two, vector))
+        for work in (
+            lambda a, b, v: a + b,
+            lambda a, b, v: a - v,
+            lambda a, b, v: 2 - a,
+            lambda a, b, v: a * v / 3,
+            lambda a, b, v: 1 / a,
+            lambda a, b, v: abs(a) ** 2,
+            lambda a, b, v: -a.T,
+            lambda a, b, v: v * (1, -1, 1) + [1, 2, 3],
+            lambda a, b, v: a == b,
+            lambda a, b, v: a[1:, 0],
+            lambda a, b, v: v[..., ::-1],
+        ):
+            assert work(plain, other, row).tolist() == work(one, two, vector).tolist()
+        for work in (lambda a, b, v: a @ b, lambda a, b, v: a @ v, lambda a, b, v: v @ a):
+            assert np.allclose(work(plain, other, row).tolist(), work(one, two, vector), rtol=0, atol=1e-14)
+        assert abs(row @ row - vector @ vector) < 1e-14
+        assert np.allclose(np.array(plain) @ plain, one @ one, rtol=0, atol=1e-14)
