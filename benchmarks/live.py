@@ -55,7 +55,7 @@ BARE = """
 (runtime) => new Promise((resolve, reject) => {
   const start = performance.now();
   const program = `
-    import { loadPyodide } from "${runtime}pyodide/pyodide.mjs";
+    import { loadPyodide } from "${runtime}pyodide/pyodide.js";
     const python = await loadPyodide({ lockFileURL: "${runtime}pyodide-lock.json", packages: ["sympy"] });
     python.runPython("import sympy");
     postMessage("imported");`;

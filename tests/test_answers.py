@@ -13,7 +13,6 @@ from test_live import ELSEWHERE, solution
 
 from coursework.__main__ import main as coursework
 from website.lite import fingerprint_of_code
-from website.live import scripts
 from website.take_away import notebook_address
 
 EXERCISE, CHAPTER = "exercises/simple-orientations", "chapters/simple-orientations"
@@ -332,7 +331,8 @@ def visit_notebook(page, site, name, changes=None, choose="Open the new version"
 
 
 def start(tab, choose):
-    script = f"/{scripts.folder_name()}/notebook.js"
+    (folder,) = (HTML / "runtime").glob("scripts-*")
+    script = f"/runtime/{folder.name}/notebook.js"
     tab.evaluate(f"() => {{ window.started = import('{script}').then((m) => m.prepare()).then(() => 'done'); }}")
     tab.evaluate(
         """(choose) => Promise.race([window.started, new Promise((resolve) => {

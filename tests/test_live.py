@@ -380,7 +380,7 @@ def test_typo(shared):
     assert "AttributeError" in text and 'File "cell 3", line 2' in text
     assert "sm.Matrx([1])" in text and "session" not in text and "pyodide" not in text
     text = shared.try_code(3, "for i in range(3)\n    print(i)")
-    assert "SyntaxError: expected ':'" in text
+    assert "SyntaxError: expected ':'" in text and "ast.py" not in text
     text = shared.try_code(3, "thta + 1")
     assert "NameError" in text and "theta" in text, "Python suggests the name"
     assert "error" in shared.words()
@@ -539,6 +539,51 @@ def test_start_afresh(context, site):
     page.page.click(".live-bar button:has-text('Start afresh')")
     assert page.page.evaluate(RESULTS) == before
     assert "NameError" in page.try_code(3, "gone")
+
+
+# --- failures of the network, named ---------------------------------------------------------------
+
+FAILURES = {
+    "**/*.wasm": [
+        ("404", dict(status=404)),
+        ("broken", dict(body=b"\0asm, but broken", content_type="application/wasm")),
+    ],
+    "**/sympy*.whl": [("not the file that this edition names", dict(body=b"no wheel"))],
+    "**/pyodide-lock.json": [("500", dict(status=500))],
+}
+
+
+@pytest.mark.parametrize(
+    ("pattern", "words", "answer"), [(p, *case) for p, cases in FAILURES.items() for case in cases]
+)
+def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, words, answer):
+    page = Page(context, site, QUIET)
+    page.page.route(pattern, lambda route: route.fulfill(**answer))
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_function(
+        "document.querySelector('#live-words').textContent.includes('could not be started')", timeout=90_000
+    )
+    assert words in page.words()
+    page.page.unroute(pattern)
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    assert "Cell 3 ran" in page.words()
+
+
+def test_jupyters_commands_get_a_hint(shared):
+    for code, words in (
+        ("%matplotlib inline", "Python alone"),
+        ("!pip install x", "nothing can be installed"),
+        ("len?", "help(len)"),
+    ):
+        text = shared.try_code(3, code)
+        assert words in text and "SyntaxError" in text and "session" not in text
+
+
+def test_run_after_a_stopped_cell_leaves_that_out(shared):
+    assert "Stopped." in stop(shared, 3, ENDLESS)
+    assert "after it" in shared.try_code(5, "print('after it')")
+    assert "Stopped." in shared.below(3)
 
 
 # --- the reader's edits ---------------------------------------------------------------------------

@@ -130,7 +130,8 @@ def write_workshop(site, settings, names):
     lock = sha256((site / runtime.FOLDER / LOCK).read_bytes()).hexdigest()[:12]
     # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
     kernel = {
-        "pyodideUrl": f"./../{runtime.FOLDER}/pyodide/pyodide.mjs",
+        # The kernel takes it for a module by the end of the address, servers by the name of the file.
+        "pyodideUrl": f"./../{runtime.FOLDER}/pyodide/pyodide.js?as=.mjs",
         "disablePyPIFallback": True,
         # The name is the same in every version of the book: what follows it tells them apart.
         "loadPyodideOptions": {"lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}", "packages": names},

@@ -2,14 +2,14 @@
 
 The site's folder ``runtime`` holds all of it, and nothing there is loaded before the reader asks:
 
-- ``pyodide/``: the interpreter, as npm brings it (``pyodide.mjs`` and what it loads);
+- ``pyodide/``: the interpreter, as npm brings it (``pyodide.js`` and what it loads);
 - ``wheels/<hash>/*.whl``: SymPy, mpmath and our own packages, byte-compiled;
 - ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file names of
   wheels in it are relative to the lock file. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says;
 - ``scripts-<hash>/``: what makes the cells of a page run in place (``js``, ``python``).
 
 Whatever else is to run Python in a browser (a notebook interface, say) needs only the address of
-``pyodide/pyodide.mjs`` and that of ``pyodide-lock.json``.
+``pyodide/pyodide.js`` and that of ``pyodide-lock.json``.
 """
 
 import json

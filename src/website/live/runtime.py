@@ -21,7 +21,13 @@ HERE = Path(__file__).parent
 FETCHED = REPOSITORY / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
-PYODIDE_FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+# Names in the site, by those in npm's package: servers that do not know .mjs would send no script that runs.
+PYODIDE_FILES = {
+    "pyodide.js": "pyodide.mjs",
+    "pyodide.asm.js": "pyodide.asm.mjs",
+    "pyodide.asm.wasm": "pyodide.asm.wasm",
+    "python_stdlib.zip": "python_stdlib.zip",
+}
 COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 
 FOLDER = "runtime"
@@ -148,8 +154,11 @@ def write(site, setting):
     target = site / FOLDER
     shutil.rmtree(target / "wheels", ignore_errors=True)
     (target / "pyodide").mkdir(parents=True, exist_ok=True)
-    for name in PYODIDE_FILES:
-        shutil.copyfile(PYODIDE / name, target / "pyodide" / name)
+    for name, source in PYODIDE_FILES.items():
+        content = (PYODIDE / source).read_bytes()
+        if name.endswith(".js"):
+            content = content.replace(b"pyodide.asm.mjs", b"pyodide.asm.js")
+        (target / "pyodide" / name).write_bytes(content)
     wheels = [*sorted(FETCHED.glob("*.whl")), site / TAKE_AWAY / wheel_name()]
     official = official_lock()
     packages = own_packages(compile_wheels(wheels), target)

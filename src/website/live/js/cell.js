@@ -76,7 +76,7 @@ export class Cell {
 
   // An edited cell has to run again before the cells below it.
   changed() {
-    this.ran = false;
+    this.ran = this.stopped = false;
     this.back.hidden = !this.edited;
     this.box.classList.toggle("edited", this.edited);
     if (!this.following) this.page.keep(this);
@@ -131,10 +131,11 @@ export class Cell {
   restore() {
     this.replace(this.built);
     this.box.classList.remove("waiting", "running", "failed");
-    this.ran = false;
+    this.ran = this.stopped = false;
   }
 
   begin() {
+    this.stopped = false;
     this.fresh = [];
     this.words = [];
     this.box.classList.remove("failed", "waiting");

@@ -151,7 +151,7 @@ class Page {
     }
     const upTo = cell ? cell.number : this.cells.length;
     const before = this.cells.slice(0, upTo).filter((other) =>
-      other !== cell && !(cell && other.ran) && !(this.leftOut(other) && !(cell?.kind.skip)));
+      other !== cell && !(cell && (other.ran || other.stopped)) && !(this.leftOut(other) && !(cell?.kind.skip)));
     for (const next of cell ? [...before, cell] : before) {
       if (!this.queue.includes(next)) {
         this.queue.push(next);
@@ -165,6 +165,8 @@ class Page {
 
   async work() {
     this.busy = true;
+    this.retry = true; // what could not be fetched before is tried again
+    this.unreachable = null;
     this.show();
     try {
       if (!this.python) await this.load();
@@ -212,8 +214,9 @@ class Page {
     if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
     // Code that the page hides above this cell; what it puts out belongs to no cell.
     const { before } = cell.kind;
-    const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }) : { status: "ok" };
-    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, cell) : hidden;
+    const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }, this.retry) : { status: "ok" };
+    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, cell, this.retry) : hidden;
+    this.retry = false;
     this.settle(cell, outcome);
   }
 
@@ -249,6 +252,7 @@ class Page {
       const then = lost ? " Python starts anew at the next run, and the page’s earlier cells run again first." : " What the cells before it have defined is still there.";
       cell.end(element("div", "live-note", element("p", "", why + then)));
       cell.ran = false;
+      cell.stopped = true; // it runs again when it is asked for, or changed; not because a later cell is
       this.empty();
       if (lost) this.forget();
       this.last = `${cell.name}: ${why}${then}`;

@@ -1,5 +1,7 @@
 // The life of the page's Python: started, given one cell at a time, interrupted, ended.
 
+// Milliseconds. Before Python's thread says anything it has to be fetched itself, and what it starts with.
+const SILENCE = 18_000;
 // A run that cannot be interrupted in this time is ended, and everything that it knew with it.
 const PATIENCE = 700;
 
@@ -8,7 +10,7 @@ export class Python {
     this.listener = listener;
     this.jobs = 0;
     // Shared memory, through which Python is asked to stop, is given to isolated pages only.
-    this.interrupts = globalThis.crossOriginIsolated ? new Uint8Array(new SharedArrayBuffer(1)) : null;
+    this.interrupts = globalThis.crossOriginIsolated && typeof SharedArrayBuffer === "function" ? new Uint8Array(new SharedArrayBuffer(1)) : null;
     this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
     this.ready = new Promise((resolve, reject) => {
       this.giveUp = reject;
@@ -20,10 +22,19 @@ export class Python {
       });
     });
     this.ready.catch(() => {});
+    this.watchSilence();
     this.worker.postMessage({ type: "start", runtime, interrupts: this.interrupts?.buffer });
   }
 
+  watchSilence() {
+    clearTimeout(this.silence);
+    this.silence = setTimeout(() => this.end("for 18 seconds nothing has come from the place of these pages"), SILENCE);
+  }
+
   hear(data, resolve, reject) {
+    if (data.type === "progress" && !this.compiling) this.watchSilence();
+    else clearTimeout(this.silence);
+    this.compiling ||= data.type === "compiling";
     if (data.type === "ready") resolve(data);
     else if (data.type === "done") this.finish(data.outcome);
     else if (data.type === "dead") {
@@ -33,11 +44,11 @@ export class Python {
   }
 
   // Run code; ``show`` is given each output as it comes. Resolves to the outcome.
-  run(code, name, needs, show) {
+  run(code, name, needs, show, retry) {
     return new Promise((settle) => {
       this.current = { job: ++this.jobs, settle, show };
       if (this.interrupts) this.interrupts[0] = 0;
-      this.worker.postMessage({ type: "run", job: this.current.job, code, name, needs });
+      this.worker.postMessage({ type: "run", job: this.current.job, code, name, needs, retry });
     });
   }
 
@@ -56,6 +67,7 @@ export class Python {
 
   // End the thread; what runs in it has no outcome but this one.
   end(reason) {
+    clearTimeout(this.silence);
     this.worker.terminate();
     this.ended = true;
     this.giveUp(new Error(reason));

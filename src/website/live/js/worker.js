@@ -12,7 +12,9 @@ const FILES = {
   "IPython/lib/__init__.py": "",
   "IPython/lib/pretty.py": pretty,
 };
-const refused = {};
+const SILENCE = 14; // seconds without a byte, after which a file is given up
+let refused = {};
+const faults = []; // what could not be fetched, and why
 const OURS = "orientation-of-reference-frames";
 const NUMERICAL = ["numpy", "matplotlib"];
 
@@ -36,23 +38,102 @@ function tellWhatIsMissing() {
   given.destroy();
 }
 
-// What has come so far, of all that comes before the first cell runs.
-function followLoading(all) {
-  const sizes = {};
-  new PerformanceObserver((list) => {
-    for (const { name, decodedBodySize } of list.getEntries()) sizes[name] = decodedBodySize;
-    const bytes = Object.values(sizes).reduce((sum, size) => sum + size, 0);
-    postMessage({ type: "progress", bytes: Math.min(bytes, all), all });
-  }).observe({ type: "resource", buffered: true });
+const fileOf = (url) => new URL(url, location.href).pathname.split("/").at(-1);
+
+// Every file is fetched through this: it counts the bytes as they come, gives up where none do, and says what failed.
+function watchFetching(all) {
+  const plain = self.fetch;
+  let bytes = 0, told = 0;
+  self.fetch = async (address, { integrity, ...options } = {}) => {
+    const url = String(address.url ?? address), giveUp = new AbortController();
+    let waiting = true, silent = 0;
+    // Seconds in which this thread was free to see bytes, and saw none.
+    const clock = setInterval(() => {
+      silent = waiting ? silent + 1 : 0;
+      if (silent >= SILENCE) giveUp.abort();
+    }, 1000);
+    const fail = (reason) => {
+      clearInterval(clock);
+      const why = silent >= SILENCE ? `nothing came for ${SILENCE} seconds` : reason;
+      faults.push(`${fileOf(url)} could not be fetched from ${new URL(url, location.href).host} (${why})`);
+      if (!python) postMessage({ type: "dead", reason: faults.at(-1) }); // Python cannot start without it
+      return new Error(faults.at(-1));
+    };
+    let answer;
+    try {
+      answer = await plain(address, { ...options, signal: giveUp.signal });
+    } catch (error) {
+      throw fail(errorText(error));
+    }
+    if (!answer.ok) throw fail(`the server says ${answer.status}`);
+    const reader = answer.body.getReader();
+    const body = new ReadableStream({
+      async pull(out) {
+        try {
+          [waiting, silent] = [true, 0];
+          const { done, value } = await reader.read();
+          [waiting, silent] = [false, 0];
+          if (done) {
+            clearInterval(clock);
+            return out.close();
+          }
+          bytes += value.length;
+          if (all() && performance.now() - told > 100) {
+            told = performance.now();
+            postMessage({ type: "progress", bytes: Math.min(bytes, all()), all: all() });
+          }
+          out.enqueue(value);
+        } catch (error) {
+          out.error(fail(errorText(error)));
+        }
+      },
+    });
+    const seen = new Response(body, { status: answer.status, headers: answer.headers });
+    if (!integrity) return seen;
+    // The browser checks a fingerprint only when all has come: the bytes are counted before that.
+    const whole = URL.createObjectURL(await seen.blob());
+    try {
+      return await plain(whole, { integrity });
+    } catch {
+      throw fail("it is not the file that this edition names");
+    } finally {
+      URL.revokeObjectURL(whole);
+    }
+  };
+}
+
+// Of a module that is broken, or forbidden, Pyodide tells the console only.
+function watchModules() {
+  if (typeof WebAssembly === "undefined") throw new Error("this browser, or a setting of it, forbids WebAssembly");
+  for (const name of ["instantiate", "instantiateStreaming"]) {
+    const plain = WebAssembly[name];
+    WebAssembly[name] = async (...given) => {
+      // Small modules only ask what the browser can do.
+      if (name === "instantiateStreaming" || given[0]?.byteLength > 1e6) postMessage({ type: "compiling" });
+      try {
+        return await plain(...given);
+      } catch (error) {
+        if (error instanceof WebAssembly.CompileError || error instanceof WebAssembly.LinkError) {
+          const forbidden = /Content Security Policy|unsafe-eval|disallowed/i.test(errorText(error));
+          const reason = forbidden ? "the rules of this site forbid WebAssembly" : `a file of Python is broken (${errorText(error)})`;
+          postMessage({ type: "dead", reason: faults[0] ?? reason });
+        }
+        throw error;
+      }
+    };
+  }
 }
 
 async function start({ runtime, interrupts }) {
-  const [{ loadPyodide }, lock] = await Promise.all([
-    import(`${runtime}pyodide/pyodide.mjs`),
-    fetch(`${runtime}pyodide-lock.json`, { cache: "no-cache" }).then((answer) => answer.json()),
+  let lock;
+  watchModules();
+  watchFetching(() => lock?.bytes);
+  const [{ loadPyodide }] = await Promise.all([
+    import(`${runtime}pyodide/pyodide.js`),
+    fetch(`${runtime}pyodide-lock.json`, { cache: "no-cache" }).then(async (answer) => (lock = await answer.json())),
   ]);
   packages = lock.packages;
-  followLoading(lock.bytes);
+  postMessage({ type: "progress", bytes: 0, all: lock.bytes });
   python = await loadPyodide({
     indexURL: `${runtime}pyodide/`,
     lockFileContents: lock,
@@ -60,6 +141,8 @@ async function start({ runtime, interrupts }) {
     packages: [OURS],
     env: { HOME: "/home/reader", MPLBACKEND: "agg" },
   });
+  const lost = [OURS, "sympy", "mpmath"].find((name) => !(name in python.loadedPackages));
+  if (lost) throw new Error(faults[0] ?? `${lost} could not be loaded: the file is not the one that this edition names`);
   const site = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
   python.FS.mkdirTree(`${site}/IPython/lib`);
   for (const [name, text] of Object.entries(FILES)) python.FS.writeFile(`${site}/${name}`, text);
@@ -91,13 +174,15 @@ async function bring(module) {
   const came = name in python.loadedPackages;
   if (!came) {
     console.info(problems.join("\n"));
-    refused[name] = `${named(name)} could not be fetched from ${place}`;
+    const silent = faults.at(-1)?.includes("nothing came for");
+    refused[name] = `${named(name)} could not be fetched from ${place}${silent ? ", which does not answer" : ""}`;
   }
   tellWhatIsMissing();
   return came;
 }
 
-async function run({ code, name, needs = [] }) {
+async function run({ code, name, needs = [], retry }) {
+  if (retry) refused = {};
   for (const module of needs) if (!(await bring(module))) break;
   for (;;) {
     const outcome = JSON.parse(shell.run(code, name));

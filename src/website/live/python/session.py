@@ -258,11 +258,30 @@ class Shell:
             return {"status": "missing", "package": package, "reason": self.missing.reasons[package]}
         told = traceback.TracebackException.from_exception(error, compact=True)
         shorten(told)
+        if isinstance(error, SyntaxError) and error.filename == name:
+            told.stack.clear()  # the parser's own lines say nothing of the cell's
         return {
             "status": "error",
             "name": type(error).__name__,
-            "traceback": "".join(told.format()).rstrip(),
+            "traceback": "".join(told.format()).rstrip() + hint(error, name),
         }
+
+
+def hint(error, name):
+    """A word to those who know Jupyter's own commands, which are not Python."""
+    if not isinstance(error, SyntaxError) or error.filename != name:
+        return ""
+    line = (error.text or "").strip()
+    if line.startswith(("%", "!")):
+        command = line.lstrip("%!").split()[0] if line.lstrip("%!").split() else ""
+        if command in ("pip", "conda"):
+            return "\n\nOn this page nothing can be installed: it has SymPy and this book's own packages."
+        if command in ("time", "timeit"):
+            return "\n\nCommands that begin with % are Jupyter's. Here: import timeit, and call timeit.timeit."
+        return "\n\nCommands that begin with % or ! are Jupyter's; on this page there is Python alone."
+    if line.endswith("?") or line.startswith("?"):
+        return f"\n\nThe question mark is Jupyter's. Here: help({line.strip('?')})"
+    return ""
 
 
 def cannot_ask(prompt=""):

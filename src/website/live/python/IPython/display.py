@@ -51,3 +51,10 @@ class Math(_Content):
 class Image(_Content):
     def _repr_png_(self):
         return base64.b64encode(self.data).decode()
+
+
+class Code(_Content):
+    """Coloured as IPython does it, which the page's own Python cannot."""
+
+    def __init__(self, data, language=None):
+        import pygments  # noqa: F401 (not part of it: the error names what is missing)
