@@ -18,7 +18,8 @@ from website.take_away import notebook_address
 EXERCISE, CHAPTER = "exercises/simple-orientations", "chapters/simple-orientations"
 BLANK = "A_C_N = ...  # your answer"
 ANSWER, OTHER = 2, 4  # cells of the exercise, from 1
-CODES = "() => [...document.querySelectorAll('div.cell')].map((cell) => cell.querySelector('.cm-content')?.innerText ?? cell.querySelector('.cell_input pre').textContent)"
+CODES = """() => [...document.querySelectorAll('div.cell')].map((cell) =>
+  cell.querySelector('.cm-content')?.innerText ?? cell.querySelector('.cell_input pre').textContent)"""
 KEPT = "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => key.startsWith('book ')))"
 
 
@@ -346,6 +347,15 @@ def start(tab, choose):
     )
 
 
+ALL_COPIES = """async () => {
+  if (!(await indexedDB.databases()).length) return [];
+  const settled = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
+  const database = await settled(indexedDB.open('JupyterLite Storage - /lite/'));
+  const all = database.objectStoreNames.contains('files')
+    ? await settled(database.transaction('files').objectStore('files').getAll()) : [];
+  database.close();
+  return all.map((copy) => [copy.path, copy.content.cells.map((cell) => [cell.source].flat().join('')).join('\\n')]);
+}"""
 CRANK, BOOM = "simple-orientations-crank", "simple-orientations-boom"
 
 
@@ -407,13 +417,7 @@ def test_old_copy_is_told_from_the_new_edition(context, site, choice):
         assert (cells[CRANK], cells[BOOM]) == ("crank = 1", "boom = 2")
     else:
         assert (cells[CRANK], cells[BOOM]) == ("A_C_N = ...  # nine entries", "boom = 2")
-        databases = tab.page.evaluate(
-            "async () => { const db = await new Promise((r) => { const o = indexedDB.open('JupyterLite Storage - /lite/');"
-            " o.onsuccess = () => r(o.result); }); const all = await new Promise((r) => { const q ="
-            " db.transaction('files').objectStore('files').getAll(); q.onsuccess = () => r(q.result); }); db.close();"
-            " return all.map((copy) => [copy.path, JSON.stringify(copy.content)]); }"
-        )
-        old = next(content for path, content in databases if "my copy of" in path)
+        old = next(content for path, content in tab.page.evaluate(ALL_COPIES) if "my copy of" in path)
         assert "crank = 1" in old and "boom = 2" in old
 
 
@@ -480,8 +484,8 @@ def test_reader_is_told_that_nothing_can_be_kept(browser, site):
 def test_full_storage_is_told(context, site):
     tab = Tab(context, site).edit()
     tab.page.evaluate(
-        "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try { localStorage.setItem(`filler ${k++}`,"
-        " text); } catch { text = text.slice(0, text.length / 2); } } }"
+        "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try {"
+        " localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length / 2); } } }"
     )
     tab.write(ANSWER, "mine = 'a long answer that has no room'")
     assert "no room left" in tab.words()
@@ -619,13 +623,7 @@ class Life:
         fresh = Tab(self.context, self.site).edit()
         seen = fresh.shown()
         fresh.page.close()
-        copies = self.tabs[0].page.evaluate(
-            "async () => { if (!(await indexedDB.databases()).length) return []; const db = await new Promise((r) =>"
-            " { const o = indexedDB.open('JupyterLite Storage - /lite/'); o.onsuccess = () => r(o.result); });"
-            " const all = db.objectStoreNames.contains('files') ? await new Promise((r) =>"
-            " { const q = db.transaction('files').objectStore('files').getAll(); q.onsuccess = () => r(q.result); }) : [];"
-            " db.close(); return all.map((copy) => copy.content.cells.map((cell) => [cell.source].flat().join('')).join('\\n')); }"
-        )
+        copies = [content for _, content in self.tabs[0].page.evaluate(ALL_COPIES)]
         lines = set("\n".join([seen, *copies]).splitlines())
         return self.written - lines
 
