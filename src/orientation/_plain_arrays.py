@@ -35,6 +35,7 @@ class PlainArray:
     """A vector of numbers (``rows`` is a list of them), or a matrix (a list of lists)."""
 
     __array_priority__ = 0  # where both meet, NumPy decides
+    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, rows):
         self.rows = rows
@@ -158,8 +159,7 @@ def _operation(work, swapped=False):
 for _name in ("add", "sub", "mul", "truediv", "pow"):
     setattr(PlainArray, f"__{_name}__", _operation(getattr(operator, _name)))
     setattr(PlainArray, f"__r{_name}__", _operation(getattr(operator, _name), swapped=True))
-PlainArray.__eq__ = _operation(operator.eq)
-PlainArray.__hash__ = None
+setattr(PlainArray, "__eq__", _operation(operator.eq))  # noqa: B010 (each of the others is set so)
 
 
 def _shape(rows):
