@@ -5,13 +5,11 @@ import dataclasses
 import hashlib
 import io
 import json
-import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
-import threading
 from html.parser import HTMLParser
 
 import nbformat
@@ -19,9 +17,10 @@ import pytest
 from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
 
 from coursework.__main__ import main
+from coursework.checking.reply import plain_text, to_html
 from coursework.grading import gradebooks, pages, sample_class
-from coursework.grading.grade import NothingToGrade, given_up, grade, regrade, run_here
-from coursework.grading.sandbox import Limits, WeakIsolation, WorkerDied
+from coursework.grading.grade import NothingToGrade, grade, regrade, run_here
+from coursework.grading.sandbox import Limits, WeakIsolation, WorkerDied, given_up
 from coursework.grading.store import InUse, Store, file_name
 from coursework.grading.tables import as_cell, as_written, table
 
@@ -249,6 +248,22 @@ def test_mathematics_in_messages():
         assert not tags.found & {"a", "img", "b", "script"} and "href" not in tags.attributes
 
 
+@pytest.mark.parametrize(
+    "said, shown",
+    [
+        ("*theta is odd", "*theta is odd"),
+        ("one ` or one $ is text", "one ` or one $ is text"),
+        ("2*a*b <x>", "2*a*b &lt;x&gt;"),
+        ("the *whole* `2*a*b`", "the <em>whole</em> <code>2*a*b</code>"),
+        ("**", "**"),
+        ("", ""),
+    ],
+)
+def test_one_function_makes_a_message_a_page_and_loses_no_sign(said, shown):
+    assert to_html(said) == pages.message(said) == shown
+    assert plain_text("`2*a*b`, 2*a*b and $2\\pi$") == "2*a*b, 2*a*b and 2pi"
+
+
 def test_an_answer_is_printed_in_bounded_length():
     doubling = {
         "value": ["expression", 60],
@@ -358,6 +373,38 @@ def test_what_changed_is_graded_again(course, copied, tmp_path):
     assert Store(copied).read("right", "turns")["points"] == 5
 
 
+def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypatch):
+    """Classmates are judged by the same code: a change anywhere in the two packages is one."""
+    from coursework.grading import versions
+
+    ours, theirs = (
+        shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__"))
+        for package in versions.PACKAGES
+    )
+    assert versions.digest_of_packages((ours, theirs)) == versions.digest_of_packages()
+    digests = {versions.digest_of_packages()}
+    for path in (
+        ours / "grading" / "marking.py",
+        ours / "checking" / "kinds.py",
+        ours / "authoring" / "author.py",
+        theirs / "euler_angles.py",
+    ):
+        path.write_text(path.read_text() + "\n# changed\n")
+        digests.add(versions.digest_of_packages((ours, theirs)))
+    assert len(digests) == 5
+    path.rename(path.with_name("another.py"))
+    assert versions.digest_of_packages((ours, theirs)) not in digests
+    shutil.rmtree(copied / "records" / "endless")  # it takes long, and is not what is tested
+    few = shutil.copytree(course / "submissions" / "right", tmp_path / "few" / "right").parent
+    monkeypatch.setattr(versions, "PACKAGES", (ours, theirs))
+    versions.software.cache_clear()
+    try:
+        said = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    finally:
+        versions.software.cache_clear()
+    assert said == {"graded": 1, "kept": 0, "refused": 0}
+
+
 def test_two_runs_on_one_folder_are_refused(course, copied):
     with Store(copied).locked(), pytest.raises(InUse):
         grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
@@ -422,55 +469,6 @@ def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
         show=io.StringIO(),
     )
     assert contents(prepared) == contents(course / "out")
-
-
-@pytest.mark.long
-@pytest.mark.filterwarnings("ignore")
-def test_a_cluster_that_loses_a_worker_changes_no_byte(course, prepared):
-    distributed = pytest.importorskip("distributed")
-    lost, over = [], threading.Event()
-
-    def lose_a_worker():
-        while not over.wait(0.01):
-            if list((prepared / "records").glob("*/*.json")):
-                lost.append(next(iter(cluster.workers.values())).pid)
-                os.kill(lost[0], signal.SIGKILL)
-                return
-
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
-    ) as cluster:
-        killer = threading.Thread(target=lose_a_worker)
-        killer.start()
-        try:
-            said = grade(
-                course / "submissions",
-                prepared,
-                solutions=course / "solutions",
-                limits=LIMITS,
-                scheduler=cluster.scheduler_address,
-                show=io.StringIO(),
-            )
-        finally:
-            over.set()
-            killer.join()
-    assert lost and said["graded"] == 15
-    assert contents(prepared) == contents(course / "out")
-
-
-def test_a_cluster_that_is_not_there_is_said(course, prepared, monkeypatch):
-    pytest.importorskip("distributed")
-    from coursework.grading import cluster
-
-    monkeypatch.setattr(cluster, "CONNECT_WITHIN", "0.5s")
-    with pytest.raises(ValueError, match="no Dask scheduler to be reached at tcp://127.0.0.1:1"):
-        grade(
-            course / "submissions",
-            prepared,
-            solutions=course / "solutions",
-            scheduler="tcp://127.0.0.1:1",
-            show=io.StringIO(),
-        )
 
 
 def test_it_fails_closed(course, prepared, monkeypatch):

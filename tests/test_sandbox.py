@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -387,24 +388,58 @@ for result in run_notebooks(json.loads(sys.argv[1]), workers=2, **options):
 """
 
 
+@pytest.fixture(params=["with bubblewrap", "without bubblewrap"])
+def environment(request, tmp_path):
+    """The environment of a grader that finds bubblewrap, or does not, with a folder of its own for what is temporary."""
+    bubblewrap = shutil.which("bwrap")
+    if request.param == "with bubblewrap" and bubblewrap is None:
+        pytest.skip("bubblewrap is not installed")
+    folders = {name: tmp_path / name for name in ("programs", "temporary")}
+    for folder in folders.values():
+        folder.mkdir()
+    if request.param == "with bubblewrap":
+        (folders["programs"] / "bwrap").symlink_to(bubblewrap)
+    return os.environ | {"TMPDIR": str(folders["temporary"]), "PATH": str(folders["programs"])}
+
+
+def children_of(grader):
+    with contextlib.suppress(psutil.NoSuchProcess):
+        return psutil.Process(grader.pid).children(recursive=True)
+    return []
+
+
 @pytest.mark.parametrize("without", [[], ["namespaces"]], ids=["in memory", "on disk"])
-def test_a_grader_that_is_killed_leaves_nothing_running(tmp_path, without):
+def test_a_grader_that_is_killed_leaves_nothing(environment, without):
     jobs = [notebook("1"), *[notebook("import time; time.sleep(600)")] * 2]
     grader = subprocess.Popen(
         [sys.executable, "-c", KILLED, json.dumps(jobs), json.dumps(without)],
         stdout=subprocess.PIPE,
         text=True,
-        env=os.environ | {"TMPDIR": str(tmp_path)},
+        env=environment,
     )
     assert grader.stdout.readline() == "n\n"
-    below = psutil.Process(grader.pid).children(recursive=True)
+    end_at_once(grader)
+    assert os.listdir(environment["TMPDIR"]) == []
+
+
+def end_at_once(grader):
+    below = children_of(grader)
     assert len(below) >= 2
     grader.kill()
     grader.wait()
-    grader.stdout.close()
+    if grader.stdout:
+        grader.stdout.close()
     _, alive = psutil.wait_procs(below, timeout=300)
     assert alive == []
-    assert os.listdir(tmp_path) == []
+
+
+def test_a_grader_that_is_killed_while_it_starts_leaves_nothing(environment):
+    """Killed as soon as there is a folder: the libraries are still being loaded then, and nothing has been tried."""
+    grader = subprocess.Popen([sys.executable, "-c", KILLED, json.dumps([notebook("1")]), "[]"], env=environment)
+    while not (os.listdir(environment["TMPDIR"]) and len(children_of(grader)) >= 2):
+        assert grader.poll() is None
+    end_at_once(grader)
+    assert os.listdir(environment["TMPDIR"]) == []
 
 
 def test_a_job_that_is_no_job_is_refused(sandbox):

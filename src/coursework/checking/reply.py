@@ -63,21 +63,34 @@ class Reply:
         )
 
 
-def to_html(message):
-    """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed."""
-    pieces = re.split(r"(`[^`]*`|\$[^$]*\$|\*[^*]+\*)", message)
-    return "".join(map(_piece, pieces))
+#: Code, mathematics and emphasis, each with both of its marks; what has only one is text.
+MARKED = re.compile(r"`([^`]+)`|\$([^$]+)\$|(?<![\w)])\*([^*\s][^*]*)\*(?!\w)")
 
 
-def _piece(piece):
-    inner = html.escape(piece[1:-1])
-    if piece.startswith("`"):
-        return f"<code>{inner}</code>"
-    if piece.startswith("$"):
-        return f'<span class="math">${inner}$</span>'
-    if piece.startswith("*") and len(piece) > 1:
-        return f"<em>{inner}</em>"
-    return html.escape(piece)
+def to_html(message, formula=lambda source: f'<span class="math">${html.escape(source)}$</span>'):
+    """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed.
+
+    Parameters
+    ----------
+    message : str
+    formula : function, optional
+        The HTML of a formula, from its TeX; without it the TeX itself, for a page that typesets it.
+
+    >>> to_html('*Not* `<x>`, but *theta is odd')
+    '<em>Not</em> <code>&lt;x&gt;</code>, but *theta is odd'
+    """
+    pieces, place = [], 0
+    for found in MARKED.finditer(message):
+        code, source, stressed = found.groups()
+        pieces.append(html.escape(message[place : found.start()]))
+        if code is not None:
+            pieces.append(f"<code>{html.escape(code)}</code>")
+        elif source is not None:
+            pieces.append(formula(source))
+        else:
+            pieces.append(f"<em>{html.escape(stressed)}</em>")
+        place = found.end()
+    return "".join([*pieces, html.escape(message[place:])])
 
 
 def plain_text(message):
@@ -86,8 +99,10 @@ def plain_text(message):
     >>> plain_text(r'This is ${}^{N}\\mathbf{C}^{A}$: *transpose* it.')
     'This is N_C_A: transpose it.'
     """
-    message = re.sub(r"\$\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?\$", r"\1_C_\2", message)
-    message = re.sub(r"\\hat\{(\w)\}_(\w)", r"\1_\2", message)
-    message = re.sub(r"\\math\w+\{(\w+)\}", r"\1", message)
-    message = re.sub(r"\$([^$]*)\$", lambda found: found[1].replace("\\", ""), message)
-    return re.sub(r"\*([^*]+)\*", r"\1", message).replace("`", "")
+    return MARKED.sub(lambda found: found[1] or found[3] or _formula_as_text(found[2]), message)
+
+
+def _formula_as_text(source):
+    source = re.sub(r"\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?", r"\1_C_\2", source)
+    source = re.sub(r"\\hat\{(\w)\}_(\w)", r"\1_\2", source)
+    return re.sub(r"\\math\w+\{(\w+)\}", r"\1", source).replace("\\", "")

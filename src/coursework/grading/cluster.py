@@ -6,14 +6,21 @@ made up for by the others; what comes of a notebook does not depend on where it 
 """
 
 import contextlib
+import io
 import json
+import pickle
 import threading
 import uuid
+from concurrent.futures import CancelledError
+from types import SimpleNamespace
 
-from distributed import Client, WorkerPlugin, as_completed, get_worker
-from distributed.scheduler import KilledWorker
+from distributed import Client, WorkerPlugin, as_completed, get_worker, protocol
+from distributed import client as client_of_dask
+from distributed.client import FutureCancelledError
 
 from ..checking.plain import NotPlain, read_plain
+from .sandbox import given_up
+from .versions import software
 
 CONNECT_WITHIN = "30s"
 
@@ -45,16 +52,50 @@ class Sandboxes(WorkerPlugin):
 
 
 def run_job(job, name):
-    """Run one job, on a worker."""
-    from .grade import given_up, software
-    from .sandbox import WorkerDied
+    """Run one job, on a worker; whatever happens, the answer is JSON."""
+    from .sandbox import WeakIsolation, WorkerDied
 
     job = json.loads(job)
     try:
-        result = get_worker().plugins[name].of_this_thread().run(job)
+        found = {"result": get_worker().plugins[name].of_this_thread().run(job)}
     except WorkerDied as error:
-        result = given_up(job, str(error))
-    return json.dumps({"result": result, "software": software()}).encode()
+        found = {"result": given_up(job, str(error))}
+    except WeakIsolation as error:
+        found = {"weak": str(error)}
+    return json.dumps({**found, "software": software()}).encode()
+
+
+class _PlainData(pickle.Unpickler):
+    """Reads pickles of texts, bytes, numbers, lists and the like, which can do nothing; Dask wraps some in others."""
+
+    def find_class(self, module, name):
+        raise TypeError("A pickle was refused: whoever sends one could run code here, beside the right answers.")
+
+
+def plain_data(data, *, buffers=()):
+    return _PlainData(io.BytesIO(data), buffers=buffers).load()
+
+
+@contextlib.contextmanager
+def no_pickles():
+    """Have this process, as a client of Dask, run nothing by unpickling what a worker or the scheduler sends.
+
+    Naming the serializers of the results is not enough: the types of results, errors and warnings come as
+    pickles of their own.
+    """
+    replaced = (
+        (protocol.pickle, "loads", plain_data),
+        (client_of_dask, "loads", plain_data),
+        (client_of_dask, "pickle", SimpleNamespace(loads=plain_data)),
+    )
+    before = [getattr(place, name) for place, name, _ in replaced]
+    for place, name, value in replaced:
+        setattr(place, name, value)
+    try:
+        yield
+    finally:
+        for (place, name, _), value in zip(replaced, before, strict=True):
+            setattr(place, name, value)
 
 
 def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
@@ -63,14 +104,25 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
     Raises
     ------
     ValueError
-        The cluster cannot be reached, or its software is not the same as here, so that results might differ.
+        The cluster cannot be reached or was lost, or its software is not the same as here, so that results might
+        differ.
+    WeakIsolation
+        A worker cannot keep student code apart.
     """
-    from .grade import given_up, software
-
     name = f"coursework-{uuid.uuid4().hex}"
+    ours = software()
     with contextlib.ExitStack() as stack:
+        stack.enter_context(no_pickles())
         try:
-            client = stack.enter_context(Client(address, timeout=CONNECT_WITHIN, set_as_default=False))
+            client = stack.enter_context(
+                Client(
+                    address,
+                    timeout=CONNECT_WITHIN,
+                    set_as_default=False,
+                    serializers=["msgpack", "pickle"],
+                    deserializers=["msgpack"],
+                )
+            )
         except OSError as error:
             raise ValueError(f"There is no Dask scheduler to be reached at {address} ({error}).") from None
         client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
@@ -79,22 +131,40 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
         for job in jobs:
             future = client.submit(run_job, json.dumps(job).encode(), name, key=f"{name} {job['id']}", pure=False)
             sent[future.key] = future, job
-        ours = software()
         for future in as_completed([future for future, _ in sent.values()], loop=client.loop):
             _, job = sent.pop(future.key)
             try:
                 answer = json.loads(future.result())
-            except KilledWorker as error:
-                yield given_up(job, f"{type(error).__name__}: worker after worker was lost")
-                continue
-            if answer["software"] != ours:
+            except (FutureCancelledError, CancelledError):
                 raise ValueError(
-                    f"The cluster has other versions than this machine: {answer['software']}, and here {ours}."
-                )
-            for found in answer["result"]["answers"].values():
-                if found["outcome"] == "recorded":
-                    try:
-                        read_plain(found["plain"])
-                    except NotPlain:
-                        raise ValueError("The cluster sent damaged data.") from None
+                    f"The scheduler at {address} was lost. What was graded is kept; the same command goes on."
+                ) from None
+            except Exception as error:
+                # An error comes as a pickle, and stays one. That worker after worker died is no secret in it.
+                if not any(b"KilledWorker" in part for part in error.args if isinstance(part, bytes)):
+                    raise ValueError(
+                        f"A worker of the cluster at {address} sent something else than a result. "
+                        "Does it have this package, in this version?"
+                    ) from None
+                yield given_up(job, "worker after worker of the cluster was lost")
+                continue
+            _demand_sound(answer, job, ours)
             yield answer["result"]
+
+
+def _demand_sound(answer, job, ours):
+    """A worker may have been captured by what it ran: what it sends is looked at like what a notebook sends."""
+    from .sandbox import WeakIsolation
+
+    if "weak" in answer:
+        raise WeakIsolation(str(answer["weak"]))
+    if answer["software"] != ours:
+        raise ValueError(f"The cluster has other versions than this machine: {answer['software']}, and here {ours}.")
+    try:
+        if answer["result"]["id"] != job["id"] or set(answer["result"]["answers"]) != set(job["questions"]):
+            raise NotPlain
+        for found in answer["result"]["answers"].values():
+            if found["outcome"] == "recorded":
+                read_plain(found["plain"])
+    except (NotPlain, KeyError, TypeError):
+        raise ValueError("The cluster sent damaged data.") from None

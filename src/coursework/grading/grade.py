@@ -7,19 +7,18 @@ run that finds a record with the right key leaves it alone, so a run that was ki
 
 import contextlib
 import csv
-import functools
 import hashlib
 import json
 import platform
 import sys
 import time
-from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
 
 from ..authoring.course import edition_of, find_course
 from . import intake, marking
 from .store import FORMAT, Store, as_text, write
+from .versions import software
 
 DECISIONS, REFUSED, COURSE = "decisions.csv", "refused.json", "course.json"
 
@@ -216,24 +215,6 @@ def key_of(work, questions, limits, weak):
     return hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
 
 
-@functools.cache
-def software():
-    """The versions that answers may depend on."""
-    return {
-        "python": platform.python_version(),
-        **{name: metadata.version(name) for name in ("sympy", "mpmath", "numpy", "matplotlib")},
-        "coursework": _digest_of_sandbox(),
-    }
-
-
-def _digest_of_sandbox():
-    digest = hashlib.sha256()
-    for path in sorted([*Path(__file__).parent.glob("*.py"), Path(__file__).parents[1] / "checking" / "plain.py"]):
-        if path.stem in ("isolation", "notebook", "plain", "records", "sandbox", "system_calls", "warm_parent"):
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
 class _Jobs:
     """The jobs of the sandbox, one for each notebook, and which work each belongs to."""
 
@@ -262,7 +243,7 @@ class _Jobs:
 
 def run_here(jobs, workers, limits, allow_weak_isolation):
     """Run jobs on this machine. A notebook under which the sandbox dies again and again is given up, alone."""
-    from .sandbox import WorkerDied, run_notebooks
+    from .sandbox import WorkerDied, given_up, run_notebooks
 
     waiting = {job["id"]: job for job in jobs}
     options = {"limits": limits, "allow_weak_isolation": allow_weak_isolation}
@@ -279,21 +260,6 @@ def run_here(jobs, workers, limits, allow_weak_isolation):
                     yield from run_notebooks([job], 1, **options)
                 except WorkerDied as error:
                     yield given_up(job, str(error))
-
-
-def given_up(job, why):
-    """The result of a notebook that could not be run: a person must look."""
-    return {
-        "id": job["id"],
-        "finished": False,
-        "cells": [{"outcome": "not run"}] * len(job["cells"]),
-        "answers": {name: {"outcome": "missing"} for name in job["questions"]},
-        "unknown questions": [],
-        "notes": ["could not be run"],
-        "runs": 0,
-        "seed": job["seed"],
-        "isolation": {"layers": [], "weak": False, "given up": why},
-    }
 
 
 def record_of(work, results, key, limits):

@@ -143,7 +143,7 @@ def _places(readable):
 
 def bubblewrap_command(bubblewrap, readable):
     """The command line in front of the warm parent that gives it namespaces by bubblewrap."""
-    command = [bubblewrap, "--as-pid-1", "--cap-drop", "ALL"]
+    command = [bubblewrap, "--as-pid-1", "--die-with-parent", "--cap-drop", "ALL"]
     for namespace in ("ipc", "pid", "net", "uts", "cgroup-try"):
         command.append(f"--unshare-{namespace}")
     if os.geteuid() != 0:

@@ -20,6 +20,7 @@ from ..checking.questions import compare
 from ..checking.reply import Reply
 from ..checking.variants import variant_of
 from .store import write
+from .versions import software
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
@@ -102,9 +103,9 @@ def load_questions(paths, kept, edition=""):
     """The questions of several notebooks with solutions, by name.
 
     What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
-    notebook and of this package.
+    notebook and from the versions of the software.
     """
-    ours, found = _digest_of_package(), {}
+    ours, found = json.dumps(software()).encode(), {}
     for path in map(Path, paths):
         place = (
             Path(kept)
@@ -114,16 +115,6 @@ def load_questions(paths, kept, edition=""):
             write(place, json.dumps(questions_of(path, edition), ensure_ascii=False))
         found.update(json.loads(place.read_text("utf8")))
     return found
-
-
-def _digest_of_package():
-    import sympy
-
-    digest = hashlib.sha256(sympy.__version__.encode())
-    for folder in [Path(__file__).parents[1], *folders_of(packages())]:
-        for path in sorted(Path(folder).rglob("*.py")):
-            digest.update(path.read_bytes())
-    return digest.digest()
 
 
 def asked_of_sandbox(questions):

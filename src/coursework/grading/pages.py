@@ -4,9 +4,9 @@ import base64
 import functools
 import hashlib
 import html
-import re
 from xml.etree import ElementTree
 
+from ..checking.reply import to_html
 from .tables import readable
 
 STYLE = """
@@ -118,17 +118,7 @@ def text(value, most=400):
 
 def message(said):
     """A message, with ``code``, *emphasis* and $mathematics$ marked as in Markdown, as HTML."""
-    return "".join(map(_piece, re.split(r"(`[^`]*`|\$[^$]*\$|\*[^*\s][^*]*\*)", said[:4_000])))
-
-
-def _piece(piece):
-    if len(piece) > 1 and piece[0] == piece[-1] == "`":
-        return f"<code>{text(piece[1:-1])}</code>"
-    if len(piece) > 2 and piece[0] == piece[-1] == "$":
-        return formula(piece[1:-1])
-    if len(piece) > 2 and piece[0] == piece[-1] == "*":
-        return f"<em>{text(piece[1:-1])}</em>"
-    return text(piece, 4_000)
+    return to_html(readable(said, 4_000), formula)
 
 
 @functools.lru_cache(2_000)

@@ -21,6 +21,7 @@ import json
 import os
 import queue
 import random
+import secrets
 import select
 import shutil
 import signal
@@ -38,6 +39,7 @@ from coursework.grading.warm_parent import NOT_CONFINED
 
 WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
 WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
+OUTSIDE = "outside"  # the folder of the file that the isolation is tried on
 DEEPEST_STEPS = 10
 MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
 ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
@@ -133,8 +135,6 @@ class Sandbox:
 
     def start(self):
         """Start the warm parent and try its isolation."""
-        self.base = tempfile.mkdtemp(prefix="coursework-")
-        os.chmod(self.base, 0o755)
         try:
             with contextlib.ExitStack() as stack:
                 target = self.target(stack)
@@ -151,7 +151,7 @@ class Sandbox:
                         self.report = self.launched(command, made_by, why_not, target)
                         break
                     except WorkerDied as error:
-                        self.end_process()
+                        self.close()
                         if made_by is None:
                             raise
                         why_not = str(error)
@@ -159,7 +159,9 @@ class Sandbox:
             self.close()
             raise
         if self.report["scratch in memory"]:
-            self.remove_base()  # nothing is left on this machine even if this process is killed
+            self.remove_base()
+        else:
+            scratch.remove_folder(os.path.join(self.base, OUTSIDE))
         lacking = isolation.lacking(self.report)
         if lacking and not self.allow_weak_isolation:
             self.close()
@@ -171,40 +173,51 @@ class Sandbox:
             )
 
     def target(self, stack):
-        """What the isolation is tried on: a file, two ports and a local socket, all of our own."""
-        outside = Path(self.base, "outside")
-        outside.mkdir()
-        file = outside / "file"
-        file.write_text("a file outside")
-        file.chmod(0o666)
-        outside.chmod(0o777)
+        """What the isolation is tried on: two ports and a local socket of our own, and later a file."""
         tcp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
         udp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         local = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
         for inet in (tcp, udp):
             inet.bind(("127.0.0.1", 0))
-        name = f"coursework-{os.path.basename(self.base)}"
+        name = f"coursework-{secrets.token_hex(8)}"
         local.bind("\0" + name)
         for listener in (tcp, local):
             listener.listen(64)
         return {
-            "files": [str(file)],
             "tcp": tcp.getsockname()[1],
             "udp": udp.getsockname()[1],
             "local": name,
             "limits": self.limits.for_child(),
         }
 
+    def file_outside(self):
+        """A file that everybody may change, for the isolation to be tried on."""
+        outside = Path(self.base, OUTSIDE)
+        outside.mkdir()
+        file = outside / "file"
+        file.write_text("a file outside")
+        file.chmod(0o666)
+        outside.chmod(0o777)
+        return str(file)
+
     def launched(self, command, made_by, why_not, target):
         """Start the warm parent behind `command`; give its report."""
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
         self.errors = tempfile.TemporaryFile()
+        self.base = tempfile.mkdtemp(prefix="coursework-")
+        os.chmod(self.base, 0o755)
         try:
             with other:
                 handles = (other.fileno(), processes)
                 self.process = subprocess.Popen(
                     [
+                        # First a process that removes the folder at the end, also if this one is killed.
+                        sys.executable,
+                        "-I",
+                        "-S",
+                        scratch.__file__,
+                        self.base,
                         *command,
                         sys.executable,
                         "-s",
@@ -236,7 +249,8 @@ class Sandbox:
             os.close(processes)
         start = {
             "without": sorted(self.without),
-            "target": target,
+            # Not before there is somebody to tidy up: a folder that is open to all is not left behind.
+            "target": target | {"files": [self.file_outside()]},
             "base": self.base,
             "namespaces made by": made_by,
             "why no namespaces": why_not,
@@ -277,7 +291,7 @@ class Sandbox:
             raise WorkerDied("the warm parent is gone")
         return json.loads(data)
 
-    def end_process(self):
+    def close(self):
         """End the warm parent; with it ends all that it started."""
         if self.control is not None:
             self.control.close()
@@ -290,14 +304,11 @@ class Sandbox:
         if self.errors is not None:
             self.errors.close()
         self.control = self.process = self.errors = None
-
-    def close(self):
-        self.end_process()
         self.remove_base()
 
     def remove_base(self):
         if self.base is not None:
-            with contextlib.suppress(FileNotFoundError):  # the warm parent tidies up too
+            with contextlib.suppress(FileNotFoundError):  # the process that waits for the end removes it too
                 scratch.remove_folder(self.base)
             self.base = None
 
@@ -579,6 +590,21 @@ class _Once:
         elif "signal" in how:
             outcome, error = "killed", f"The process was ended by {signal.Signals(how['signal']).name}."
         self.ending = {"outcome": outcome, "error": error}
+
+
+def given_up(job, why):
+    """The result of a notebook that could not be run: a person must look."""
+    return {
+        "id": job["id"],
+        "finished": False,
+        "cells": [{"outcome": "not run"}] * len(job["cells"]),
+        "answers": {name: {"outcome": "missing"} for name in job["questions"]},
+        "unknown questions": [],
+        "notes": ["could not be run"],
+        "runs": 0,
+        "seed": job["seed"],
+        "isolation": {"layers": [], "weak": False, "given up": why},
+    }
 
 
 def threads_of(user):

@@ -35,11 +35,8 @@ LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on d
 LONGEST_MESSAGE = 1 << 16
 
 
-def into_namespaces(control, readable, base):
-    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot be.
-
-    The process outside waits, and at the end removes `base`, which whoever started it may not live to do.
-    """
+def into_namespaces(control, readable):
+    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot be."""
     reading, writing = os.pipe()
     outer = os.getpid()
     if os.fork() == 0:
@@ -71,15 +68,9 @@ def into_namespaces(control, readable, base):
     if said == b"in":
         control.close()  # the process inside has its own handle
         os.wait()
-        tidy(base)
         os._exit(0)
     os.wait()
     return said.decode(errors="replace") or "it ended without a word"
-
-
-def tidy(base):
-    with contextlib.suppress(OSError):
-        scratch.remove_folder(base)
 
 
 def load_libraries():
@@ -360,20 +351,19 @@ def send(control, message):
 
 def main():
     control = socket.socket(fileno=int(sys.argv[1]))
-    start = receive(control)[0]["start"]
+    message, _ = receive(control)
+    if message is None:
+        return  # whoever started it has ended
+    start = message["start"]
     readable = isolation.readable_paths()
     made_by, why_not = start["namespaces made by"], start["why no namespaces"]
     if made_by == "unshare":
-        why_not = into_namespaces(control, readable, start["base"])
+        why_not = into_namespaces(control, readable)
         made_by = None if why_not else "unshare"
-    try:
-        server = WarmParent(control, int(sys.argv[2]), start, readable, made_by, why_not)
-        report = server.report()
-        gc.collect()
-        gc.freeze()
-        with contextlib.suppress(ConnectionError):  # whoever started it may have ended
-            send(control, {"ready": report})
-            server.serve()
-    finally:
-        if made_by is None:
-            tidy(start["base"])
+    server = WarmParent(control, int(sys.argv[2]), start, readable, made_by, why_not)
+    report = server.report()
+    gc.collect()
+    gc.freeze()
+    with contextlib.suppress(ConnectionError):  # whoever started it may have ended
+        send(control, {"ready": report})
+        server.serve()

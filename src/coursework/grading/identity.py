@@ -1,0 +1,371 @@
+"""Who handed a file in: what the systems' archives say, and the roster, which alone decides where there is one.
+
+The name of a file or folder is a claim. What a system wrote stands at its beginning; what follows was chosen by
+the student and claims nothing, whatever it looks like. Where two submissions claim to be one student's, nobody
+knows whose they are: none of them is graded, and a person is asked.
+"""
+
+import csv
+import os
+import re
+import unicodedata
+from collections import Counter
+from pathlib import Path, PurePosixPath
+from typing import NamedTuple
+
+# A system's own part of a name holds no underscore in a person's name: the first mark is its own.
+CANVAS = re.compile(r"(?P<name>[^_]+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
+CANVAS_ANONYMOUS = re.compile(r"anon_(?P<user>[A-Za-z0-9]{5})_(?P<late>LATE_)?(?P<submission>\d+)_(?P<file>.+)")
+MOODLE = re.compile(r"(?P<name>[^_]+)_(?P<user>\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<file>.*))?")
+BRIGHTSPACE = re.compile(
+    r"(?P<user>\d+)-(?P<folder>\d+) - (?P<name>.+?) - (?P<when>\w{3,9} \d{1,2}, \d{4} \d{3,4} [AP]M)"
+)
+BLACKBOARD = re.compile(r"(?P<who>.+?)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)")
+RESUBMITTED = re.compile(r"(?P<stem>.+?)-(?P<number>\d{1,3})")
+MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+#: The folders of a course of nbgrader: only what was submitted was handed in.
+NBGRADER = {"submitted", "source", "release", "autograded", "feedback"}
+
+
+class Claim(NamedTuple):
+    """What the place of a file says of who handed it in.
+
+    Attributes
+    ----------
+    student : str
+        For a person to read; the student's name here where there is no roster.
+    keys : tuple of (kind, value)
+        What a roster may know the student by, the surest first.
+    source : str
+        The same for all that one student handed in, and for nobody else's.
+    declared : tuple
+        The greater, the newer.
+    late : bool
+    given_by_system : bool
+        Whether a learning management system wrote it.
+    """
+
+    student: str
+    keys: tuple
+    source: str
+    declared: tuple = ()
+    late: bool = False
+    given_by_system: bool = False
+
+
+class Layout:
+    """Tells from the names of all files how the submissions are laid out, and what each file's place claims.
+
+    One layout holds for all: a student cannot choose another by a name inside the own folder.
+    """
+
+    def __init__(self, names, assignments=(), repositories=(), roster=None):
+        self.assignments = sorted(assignments, key=len, reverse=True)
+        self.roster = roster
+        self.enclosing = ()
+        notebooks = [PurePosixPath(name).parts for name in names if name.lower().endswith((".ipynb", ".zip"))]
+        self._strip(notebooks)
+        notebooks = [parts[len(self.enclosing) :] for parts in notebooks if self._is_inside(parts)]
+        tops = [parts[0] for parts in notebooks]
+        self.kind = next(
+            (kind for kind, fits in SYSTEMS if 2 * sum(fits(parts) for parts in notebooks) > len(notebooks)), "own"
+        )
+        self.prefix = ""
+        if self.kind == "blackboard":
+            # The assignment's name comes first, and is the same for all.
+            self.prefix = _shared({BLACKBOARD.fullmatch(top)["who"] for top in tops if BLACKBOARD.fullmatch(top)}, "_")
+        elif repositories and self.kind == "own":
+            self.prefix = _shared(set(tops), "-")
+            self.kind = "github"
+
+    def _strip(self, notebooks):
+        """Leave folders out that enclose everything, and nbgrader's."""
+        first = {parts[0] for parts in notebooks if len(parts) > 1}
+        if len(first) == 1 and all(len(parts) > 1 for parts in notebooks) and first != {"submitted"}:
+            (enclosing,) = first
+            inner = [parts[1:] for parts in notebooks]
+            inside = {parts[0] for parts in inner}
+            known = self.roster and self.roster.find(_own(enclosing))[0]
+            if not known and (
+                inside <= NBGRADER
+                or any(2 * sum(map(fits, inner)) > len(inner) for _, fits in SYSTEMS)
+                or (len(inside) > 1 and all(len(parts) > 1 for parts in inner) and not inside <= set(self.assignments))
+            ):
+                self.enclosing = (enclosing,)
+                notebooks, first = inner, inside
+        if "submitted" in first and first <= NBGRADER:
+            self.enclosing += ("submitted",)
+
+    def _is_inside(self, parts):
+        return len(parts) > len(self.enclosing) and parts[: len(self.enclosing)] == self.enclosing
+
+    def claim(self, name):
+        """The claim of a file; ``None`` for one that is beside what was handed in."""
+        parts = PurePosixPath(name).parts
+        if not self._is_inside(parts):
+            return None
+        parts = parts[len(self.enclosing) :]
+        return getattr(self, f"_{self.kind}")(parts)
+
+    # -- the systems: a part of the name that does not fit claims nothing
+
+    def _canvas(self, parts):
+        found = CANVAS_ANONYMOUS.fullmatch(parts[0])
+        kind = "canvas anonymous" if found else "canvas"
+        found = found or CANVAS.fullmatch(parts[0])
+        if not found:
+            return None
+        again = RESUBMITTED.fullmatch(PurePosixPath(found["file"]).stem)
+        number = int(again["number"]) if again else 0
+        name = "anonymous" if kind == "canvas anonymous" else _clean(found["name"])
+        keys = ((kind, found["user"]),) + ((("letters", name),) if kind == "canvas" else ())
+        return Claim(f"{name}_{found['user']}", keys, f"{kind} {found['user']}", (number,), bool(found["late"]), True)
+
+    def _moodle(self, parts):
+        found = MOODLE.fullmatch(parts[0])
+        if not found:
+            return None
+        name, user = _clean(found["name"]), found["user"]
+        return Claim(
+            f"{name} {user}", (("moodle", user), ("name", name)), f"moodle {user} {name}", given_by_system=True
+        )
+
+    def _brightspace(self, parts):
+        found = BRIGHTSPACE.fullmatch(parts[0])
+        if not found:
+            return None
+        name, user = _clean(found["name"]), found["user"]
+        keys = (("brightspace", user), ("name", name))
+        return Claim(f"{name} {user}", keys, f"brightspace {user}", _when(found["when"]), False, True)
+
+    def _blackboard(self, parts):
+        found = BLACKBOARD.fullmatch(parts[0])
+        if not found:
+            return None
+        user = found["who"].removeprefix(self.prefix) if self.prefix else found["who"].rpartition("_")[2]
+        when = tuple(map(int, found["when"].split("-")))
+        return Claim(_clean(user), (("own", user),), f"blackboard {user}", when, False, True)
+
+    def _github(self, parts):
+        user = parts[0].removeprefix(self.prefix)
+        return Claim(_clean(user), (("github", user), ("own", user)), f"repository {parts[0]}")
+
+    def _own(self, parts):
+        if len(parts) > 1:
+            return Claim(_clean(parts[0]), _own(parts[0]), f"folder {parts[0]}")
+        stem = PurePosixPath(parts[0]).stem
+        for assignment in self.assignments:
+            rest = stem.replace(assignment, "").strip(" _-.()")
+            if assignment in stem and rest:
+                # A second way of writing the same name is a second claim.
+                return Claim(_clean(rest), _own(rest), f"files {stem.replace(assignment, '*')}")
+        return Claim(_clean(stem), _own(stem), f"file {stem}")
+
+
+def _fits(pattern, in_file=True):
+    def fits(parts):
+        return bool(pattern.fullmatch(parts[0])) and (in_file or len(parts) > 1)
+
+    return fits
+
+
+SYSTEMS = (
+    # Of Canvas only files: a folder with two numbers in its name may be a student's own.
+    (
+        "canvas",
+        lambda parts: len(parts) == 1 and bool(CANVAS.fullmatch(parts[0]) or CANVAS_ANONYMOUS.fullmatch(parts[0])),
+    ),
+    ("moodle", _fits(MOODLE)),
+    ("brightspace", _fits(BRIGHTSPACE, in_file=False)),
+    ("blackboard", _fits(BLACKBOARD)),
+)
+
+
+def _own(name):
+    return ("own", name), ("name", name)
+
+
+def _shared(names, end):
+    """The beginning that all names share, up to a sign; empty where there is one name only."""
+    if len(names) < 2:
+        return ""
+    shared = os.path.commonprefix(sorted(names))
+    return shared[: shared.rfind(end) + 1]
+
+
+def _clean(name):
+    """A name in one spelling, of a length that is one."""
+    return " ".join(unicodedata.normalize("NFC", name).split())[:120] or "without a name"
+
+
+def _when(text):
+    """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are the same in every language setting."""
+    month, day, year, clock, half = text.replace(",", "").split()
+    number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0
+    hour = int(clock[:-2]) % 12 + (12 if half == "PM" else 0)
+    return int(year), number, int(day), hour, int(clock[-2:])
+
+
+# --- the roster ---------------------------------------------------------------------------------
+
+#: What the columns of rosters and exported gradebooks are called, and what they hold.
+COLUMNS = {
+    "own": (
+        "student", "student id", "student_id", "username", "user name", "login", "sis login id", "sis user id",
+        "integration id", "id number", "orgdefinedid", "identifier",
+    ),
+    "name": ("name", "full name", "student name"),
+    "email": ("email", "email address", "e-mail", "e-mail address"),
+    "canvas": ("canvas", "canvas id"),
+    "canvas anonymous": ("canvas anonymous",),
+    "moodle": ("moodle", "moodle id"),
+    "brightspace": ("brightspace", "brightspace id"),
+    "github": ("github", "github_username", "github username"),
+    "handed in as": ("handed in as",),
+}  # fmt: skip
+FIRST, LAST = ("first name", "first_name", "firstname"), ("last name", "last_name", "lastname", "surname")
+WORDS = {
+    "own": "the name of the folder",
+    "name": "the full name",
+    "letters": "the letters of the name",
+    "canvas": "Canvas's number",
+    "canvas anonymous": "Canvas's anonymous name",
+    "moodle": "Moodle's number",
+    "brightspace": "Brightspace's number",
+    "github": "the GitHub name",
+    "handed in as": "the roster's own word",
+}
+
+
+class BadRoster(ValueError):
+    """A roster cannot be used; the message says why, and in which line."""
+
+
+class Roster:
+    """Who is in the course: the only source of identity where it is given.
+
+    Parameters
+    ----------
+    path : path
+        A table of comma-separated values, or the gradebook that Canvas, Moodle or Brightspace exports. Read are
+        the columns of :data:`COLUMNS`; ``handed in as`` holds names of folders or files, separated by semicolons,
+        for what cannot be matched otherwise.
+
+    Attributes
+    ----------
+    people : dict
+        What is known of each student, by the student's name here.
+    """
+
+    def __init__(self, path):
+        self.people, self.index, self.claimed = {}, {}, {}
+        for number, row in _rows(path):
+            known = _known(row)
+            student = next((value for kind in ("own", "email", "name") for value in known.get(kind, ())), None)
+            if student is None:
+                continue  # Canvas's line of possible points
+            if student in self.people:
+                raise BadRoster(f"{path}, line {number}: {student!r} is there a second time.")
+            self.people[student] = known
+            for kind, values in known.items():
+                for value in values:
+                    self.index.setdefault((kind, _same(kind, value)), set()).add(student)
+                    if kind == "name":
+                        self.index.setdefault(("letters", _same("letters", value)), set()).add(student)
+                        self.index.setdefault(("letters", _same("letters", _turned(value))), set()).add(student)
+                    if kind == "email":
+                        for own in (value, value.partition("@")[0]):
+                            self.index.setdefault(("own", _same("own", own)), set()).add(student)
+        if not self.people:
+            raise BadRoster(f"{path} names no student. Its columns may be called {', '.join(sorted(COLUMNS))}.")
+        self.kinds = {kind for kind, _ in self.index}
+
+    def find(self, keys, source=""):
+        """The student that a claim's keys mean and the kind that told, or ``None`` and why nobody is meant."""
+        keys = (("handed in as", source.partition(" ")[2]), *keys) if source else keys
+        for kind, value in keys:
+            found = self.index.get((kind, _same(kind, value)), ())
+            if len(found) == 1:
+                return next(iter(found)), WORDS[kind]
+            if found:
+                return None, f"Several students of the roster fit: {', '.join(sorted(found))}."
+            if kind in self.kinds and kind in ("canvas", "canvas anonymous", "moodle"):
+                break  # the system's number is known of others, so a name does not overrule it
+        return None, "Nobody in the roster fits."
+
+    def identity(self, student):
+        """What is known of a student, as a record holds it."""
+        known = self.people[student]
+        single = {
+            kind: known[kind][0] for kind in ("canvas", "moodle", "brightspace", "name", "email") if known.get(kind)
+        }
+        return {**single, "own": known.get("own", [])}
+
+
+def _rows(path):
+    try:
+        text = Path(path).read_bytes()
+    except OSError as error:
+        raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
+    text = decoded(text)
+    first = text.split("\n", 1)[0]
+    reader = csv.reader(text.splitlines(), delimiter=max(",;\t", key=first.count))
+    header = [name.strip().casefold() for name in next(reader, [])]
+    repeated = [name for name, times in Counter(header).items() if times > 1 and name]
+    if repeated:
+        raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
+    for number, cells in enumerate(reader, 2):
+        yield number, dict(zip(header, (cell.strip() for cell in cells), strict=False))
+
+
+def decoded(data):
+    """The text of a table, in whichever encoding a spreadsheet left it."""
+    for mark, encoding in ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
+        if data.startswith(mark):
+            return data.decode(encoding)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _known(row):
+    """What a line of a roster says of a student: lists of values by kind."""
+    columns = dict(COLUMNS)
+    row = dict(row)
+    if "student" in row and "id" in row and ("section" in row or "sis login id" in row or "sis user id" in row):
+        row["name"], row["canvas"] = row.pop("student"), row.pop("id")  # Canvas's gradebook
+        if not row["canvas"]:
+            return {}
+        if "," in row["name"]:
+            row["name"] = _turned(row["name"])
+    elif "identifier" in row and ("full name" in row or "grade" in row):
+        row["moodle"] = re.sub(r"\D", "", row.pop("identifier"))  # Moodle's worksheet: "Participant 17"
+    elif "id" in row:
+        row.setdefault("student id", row.pop("id"))  # nbgrader's list
+    known = {
+        kind: [value for name in names if (value := row.get(name, "").lstrip("#"))] for kind, names in columns.items()
+    }
+    first, last = (next((row[name] for name in names if row.get(name)), "") for names in (FIRST, LAST))
+    if first or last:
+        known["name"].append(f"{first} {last}".strip())
+    known["handed in as"] = [part.strip() for value in known["handed in as"] for part in value.split(";")]
+    return {kind: values for kind, values in known.items() if values}
+
+
+def _turned(name):
+    """``Last, First`` the other way round; without a comma, the last word first."""
+    last, comma, first = name.partition(",")
+    if comma:
+        return f"{first.strip()} {last.strip()}"
+    *first, last = name.split() or [""]
+    return " ".join([last, *first])
+
+
+def _same(kind, value):
+    """One spelling of what people write in several ways."""
+    value = unicodedata.normalize("NFKC", value).casefold()
+    value = "".join(sign for sign in value if unicodedata.category(sign) != "Cf")
+    if kind == "letters":
+        return "".join(sign for sign in unicodedata.normalize("NFKD", value) if sign.isalnum())
+    return " ".join(value.split())
