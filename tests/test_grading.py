@@ -20,6 +20,7 @@ from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
 from coursework.grading import gradebooks, pages, sample_class
 from coursework.grading.grade import NothingToGrade, grade, regrade, run_here
+from coursework.grading.ledger import Ledger
 from coursework.grading.sandbox import Limits, WeakIsolation, WorkerDied, given_up
 from coursework.grading.store import InUse, Store, file_name
 from coursework.grading.tables import as_cell, as_written, table
@@ -129,7 +130,7 @@ def contents(folder):
         ("blank", ["not attempted"] * 3, 0),
         ("broken", ["correct", "not attempted", "correct"], 5),
         ("leaves", ["correct", "not attempted", "correct"], 5),
-        ("endless", ["correct", "not attempted", "correct"], 5),
+        ("endless", ["correct", "undecided", "correct"], 5),  # it may have been lost to the limit
         ("no-checks", ["correct"] * 3, 6),
         ("backwards", ["not attempted", "correct", "not attempted"], 1),
         ("nearly", ["correct", "undecided", "correct"], 5),
@@ -377,11 +378,12 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
     """Classmates are judged by the same code: a change anywhere in the two packages is one."""
     from coursework.grading import versions
 
-    ours, theirs = (
+    copies = [
         shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__"))
-        for package in versions.PACKAGES
-    )
-    assert versions.digest_of_packages((ours, theirs)) == versions.digest_of_packages()
+        for package in versions.folders()
+    ]
+    ours, theirs = copies[0], tmp_path / "orientation"
+    assert versions.digest_of_packages(copies) == versions.digest_of_packages()
     digests = {versions.digest_of_packages()}
     for path in (
         ours / "grading" / "marking.py",
@@ -390,19 +392,87 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
         theirs / "euler_angles.py",
     ):
         path.write_text(path.read_text() + "\n# changed\n")
-        digests.add(versions.digest_of_packages((ours, theirs)))
+        digests.add(versions.digest_of_packages(copies))
     assert len(digests) == 5
     path.rename(path.with_name("another.py"))
-    assert versions.digest_of_packages((ours, theirs)) not in digests
+    assert versions.digest_of_packages(copies) not in digests
     shutil.rmtree(copied / "records" / "endless")  # it takes long, and is not what is tested
     few = shutil.copytree(course / "submissions" / "right", tmp_path / "few" / "right").parent
-    monkeypatch.setattr(versions, "PACKAGES", (ours, theirs))
+    monkeypatch.setattr(versions, "folders", lambda: copies)
     versions.software.cache_clear()
     try:
         said = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     finally:
         versions.software.cache_clear()
     assert said == {"graded": 1, "kept": 0, "refused": 0}
+
+
+def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, tmp_path):
+    few = tmp_path / "few"
+    put(few, "right", handed_in("axes"), "axes.ipynb")
+    said = grade(few, copied, solutions=course / "solutions", assignments={"other": ["axes"]}, limits=LIMITS,
+                 show=io.StringIO())  # fmt: skip
+    assert said["graded"] == 1
+    assert regrade(copied, solutions=course / "solutions") == []
+    (copied / "course.json").unlink()
+    with pytest.raises(NothingToGrade, match="does not say which notebooks make up 'other', 'turns'"):
+        regrade(copied, solutions=course / "solutions")
+
+
+def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_path):
+    few, shown = tmp_path / "few", io.StringIO()
+    put(few, "renamed", handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)"))
+    grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=shown)
+    assert "'warns' is now 'renamed'" in shown.getvalue()
+    students = {row["student"] for row in rows_of(copied / "grades.csv")}
+    assert "renamed" in students and "warns" not in students and "right" in students
+    assert (copied / "put-aside" / "warns" / "turns.json").exists()
+
+
+def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path, monkeypatch):
+    from coursework.grading import sandbox
+
+    few = tmp_path / "few"
+    put(few, "right", handed_in(sum="sine = 0"))
+
+    def die(*arguments, **options):
+        raise WorkerDied("no memory")
+        yield
+
+    with monkeypatch.context() as patched:
+        patched.setattr(sandbox, "run_notebooks", die)
+        grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    assert {mark["outcome"] for mark in Store(copied).read("right", "turns")["marks"].values()} == {"undecided"}
+    again = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    assert again["graded"] == 1 and Store(copied).read("right", "turns")["points"] == 5
+
+
+@pytest.mark.parametrize("workers", [0, -1])
+def test_without_workers_nothing_is_graded_and_it_is_said(course, tmp_path, workers):
+    with pytest.raises(ValueError, match=f"the number of workers is {workers}"):
+        grade(course / "submissions", tmp_path, solutions=course / "solutions", workers=workers)
+
+
+def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypatch):
+    monkeypatch.setattr("coursework.grading.sandbox.run_notebooks", lambda *arguments: pytest.fail("it was run"))
+    (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
+    shown = io.StringIO()
+    grade(course / "submissions", tmp_path / "out", solutions=course / "solutions", roster=tmp_path / "roster.csv",
+          only_list=True, show=shown)  # fmt: skip
+    said = shown.getvalue()
+    assert "right <- right/turns.ipynb  (turns; the name of the folder)" in said
+    assert "? <- endless/turns.ipynb: Nobody in the roster fits." in said and "1 handed in nothing: absent" in said
+    assert {row["student"] for row in rows_of(tmp_path / "out" / "whose.csv")} == {"right", "mistaken"}
+
+
+def test_feedback_gives_no_outputs_of_calls_away(course):
+    """What a function returned to the check would do for a friend's answer, and the secret calls for all later ones."""
+    found = record(course, "right")["answers"]["turns/doubled"]
+    assert found["plain"]["value"][0] == found["secret"]["plain"]["value"][0] == "function"
+    said = page(course, "right")
+    numbers = [node[1] for plain in (found["plain"], found["secret"]["plain"]) for node in plain["nodes"]]
+    assert len(numbers) == 5 and not [number for number in numbers if number[:6] in said]
+    assert "in place of" not in page(course, "blank") and "Nothing was answered." in page(course, "blank")
 
 
 def test_two_runs_on_one_folder_are_refused(course, copied):
@@ -511,6 +581,7 @@ def test_a_changed_question_moves_only_whom_it_concerns(course, copied, tmp_path
             ("symbols='alpha beta', worth=1", "symbols='alpha beta', worth=4"),
         ],
     )
+    shutil.copy(course / "solutions" / ".grading-secret", changed)
     moved = {one.student: (one.before, one.after) for one in regrade(copied, solutions=changed)}
     assert moved["mistaken"] == (4, 5) and moved["right"] == (6, 9) and "blank" not in moved
     assert "mistaken" in moved and regrade(copied, solutions=changed) == []
@@ -519,20 +590,88 @@ def test_a_changed_question_moves_only_whom_it_concerns(course, copied, tmp_path
 
 
 def test_a_person_decides_what_is_undecided(course, copied):
-    (row,) = rows_of(copied / "undecided.csv")
+    lost, row = rows_of(copied / "undecided.csv")
+    assert (lost["student"], lost["why"]) == ("endless", "lost to a limit")
     assert (row["student"], row["question"], row["credit"]) == ("nearly", "turns/sum", "")
     row |= {"credit": "0.5", "comment": "Rounded."}
-    (copied / "decisions.csv").write_text(
-        table(list(row), [list(row.values()), ["right", "turns/sum", "0", "Never.", 1, "", "", ""]])
-    )
+    (copied / "decisions.csv").write_text(table(list(row), [list(row.values())]))
     (moved,) = regrade(copied, solutions=course / "solutions")
     assert (moved.student, moved.before, moved.after) == ("nearly", 5, 5.5)
     mark = Store(copied).read("nearly", "turns")["marks"]["turns/sum"]
     assert (mark["outcome"], mark["points"], mark["messages"]) == ("decided", 0.5, ["Rounded."])
-    assert rows_of(copied / "undecided.csv") == []
+    assert [row["student"] for row in rows_of(copied / "undecided.csv")] == ["endless"]
     (copied / "decisions.csv").write_text("student,question,credit\r\nnearly,turns/sum,much\r\n")
     with pytest.raises(ValueError, match="line 2: credit is a number from 0 to 1, and this is 'much'"):
         regrade(copied, solutions=course / "solutions")
+
+
+@pytest.mark.parametrize(
+    "decisions, points, said",
+    [
+        ("student,question,credit\nnearly,turns/sum,0.5\n", 5.5, ""),
+        ("Student;Question;Credit\r\nnearly;turns/sum;0,5\r\n", 5.5, ""),
+        ("\ufeffID\tcredit\n{id}\t1\n", 6, ""),
+        ("id,student,question,credit\n{id},n\u200cearly,any,1\n", 6, ""),
+        ("student,question,credit\nnerly,turns/sum,1\nnearly,turns/summ,1\n", 5, "line 2: .*'nerly'.*line 3: .*'turns/summ'"),
+        # Every outcome can be overridden, also one that is right.
+        ("student,question,credit\nnearly,turns/doubled,0\nnearly,turns/sum,1\n", 3, ""),
+    ],
+)  # fmt: skip
+def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(course, copied, capsys, decisions, points, said):
+    _, row = rows_of(copied / "undecided.csv")
+    (copied / "decisions.csv").write_text(decisions.format(id=row["id"]), "utf8")
+    regrade(copied, solutions=course / "solutions")
+    assert Store(copied).read("nearly", "turns")["points"] == points
+    assert re.search(said, capsys.readouterr().err, re.S)
+    lines = (copied / "ledger.jsonl").read_text().splitlines() if (copied / "ledger.jsonl").exists() else []
+    assert regrade(copied, solutions=course / "solutions") == []
+    assert len(lines) == len((copied / "ledger.jsonl").read_text().splitlines() if lines else [])
+
+
+def test_a_table_without_the_columns_is_said(course, copied):
+    (copied / "decisions.csv").write_text("Name,Points\nnearly,1\n")
+    with pytest.raises(ValueError, match="has the columns credit and id"):
+        regrade(copied, solutions=course / "solutions")
+
+
+def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, tmp_path):
+    store, ledger = Store(copied), Ledger(copied)
+    found = store.read("mistaken", "turns")
+    ledger.add(found, "turns/sum", 1, who="Ann", comment="All right.", why="appeal")
+    before = ledger.path.read_bytes()
+    ledger.add(found, "turns/sum", 0.25, who="Bea", rubric=["Sign"])
+    assert ledger.path.read_bytes().startswith(before)
+    assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4.25]
+    mark = store.read("mistaken", "turns")["marks"]["turns/sum"]
+    assert mark["before"]["note"] == "opposite" and mark["decided"]["who"] == "Bea" and mark["messages"] == ["Sign"]
+    Ledger(copied).add(found, "turns/sum", None, who="Bea", why="taken back")
+    assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4]
+    ledger = Ledger(copied)
+    ledger.add(found, "turns/sum", 1, who="Ann")
+    assert len(ledger.path.read_text().splitlines()) == 4
+    # Graded again with another answer, the decision on the old one does not count.
+    again = tmp_path / "again"
+    put(again, "mistaken", handed_in(sum="sine = 0"))
+    grade(again, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    assert store.read("mistaken", "turns")["marks"]["turns/sum"]["outcome"] == "wrong"
+    with pytest.raises(ValueError, match="from 0 to 1"):
+        ledger.add(found, "turns/sum", 2)
+
+
+def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
+    found = Store(copied).read("mistaken", "turns")
+    (tmp_path / "other").mkdir()
+    mine, other = Ledger(copied), Ledger(tmp_path / "other")
+    mine.add(found, "turns/sum", 1, who="Ann")
+    other.add(found, "turns/about-x", 1, who="Bea")
+    assert mine.merge(other.path) == (1, []) and mine.merge(other.path) == (0, [])
+    assert {key[2]: one.who for key, one in mine.current().items()} == {"turns/sum": "Ann", "turns/about-x": "Bea"}
+    other.add(found, "turns/sum", 0, who="Bea")
+    number, ((first, second),) = mine.merge(other.path)
+    assert (number, first.who, second.who) == (1, "Ann", "Bea")
+    other.path.write_text(other.path.read_text() + "{}\n")
+    with pytest.raises(ValueError, match="line 3: this is no decision"):
+        mine.merge(other.path)
 
 
 # ---- handed on
@@ -578,7 +717,7 @@ CANVAS = (
 def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, before, student, written):
     path = tmp_path / "book.csv"
     path.write_bytes(before.encode())
-    said = gradebooks.fill(path, marks)
+    said = gradebooks.fill(path, marks, overwrite=True)
     after = (tmp_path / "book-filled.csv").read_bytes().decode()
     assert written in after
     assert path.read_bytes() == before.encode()
@@ -594,6 +733,34 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, b
         assert "nearly" in text.partition("a person has still to decide")[2] and "Nearly,3,S3,nearly,,,\r\n" in after
     if "Moodle" in text:
         assert "C;mistaken;-;6,00;No" in after and "mistaken" in text.partition("allows no change")[2]
+
+
+def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
+    """Canvas's EX excuses a student; a mark that a person entered is not lost unsaid."""
+    path = tmp_path / "book.csv"
+    path.write_text(
+        "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,right,,EX\nB,2,,mistaken,,5.00\n"
+        "C,3,,blank,,0.00\nD,4,,warns,,\n"
+    )
+    said = "\n".join(gradebooks.fill(path, marks))
+    after = (tmp_path / "book-filled.csv").read_text().splitlines()
+    assert [line.rpartition(",")[2] for line in after[1:]] == ["EX", "5.00", "0", "6"]
+    assert "right: EX, and graded 6" in said and "mistaken: 5.00, and graded 4" in said and "blank:" not in said
+    said = "\n".join(gradebooks.fill(path, marks, overwrite=True))
+    after = (tmp_path / "book-filled.csv").read_text().splitlines()
+    assert [line.rpartition(",")[2] for line in after[1:]] == ["6", "4", "0", "6"] and "Written over" in said
+
+
+def test_columns_of_another_language_can_be_named(marks, tmp_path):
+    path = tmp_path / "book.csv"
+    path.write_text("ID,Vollst\xe4ndiger Name,ID-Nummer,Bewertung,Bestwertung\nTeilnehmer/in9,A,right,,6\n", "utf8")
+    with pytest.raises(gradebooks.CannotExport, match="--name 'identifier="):
+        gradebooks.fill(path, marks)
+    names = {"identifier": "ID", "full name": "Vollst\xe4ndiger Name", "id number": "ID-Nummer", "grade": "Bewertung"}
+    gradebooks.fill(path, marks, names=names)
+    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[1] == "Teilnehmer/in9,A,right,6,6"
+    with pytest.raises(gradebooks.CannotExport, match="no column 'Note'"):
+        gradebooks.fill(path, marks, names={"grade": "Note"})
 
 
 @pytest.mark.parametrize(
@@ -616,10 +783,10 @@ def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
         sample_class.LAYOUTS[layout](tmp_path, files, "turns")
         import zipfile
 
-        from coursework.grading.intake import _Layout
+        from coursework.grading.identity import Layout
 
         names = [name for name in zipfile.ZipFile(tmp_path / "submissions.zip").namelist() if name.endswith("ipynb")]
-        whose = {one.student: one.identity for one in map(_Layout(names, ["turns"]).who, names)}
+        whose = {one.student: dict(one.keys) for one in map(Layout(names, ["turns"]).claim, names)}
         stub = type("Marks", (), {"students": whose, "identity": lambda self, student: whose[student]})()
         first = gradebooks._scale(book, layout.title(), 4)[1]
         found, several = gradebooks._match(book, layout.title(), stub, first)

@@ -2,6 +2,7 @@
 
 import codecs
 import hashlib
+import io
 import json
 import os
 import stat
@@ -10,10 +11,11 @@ import zipfile
 
 import nbformat
 import pytest
-from grading_class import handed_in, notebook
+from grading_class import handed_in, notebook, put
 
 from coursework.grading import intake
-from coursework.grading.grade import Course, sort_work
+from coursework.grading.grade import Course, NothingToGrade, grade, sort_work
+from coursework.grading.identity import BadRoster, Roster
 
 GOOD = nbformat.writes(handed_in()).encode()
 
@@ -117,6 +119,215 @@ def test_two_numbers_in_a_students_own_file_are_not_taken_for_canvas(folder):
     assert {one.student for one in intake.take_in(folder)[0]} == {"neighbour"}
 
 
+def named(*names, **options):
+    """The students that an archive's names give notebooks to, and the files that nobody's are, with why."""
+    path = options.pop("path")
+    with zipfile.ZipFile(path, "w") as box:
+        for name in names:
+            box.writestr(name, options.get("data", GOOD))
+    notebooks, refused = intake.take_in(path, ["turns", "axes"], options.get("roster"))
+    return {one.file: one.student for one in notebooks}, {one.file: one.why for one in refused}
+
+
+@pytest.fixture
+def box(tmp_path):
+    return tmp_path / "class.zip"
+
+
+def test_a_folder_called_submitted_inside_the_own_one_claims_nothing(box):
+    names = "jane/submitted/bob/turns.ipynb", "bob/turns.ipynb", "jane/turns.ipynb"
+    assert named(*names, path=box)[0] == dict(zip(names, ("jane", "bob", "jane"), strict=True))
+
+
+FORGED = "Bob_202_assignsubmission_file_turns.ipynb"
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        # Moodle's flat download, and its folders; a file that looks like a classmate's follows the system's own part.
+        (f"Jane Doe_101_assignsubmission_file_{FORGED}", "Bob_202_assignsubmission_file_turns.ipynb"),
+        (f"Jane Doe_101_assignsubmission_file_/{FORGED}", "Bob_202_assignsubmission_file_/turns.ipynb"),
+        ("Jane Doe_101_assignsubmission_file_/Bob_202_assignsubmission_file_/a.ipynb", FORGED),
+        # Canvas, Brightspace, Blackboard.
+        ("doejane_101_501_bob_202_502_turns.ipynb", "bob_202_502_turns.ipynb"),
+        (
+            "101-9 - Jane Doe - Nov 21, 2026 801 PM/202-9 - Bob - Nov 21, 2026 802 PM/turns.ipynb",
+            "202-9 - Bob - Nov 21, 2026 802 PM/turns.ipynb",
+        ),
+        (
+            "HW 1_jane_attempt_2026-11-21-20-01-00_x_bob_attempt_2026-11-21-20-02-00_turns.ipynb",
+            "HW 1_bob_attempt_2026-11-21-20-02-00_turns.ipynb",
+        ),
+        # A folder for each, a name of another system inside.
+        (f"jane/{FORGED}", "bob/turns.ipynb"),
+        ("jane/bob_202_502_turns.ipynb", "bob/turns.ipynb"),
+        ("jane/bob/turns.ipynb", "bob/turns.ipynb"),
+    ],
+)
+def test_what_follows_the_systems_own_part_of_a_name_claims_nothing(box, names):
+    found, refused = named(*names, path=box)
+    forger, honest = (found[name] for name in names)
+    assert forger.lower().startswith(("jane", "doejane")) and honest.lower().startswith("bob") and refused == {}
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("Bob_202_assignsubmission_file_/turns.ipynb", "Bobby_202_assignsubmission_file_/turns.ipynb"),
+        ("bob_202_502_turns.ipynb", "bobby_202_503_turns.ipynb"),
+        ("jose\u0301/turns.ipynb", "jos\xe9/turns.ipynb"),
+        ("bob /turns.ipynb", "bob/turns.ipynb"),
+        ("turns_bob.ipynb", "bob-turns.ipynb"),
+    ],
+)
+def test_two_that_claim_one_identity_are_a_question(box, names):
+    found, refused = named(*names, "ann_1_2_turns.ipynb" if "_50" in names[0] else "ann/turns.ipynb", path=box)
+    mine = [name for name in names if name in refused]
+    if "202" in names[0]:
+        # The same number with another name: Canvas and Moodle write neither.
+        assert len({found.get(name, name) for name in names}) == 2
+    else:
+        assert mine == list(names) and all("claim to be this student's" in refused[name] for name in mine)
+
+
+def test_a_folder_around_everything_is_no_student(box):
+    found, _ = named("homework/jane/turns.ipynb", "homework/bob/turns.ipynb", path=box)
+    assert sorted(found.values()) == ["bob", "jane"]
+    found, _ = named("all/jane_1_2_turns.ipynb", "all/bob_3_4_turns.ipynb", path=box)
+    assert sorted(found.values()) == ["bob_3", "jane_1"]
+    found, _ = named("course/submitted/jane/turns/a.ipynb", "course/source/turns/a.ipynb", path=box)
+    assert list(found.values()) == ["jane"]
+
+
+def test_everything_from_one_student_is_a_question(tmp_path, course):
+    for name in ("a", "b", "c"):
+        put(tmp_path / "all", "homework", handed_in(), f"{name}.ipynb")
+    with pytest.raises(NothingToGrade, match="would all be of one student, 'homework'"):
+        grade(tmp_path / "all", tmp_path / "out", solutions=tmp_path / "solutions", show=io.StringIO())
+
+
+def test_github_classroom(tmp_path):
+    for user in ("jane-doe", "bob"):
+        put(tmp_path, f"homework-1-{user}", handed_in())
+        (tmp_path / f"homework-1-{user}" / ".git" / "objects").mkdir(parents=True)
+        for number in range(30):
+            (tmp_path / f"homework-1-{user}" / ".git" / "objects" / f"{number:038x}").write_bytes(b"x")
+        (tmp_path / f"homework-1-{user}" / "README.md").write_text("read me")
+    notebooks, refused = intake.take_in(tmp_path, ["turns"])
+    assert sorted(one.student for one in notebooks) == ["bob", "jane-doe"] and refused == []
+
+
+def test_anonymous_exports_and_archives_within(box):
+    found, refused = named("anon_aB3dE_501_turns.ipynb", "anon_LATE1_LATE_502_turns.ipynb", path=box)
+    assert sorted(found.values()) == ["anonymous_LATE1", "anonymous_aB3dE"]
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as inner:
+        inner.writestr("bob_202_502_turns.ipynb", GOOD)
+        inner.writestr("../../bob/turns.ipynb", GOOD)
+        inner.writestr("data.csv", b"1,2")
+    with zipfile.ZipFile(box, "w") as outer:
+        outer.writestr("jane_101_501_work.zip", data.getvalue())
+        outer.writestr("bob_202_503_turns.ipynb", GOOD)
+        outer.writestr("eve_303_504_bad.zip", b"PK nothing")
+    notebooks, refused = intake.take_in(box, ["turns"])
+    whose = {one.file: one for one in notebooks}
+    packed = whose["jane_101_501_work.zip/bob_202_502_turns.ipynb"]
+    assert packed.student == "jane_101" and packed.files == {"data.csv": b"1,2"} and packed.cells
+    assert whose["bob_202_503_turns.ipynb"].student == "bob_202"
+    why = {one.file: one.why for one in refused}
+    assert "leads out" in why["jane_101_501_work.zip/../../bob/turns.ipynb"]
+    assert "cannot be read" in why["eve_303_504_bad.zip"]
+
+
+CANVAS_BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,Turns (4711)
+    Points Possible,,,,,6
+"Doe, Jane",101,S1,jdoe,Section 1,
+"Smith, Bob",202,S2,bsmith,Section 1,
+"Smith, Bob",203,S3,bsmith2,Section 1,
+"""
+
+
+@pytest.mark.parametrize(
+    "name, student, how",
+    [
+        ("doejane_101_5_turns.ipynb", "jdoe", "Canvas's number"),
+        ("smithbob_203_5_turns.ipynb", "bsmith2", "Canvas's number"),
+        ("doejane_999_5_turns.ipynb", None, "Nobody"),  # the number is what Canvas knows
+        ("jdoe/turns.ipynb", "jdoe", "the name of the folder"),
+        ("JDoe/turns.ipynb", "jdoe", "the name of the folder"),
+        ("Jane Doe/turns.ipynb", "jdoe", "the full name"),
+        ("Bob Smith/turns.ipynb", None, "Several students of the roster fit: bsmith, bsmith2"),
+        ("S2/turns.ipynb", "bsmith", "the name of the folder"),
+        ("stranger/turns.ipynb", None, "Nobody"),
+        ("jd\u200boe/turns.ipynb", "jdoe", "the name of the folder"),
+        ("jd\u043ee/turns.ipynb", None, "Nobody"),  # a Cyrillic o
+        ("Jane Doe_77_assignsubmission_file_/turns.ipynb", "jdoe", "the full name"),
+    ],
+)
+def test_the_roster_alone_says_whose_a_notebook_is(box, tmp_path, name, student, how):
+    (tmp_path / "book.csv").write_text(CANVAS_BOOK)
+    found, refused = named(name, path=box, roster=Roster(tmp_path / "book.csv"))
+    notebooks, _ = intake.take_in(box, ["turns"], Roster(tmp_path / "book.csv"))
+    assert found == ({name: student} if student else {})
+    assert how in (notebooks[0].matched if student else refused[name])
+    if student:
+        assert notebooks[0].identity["canvas"] in ("101", "202", "203")
+
+
+@pytest.mark.parametrize(
+    "text, name, student",
+    [
+        ("\ufeffIdentifier;Full name;Email address\nParticipant 77;Jane Doe;jd@x.org\n",
+         "Jane Doe_77_assignsubmission_file_/turns.ipynb", "jd@x.org"),
+        ("OrgDefinedId,Username,Last Name,First Name\n#100,#jdoe,Doe,Jane\n",
+         "5-6 - Jane Doe - Nov 21, 2026 801 PM/turns.ipynb", "jdoe"),
+        ("id,first_name,last_name,email\njdoe,Jane,Doe,jd@x.org\n", "submitted/jdoe/turns/turns.ipynb", "jdoe"),
+        ("identifier,github_username\nJane Doe,jane-d\n", "turns-jane-d/turns.ipynb", None),
+        ("student,handed in as\njdoe,that one; another\n", "another/turns.ipynb", "jdoe"),
+        ("student\tcanvas\njdoe\t101\n", "x_101_2_turns.ipynb", "jdoe"),
+    ],
+)  # fmt: skip
+def test_rosters_of_many_systems_are_read(box, tmp_path, text, name, student):
+    (tmp_path / "roster.csv").write_text(text, "utf8")
+    found, _ = named(name, path=box, roster=Roster(tmp_path / "roster.csv"))
+    assert found == ({name: student} if student else {})
+
+
+def test_a_roster_that_cannot_be_used_is_said(tmp_path):
+    for text, why in (("student\na\na\n", "line 3: 'a' is there a second time"), ("x,y\n1,2\n", "names no student")):
+        (tmp_path / "roster.csv").write_text(text)
+        with pytest.raises(BadRoster, match=why):
+            Roster(tmp_path / "roster.csv")
+    with pytest.raises(BadRoster, match="cannot be read"):
+        Roster(tmp_path / "none.csv")
+
+
+def test_two_that_the_roster_knows_as_one_are_a_question(box, tmp_path):
+    (tmp_path / "book.csv").write_text(CANVAS_BOOK)
+    names = "jdoe/turns.ipynb", "Jane Doe/turns.ipynb"
+    found, refused = named(*names, "S2/turns.ipynb", path=box, roster=Roster(tmp_path / "book.csv"))
+    assert found == {"S2/turns.ipynb": "bsmith"} and set(refused) == set(names)
+
+
+def test_a_notebook_that_would_fill_the_memory_is_refused(folder):
+    (folder / "stranger").mkdir()
+    (folder / "stranger" / "turns.ipynb").write_bytes(b"[" + b"[]," * 3_000_000 + b"[]]")
+    assert "parts" in the_refused(folder)["stranger/turns.ipynb"]
+    # A long output is one text.
+    made = handed_in(also=[("markdown", "1, [2], {3}\n" * 400_000)])
+    (folder / "neighbour" / "turns.ipynb").write_text(nbformat.writes(made))
+    assert len(intake.take_in(folder)[0]) == 1
+
+
+def test_a_notebook_that_is_changed_meanwhile_is_not_taken(folder):
+    (one,), _ = intake.take_in(folder)
+    assert one.cells == intake.read_notebook(GOOD)[0]
+    (folder / "neighbour" / "turns.ipynb").write_bytes(GOOD + b" ")
+    with pytest.raises(intake.Unfit, match="changed"):
+        _ = one.cells
+
+
 # ---- what is refused
 
 
@@ -200,14 +411,14 @@ def test_a_file_that_is_exchanged_for_a_link_meanwhile_is_not_read(folder, tmp_p
     (folder / "stranger").mkdir()
     changing = folder / "stranger" / "turns.ipynb"
     changing.write_bytes(GOOD)
-    honest = intake._Layout
+    honest = intake.Layout
 
     def exchange(*arguments):
         changing.unlink()
         changing.symlink_to(tmp_path / "secret.ipynb")
         return honest(*arguments)
 
-    monkeypatch.setattr(intake, "_Layout", exchange)
+    monkeypatch.setattr(intake, "Layout", exchange)
     assert "cannot be read" in the_refused(folder)["stranger/turns.ipynb"]
 
 

@@ -1,6 +1,8 @@
 """Verdicts from plain data: the same as the student's check, nothing earned by default, nothing lost by chance."""
 
+import contextlib
 import json
+import random
 
 import pytest
 import sympy as sm
@@ -10,8 +12,9 @@ from coursework.authoring.release import read_source
 from coursework.checking.evaluate import MOST_WORK, TooLarge, values
 from coursework.checking.mistakes import MESSAGES
 from coursework.checking.plain import MOST_NODES, NotPlain, read_plain, to_plain
-from coursework.checking.questions import judge
-from coursework.grading import marking, reports
+from coursework.checking.points import points
+from coursework.checking.questions import compare, judge
+from coursework.grading import marking, reports, secret
 from coursework.grading.marking import CUT_SHORT, mark, questions_of
 
 
@@ -22,11 +25,24 @@ def solutions(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def questions(solutions):
-    return {name: about for path in sorted(solutions.glob("*.ipynb")) for name, about in questions_of(path).items()}
+    return {
+        name: about
+        for path in sorted(solutions.glob("*.ipynb"))
+        for name, about in questions_of(path, b"secret").items()
+    }
 
 
 def given(answer, calls=None):
     return {"outcome": "recorded", "plain": to_plain(answer, calls), "from": "check", "cell": 1}
+
+
+def given_function(question, function):
+    """What the sandbox says of a function: what it returned to the check, and to the secret calls."""
+    said = given(function, question["public"]["calls"])
+    place = question["secret"]
+    with contextlib.suppress(NotPlain):
+        said["secret"] = {"plain": to_plain(function, place["calls"]), "calls": secret.digest(place)}
+    return said
 
 
 theta, alpha, beta, q = sm.symbols("theta alpha beta q")
@@ -63,11 +79,88 @@ def test_outcome_note_and_points(questions, name, answer, outcome, note, points)
 
 
 def test_functions_are_judged_by_what_they_return(questions):
-    name, calls = "turns/doubled", [[1.5], [-2.0]]
-    assert mark(name, questions[name], given(lambda x: 2 * x, calls))["points"] == 3
-    assert mark(name, questions[name], given(lambda x: x / 2, calls))["outcome"] == "wrong"
-    assert mark(name, questions[name], given(lambda x: 1 / 0, calls))["note"] == "raised an error"
-    assert mark(name, questions[name], given(lambda x: None, calls))["outcome"] == "not attempted"
+    name = "turns/doubled"
+    question = questions[name]
+    assert mark(name, question, given_function(question, lambda x: 2 * x))["points"] == 3
+    assert mark(name, question, given_function(question, lambda x: x / 2))["outcome"] == "wrong"
+    assert mark(name, question, given_function(question, lambda x: 1 / 0))["note"] == "raised an error"
+    assert mark(name, question, given_function(question, lambda x: None))["outcome"] == "not attempted"
+
+
+def marks_of(questions, name, answer):
+    found = mark(name, questions[name], answer)
+    return found["outcome"], found["note"], found["points"]
+
+
+def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
+    """The points of the check follow from the question: who reads them can put a parabola through them."""
+    public = questions["turns/sum"]["public"]
+    places = points(public)
+    rows = sm.Matrix([[1, point["alpha"], point["alpha"] ** 2] for point in places])
+    right = sm.Matrix([sm.sin(sm.Float(point["alpha"] + point["beta"], 40)) for point in places])
+    parabola = sum(part * alpha**power for power, part in enumerate(rows.LUsolve(right)))
+    plain = to_plain(sm.expand(parabola))
+    assert compare("turns/sum", public, plain, questions["turns/sum"]["known"].get).outcome == "correct"
+    forged = "wrong", "right only where it is checked", 0
+    assert marks_of(questions, "turns/sum", given(sm.expand(parabola))) == forged
+    # A share of the points for a known mistake is earned in no other way.
+    assert marks_of(questions, "turns/about-x", given(A_C_N.T)) == ("wrong", "transposed", 1)
+    place = points(questions["turns/about-x"]["public"])
+    x = sm.Symbol("theta")
+    through = [sm.interpolate([(sm.Float(p["theta"], 40), sm.cos(sm.Float(p["theta"], 40))) for p in place], x)]
+    through.append(sm.interpolate([(sm.Float(p["theta"], 40), sm.sin(sm.Float(p["theta"], 40))) for p in place], x))
+    turned = sm.Matrix([[1, 0, 0], [0, through[0], -through[1]], [0, through[1], through[0]]])
+    assert marks_of(questions, "turns/about-x", given(turned)) == forged
+
+
+def test_a_table_of_what_a_function_returned_is_no_function(questions):
+    question = questions["turns/doubled"]
+    table = {call[0]: 2 * call[0] for call in question["public"]["calls"]}
+    for otherwise in (0.0, 1e300, "?", None):
+        forged = given_function(question, lambda x, otherwise=otherwise: table.get(x, otherwise))
+        assert marks_of(questions, "turns/doubled", forged) == ("wrong", "right only where it is checked", 0)
+    refusing = {**given_function(question, lambda x: 2 * x), "secret": {"unreadable": "It raised."}}
+    assert marks_of(questions, "turns/doubled", refusing)[1] == "right only where it is checked"
+    # What was not called, by whosever fault, goes to a person; and so does what was called with other secrets.
+    for said in (
+        {},
+        {"unreadable": CUT_SHORT[0]},
+        {**given_function(question, lambda x: 2 * x)["secret"], "calls": "x"},
+    ):
+        found = {**given_function(question, lambda x: 2 * x), "secret": said}
+        assert marks_of(questions, "turns/doubled", found) == ("undecided", "not called", 0)
+
+
+def test_the_secret_is_made_once_and_decides_the_points(tmp_path, solutions):
+    first = secret.secret_beside(tmp_path)
+    assert len(first) == 32 and secret.secret_beside(tmp_path) == first
+    assert (tmp_path / secret.FILE).stat().st_mode & 0o077 == 0
+    (tmp_path / "other").mkdir()
+    assert secret.secret_beside(tmp_path / "other") != first
+    with pytest.raises(ValueError, match="belongs beside the solutions"):
+        secret.secret_beside(tmp_path / "nowhere")
+    one, same, other = (questions_of(solutions / "turns.ipynb", known) for known in (b"one", b"one", b"other"))
+    assert one == same
+    for name in one:
+        assert one[name]["secret"] != other[name]["secret"] and one[name]["version"] != other[name]["version"]
+        assert one[name]["secret"].get("salt") != one[name]["public"]["salt"]
+
+
+def test_secret_calls_are_like_the_authors(questions):
+    dice = random.Random(5)
+    unit, triad = (
+        [[0.6, 0.8, 0.0], [0.0, 0.0, 1.0]],
+        [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 0], [0, 0, 1], [1, 0, 0]]],
+    )
+    for _ in range(50):
+        assert -2 <= secret._another([1.5, -2.0], dice) <= 1.5
+        assert secret._another([3, 7], dice) in range(3, 8) and secret._another([2, 2], dice) == 2
+        assert secret._another(["zxy", "xyz"], dice) in ("zxy", "xyz")
+        assert abs(sm.Matrix(secret._another(unit, dice)).norm() - 1) < 1e-9
+        turned = sm.Matrix(secret._another(triad, dice))
+        assert (turned * turned.T - sm.eye(3)).norm() < 1e-9 and abs(turned.det() - 1) < 1e-9
+        times = secret._another([[0.0, 0.1, 0.3], [0.0, 0.5, 0.6]], dice)
+        assert times == sorted(times) and times[0] == 0
 
 
 def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
@@ -78,7 +171,10 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
             answers = [question.plain, *(entry.plain for entry in question.entries.values())]
             for plain in answers:
                 reply, _ = judge(name, sealed, plain)
-                found = mark(name, questions[name], {"outcome": "recorded", "plain": json.loads(json.dumps(plain))})
+                said = {"outcome": "recorded", "plain": json.loads(json.dumps(plain))}
+                if question.public["kind"] == "function" and plain == question.plain:
+                    said = given_function(questions[name], question.answer)
+                found = mark(name, questions[name], said)
                 assert (found["outcome"], found["note"], found["messages"]) == (
                     reply.outcome,
                     reply.note,
@@ -93,6 +189,7 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
     [
         ({"outcome": "missing"}, True, "not attempted", "missing"),
         ({"outcome": "missing"}, False, "undecided", "not reached"),
+        ({"outcome": "missing", "limited": True}, True, "undecided", "lost to a limit"),
         (
             {"outcome": "timeout", "error": "It took longer than it may."},
             True,
@@ -124,7 +221,8 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
     ],
 )
 def test_nothing_is_earned_without_an_answer(questions, answer, finished, outcome, note):
-    found = mark("turns/about-x", questions["turns/about-x"], answer, finished)
+    limited = answer.pop("limited", False)
+    found = mark("turns/about-x", questions["turns/about-x"], answer, finished, limited)
     assert (found["outcome"], found["note"], found["points"]) == (outcome, note, 0)
 
 
@@ -139,8 +237,14 @@ def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
 
 def test_the_sandbox_is_told_names_and_calls_and_nothing_else(questions):
     told = marking.asked_of_sandbox(questions)
-    assert told["turns/about-x"] == {"variable": "A_C_N", "calls": None}
-    assert told["turns/doubled"] == {"variable": "doubled", "calls": {"arguments": [[1.5], [-2.0]], "as": "lists"}}
+    assert told["turns/about-x"] == {"variable": "A_C_N", "calls": None, "secret calls": None}
+    secretly = {"arguments": questions["turns/doubled"]["secret"]["calls"], "as": "lists"}
+    assert told["turns/doubled"] == {
+        "variable": "doubled",
+        "calls": {"arguments": [[1.5], [-2.0]], "as": "lists"},
+        "secret calls": secretly,
+    }
+    assert len(secretly["arguments"]) == 3 and secretly["arguments"] != [[1.5], [-2.0]]
     alike = {name: questions["axes/angle"] for name in ("first", "second")}
     assert [about["variable"] for about in marking.asked_of_sandbox(alike).values()] == [None, None]
 

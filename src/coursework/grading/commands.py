@@ -1,5 +1,6 @@
 """The commands of instructors: ``coursework grade``, ``regrade``, ``export`` and ``sample-class``."""
 
+import re
 import sys
 
 
@@ -16,7 +17,14 @@ def add_commands(commands):
         metavar="NAME[=NOTEBOOK,...]",
         help="grade this assignment only; with = the notebooks of the exercises that make it up",
     )
-    grade.add_argument("--workers", type=int, default=2, help="how many notebooks are run at a time (2)")
+    grade.add_argument(
+        "--roster", metavar="FILE.csv", help="who is in the course: a table, or the gradebook your system exports"
+    )
+    grade.add_argument("--student", help="the one student who handed all of it in")
+    grade.add_argument(
+        "--only-list", action="store_true", help="say whose each file is and how that is known; run nothing"
+    )
+    grade.add_argument("--workers", type=int, help="how many notebooks are run at a time (one for each processor)")
     grade.add_argument(
         "--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead, such as tcp://host:8786"
     )
@@ -30,6 +38,17 @@ def add_commands(commands):
     )
     regrade.add_argument("out", metavar="DIR")
     regrade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    review = commands.add_parser("review", help="judge answers on a page that this machine alone sees")
+    review.add_argument("out", metavar="DIR")
+    review.add_argument("--grader", help="your name, for the ledger; your user's if it is not said")
+    review.add_argument(
+        "--share", default="1/1", metavar="K/N", help="the K-th of N shares, if several people judge: 2/3"
+    )
+    review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
+    review.add_argument("--port", type=int, default=0, help="the port; any that is free if it is not said")
+    merge = commands.add_parser("merge", help="take in the decisions of another grader")
+    merge.add_argument("out", metavar="DIR")
+    merge.add_argument("ledgers", nargs="+", metavar="ledger.jsonl")
     export = commands.add_parser("export", help="hand the marks on")
     export.add_argument("out", metavar="DIR")
     export.add_argument(
@@ -39,6 +58,16 @@ def add_commands(commands):
         "--filled", metavar="FILE.csv", help="where the filled gradebook goes; FILE-filled.csv if not said"
     )
     export.add_argument("--column", help="the column to fill, by its name or the beginning of it")
+    export.add_argument(
+        "--name",
+        action="append",
+        default=[],
+        metavar="OURS=THEIRS",
+        help="what a column is called there, in a gradebook of another language: --name 'identifier=ID'",
+    )
+    export.add_argument(
+        "--overwrite", action="store_true", help="fill in also where something else stands; otherwise it stays"
+    )
     export.add_argument("--assignment", help="the assignment whose points are handed on, if there are several")
     export.add_argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table")
     export.add_argument(
@@ -59,7 +88,6 @@ def add_commands(commands):
 
 
 def grade(assignment, **options):
-    from .grade import NothingToGrade
     from .grade import grade as grade_class
     from .sandbox import WeakIsolation
     from .store import InUse
@@ -67,11 +95,12 @@ def grade(assignment, **options):
     named = {name: (notebooks or name).split(",") for name, _, notebooks in (one.partition("=") for one in assignment)}
     try:
         grade_class(assignments=named or None, **options)
-    except (NothingToGrade, InUse, WeakIsolation, ValueError) as error:
+    except (InUse, WeakIsolation, ValueError) as error:  # NothingToGrade and BadRoster are such
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped. The same command goes on from here.")
-    print(f"The report: {options['out']}/report.html")
+    if not options["only_list"]:
+        print(f"The report: {options['out']}/report.html")
 
 
 def regrade(out, solutions):
@@ -92,7 +121,47 @@ def regrade(out, solutions):
     print(f"{len(moved)} moved.")
 
 
-def export(out, lms, filled, column, assignment, nbgrader, gradescope, student):
+def review(out, grader, share, hide_names, port):
+    import getpass
+
+    from .review import review as serve
+
+    found = re.fullmatch(r"(\d+)/(\d+)", share)
+    mine, shares = map(int, found.groups()) if found else (0, 0)
+    if not 1 <= mine <= shares:
+        sys.exit(f"coursework review: a share is one of several, such as 2/3, and this is {share!r}.")
+
+    def say(address):
+        print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
+
+    try:
+        serve(out, grader or getpass.getuser(), share=(mine, shares), hide_names=hide_names, port=port, say=say)
+    except ValueError as error:
+        sys.exit(f"coursework review: {error}")
+    except KeyboardInterrupt:
+        print(f"\nBring the decisions into the marks: coursework regrade {out}")
+
+
+def merge(out, ledgers):
+    from pathlib import Path
+
+    from .ledger import Ledger
+
+    ledger = Ledger(Path(out))
+    for path in ledgers:
+        try:
+            new, differing = ledger.merge(Path(path))
+        except (OSError, ValueError) as error:
+            sys.exit(f"coursework merge: {error}")
+        print(f"{new} decisions from {path}.")
+        for first, second in differing:
+            print(
+                f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, {second.who} gave "
+                f"{second.credit}; the later one counts."
+            )
+
+
+def export(out, lms, filled, column, name, overwrite, assignment, nbgrader, gradescope, student):
     from . import gradebooks
     from .store import Store
 
@@ -101,7 +170,8 @@ def export(out, lms, filled, column, assignment, nbgrader, gradescope, student):
     try:
         marks = gradebooks.Marks(Store(out), assignment)
         if lms:
-            said = gradebooks.fill(lms, marks, column, filled)
+            names = dict(one.partition("=")[::2] for one in name)
+            said = gradebooks.fill(lms, marks, column, filled, names, overwrite)
             print(*said, sep="\n")
         if nbgrader:
             gradebooks.write_nbgrader(nbgrader, marks)
@@ -118,4 +188,11 @@ def sample_class(out, students, seed, notebooks, solutions, layout):
     print(f"{students} students in {made}")
 
 
-COMMANDS = {"grade": grade, "regrade": regrade, "export": export, "sample-class": sample_class}
+COMMANDS = {
+    "grade": grade,
+    "regrade": regrade,
+    "review": review,
+    "merge": merge,
+    "export": export,
+    "sample-class": sample_class,
+}

@@ -5,10 +5,10 @@ that it depends on: the bytes of the notebooks, the questions, the limits, the v
 run that finds a record with the right key leaves it alone, so a run that was killed goes on where it was.
 """
 
-import contextlib
-import csv
+import base64
 import hashlib
 import json
+import os
 import platform
 import sys
 import time
@@ -17,10 +17,19 @@ from typing import NamedTuple
 
 from ..authoring.course import edition_of, find_course
 from . import intake, marking
+from . import secret as in_secret
+from .identity import BadRoster, Roster
+from .ledger import DECISIONS, Ledger, digest_of_answer
+from .reports import GUESSABLE
+from .secret import secret_beside
 from .store import FORMAT, Store, as_text, write
+from .tables import number, readable, table
 from .versions import software
 
-DECISIONS, REFUSED, COURSE = "decisions.csv", "refused.json", "course.json"
+REFUSED, COURSE, WHOSE = "refused.json", "course.json", "whose.csv"
+
+
+MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
 
 
 class NothingToGrade(ValueError):
@@ -48,7 +57,7 @@ class Course:
     """
 
     def __init__(self, solutions=None, assignments=None):
-        folder = Path(solutions or find_course().sources)
+        folder = self.folder = Path(solutions or find_course().sources)
         self.edition = edition_of(folder)
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
         if not self.sources:
@@ -88,7 +97,8 @@ class Course:
     def questions(self, assignments, kept):
         """The questions of some assignments, by assignment and name."""
         stems = sorted({stem for assignment in assignments for stem in self.assignments[assignment]})
-        found = marking.load_questions([self.sources[stem] for stem in stems], kept, self.edition)
+        secret = secret_beside(self.folder)
+        found = marking.load_questions([self.sources[stem] for stem in stems], kept, secret, self.edition)
         return {assignment: {name: found[name] for name in self.names[assignment]} for assignment in assignments}
 
 
@@ -135,13 +145,38 @@ def grade(
     *,
     solutions=None,
     assignments=None,
-    workers=2,
+    roster=None,
+    student=None,
+    only_list=False,
+    workers=None,
     scheduler=None,
     allow_weak_isolation=False,
     limits=None,
     show=None,
 ):
     """Grade what was handed in and write records and reports to the folder ``out``.
+
+    Parameters
+    ----------
+    submissions, out : path
+    solutions : path, optional
+        The folder of the notebooks with solutions, beside which the course's secret is kept.
+    assignments : dict, optional
+        As for :class:`Course`.
+    roster : path, optional
+        Who is in the course; then nothing else says whose a notebook is.
+    student : str, optional
+        The one student who handed all of it in.
+    only_list : bool
+        Say whose each file is, and run nothing.
+    workers : int, optional
+        How many notebooks run at a time; as many as there are processors if it is not said.
+    scheduler : str, optional
+        The address of a Dask cluster.
+    allow_weak_isolation : bool
+    limits : Limits, optional
+    show : file, optional
+        Where it says how far it is.
 
     Returns
     -------
@@ -150,22 +185,36 @@ def grade(
 
     Raises
     ------
-    NothingToGrade, InUse, WeakIsolation
+    NothingToGrade, BadRoster, InUse, WeakIsolation
     """
     from . import reports
     from .sandbox import Limits
 
+    workers = len(os.sched_getaffinity(0)) if workers is None else workers
+    if workers < 1:
+        raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
     store, limits, show = Store(out), limits or Limits(), show or sys.stderr
+    roster = Roster(roster) if roster else None
+    if student is not None and roster and student not in roster.people:
+        raise BadRoster(f"There is no student {student!r} in the roster.")
     with store.locked():
         course = Course(solutions, assignments)
         try:
-            notebooks, refused = intake.take_in(submissions, course.assignments)
+            notebooks, refused = intake.take_in(submissions, course.assignments, roster, student)
         except intake.Unfit as error:
             raise NothingToGrade(str(error)) from None
         work = sort_work(notebooks, course, refused)
+        _say_whose(work, refused, roster, store, show)
+        if only_list:
+            return {"graded": 0, "kept": 0, "refused": len(refused)}
+        _demand_a_class(work, roster, student)
         questions = course.questions(sorted({one.assignment for one in work}), store.folder / "questions")
-        decisions = read_decisions(store.folder / DECISIONS)
-        write(store.folder / COURSE, as_text(course.assignments))
+        known = _read(store.folder / COURSE)
+        write(store.folder / COURSE, as_text({**known, **course.assignments}))
+        for line in _put_renamed_aside(store, work):
+            print(line, file=show)
+        ledger = Ledger(store.folder)
+        _take_in_decisions(ledger, store, show)
         keys = {
             (one.student, one.assignment): key_of(one, questions[one.assignment], limits, allow_weak_isolation)
             for one in work
@@ -176,36 +225,122 @@ def grade(
             file=show,
         )
         store.log(f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on {platform.node()}")
-        jobs = _Jobs(waiting, questions)
+        jobs = _Jobs(waiting, questions, store)
         if scheduler:
             from .cluster import run_on_cluster
 
             results = run_on_cluster(jobs, scheduler, limits, allow_weak_isolation=allow_weak_isolation)
         else:
-            results = run_here(jobs, workers, limits, allow_weak_isolation)
+            results = run_here(jobs, min(workers, len(jobs)), limits, allow_weak_isolation) if waiting else ()
         progress = _Progress(len(waiting), show)
+        decisions = ledger.current()
         for one, found in jobs.whole(results):
-            record = record_of(one, found, keys[one.student, one.assignment], limits)
+            record = record_of(one, found, keys[one.student, one.assignment], marking.of_student(questions[one.assignment], one.student), limits)
             record = marked(record, questions[one.assignment], decisions)
             store.save(record)
             store.log(f"graded: {one.student!r} {one.assignment}")
             progress.one_more(record)
+        # What was kept may have been decided on since.
+        for one in work:
+            record = store.read(one.student, one.assignment)
+            again = record and marked(record, questions[one.assignment], decisions)
+            if again != record:
+                store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
         reports.write_all(store)
         store.log("end")
+    _say_guessable(questions, show)
     return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
+
+
+def _say_whose(work, refused, roster, store, show):
+    """Say before anything is run whose each file is, and how that is known."""
+    rows = [
+        (one.student, one.assignment, notebook.file, notebook.matched)
+        for one in work
+        for notebook in (*one.notebooks, *one.superseded)
+    ]
+    write(store.folder / WHOSE, table(("student", "assignment", "file", "known by"), rows))
+    for student, assignment, file, matched in rows[:MOST_SHOWN]:
+        print(f"  {readable(student, 60)} <- {readable(file, 120)}  ({assignment}; {matched})", file=show)
+    if len(rows) > MOST_SHOWN:
+        print(f"  ... and {len(rows) - MOST_SHOWN} more: {store.folder / WHOSE}", file=show)
+    asked = [one for one in refused if one.why.endswith(("whose are they?", intake.NOT_MATCHED))]
+    for one in asked[:MOST_SHOWN]:
+        print(f"  ? <- {readable(one.file, 120)}: {readable(one.why, 300)}", file=show)
+    if roster:
+        missing = sorted(set(roster.people) - {one.student for one in work})
+        if missing:
+            shown = ", ".join(missing[:MOST_SHOWN]) + (", ..." if len(missing) > MOST_SHOWN else "")
+            print(f"Of the roster, {len(missing)} handed in nothing: {shown}.", file=show)
+
+
+def _demand_a_class(work, roster, student):
+    """Everything from one student is a question, not a result: a folder around it may have been taken for one."""
+    students = {one.student for one in work}
+    doubtful = [notebook for one in work for notebook in one.superseded if not notebook.claim.given_by_system]
+    if len(students) == 1 and doubtful and roster is None and student is None:
+        (only,) = students
+        raise NothingToGrade(
+            f"The notebooks would all be of one student, {only!r}, and all but the newest would not count. If that is "
+            f"so, say --student {only!r}; if not, name the folder in which each student has one of their own, or "
+            "give a --roster."
+        )
+
+
+def _put_renamed_aside(store, work):
+    """Move the record of a student away whose very notebooks are now another's: the folder was renamed."""
+    present = {(one.student, one.assignment) for one in work}
+    owners = {}
+    for one in work:
+        owners.setdefault((one.assignment, frozenset(notebook.digest for notebook in one.notebooks)), one.student)
+    known = [(record["student"], record["assignment"], record["notebooks"]) for record in store.all()]
+    for student, assignment, notebooks in known:
+        if (student, assignment) in present:
+            continue
+        now = owners.get((assignment, frozenset(notebook["sha256"] for notebook in notebooks)))
+        if now is not None and (now, assignment) not in {(before, name) for before, name, _ in known}:
+            place = store.put_aside(student, assignment)
+            yield f"{student!r} is now {now!r}: the record of {assignment} was moved to {place}."
+
+
+def _take_in_decisions(ledger, store, show):
+    for line in ledger.take_in_table(store.folder / DECISIONS, store.all()):
+        print(f"{DECISIONS}, not used: {line}.", file=show)
+
+
+def _say_guessable(questions, show):
+    """Say which points a script could have guessed: whoever tries answers in the check earns them."""
+    for assignment, asked in questions.items():
+        worth = sum(question["worth"] for question in asked.values())
+        cheap = {name: question for name, question in asked.items() if question["bits"] < GUESSABLE}
+        if cheap:
+            print(
+                f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} points "
+                f"could be guessed by a script that tries answers ({', '.join(sorted(cheap))}).",
+                file=show,
+            )
+
+
+def _read(path):
+    return json.loads(path.read_text("utf8")) if path.exists() else {}
 
 
 def _is_done(store, one, keys):
     record = store.read(one.student, one.assignment)
-    return record is not None and record["key"] == keys[one.student, one.assignment]
+    # A notebook that this machine could not run is tried again.
+    return (
+        record is not None
+        and record["key"] == keys[one.student, one.assignment]
+        and not any("given up" in notebook["isolation"] for notebook in record["notebooks"])
+    )
 
 
 def key_of(work, questions, limits, weak):
     """What a record depends on, as one short text."""
     depends = [
         FORMAT,
-        [notebook.digest for notebook in work.notebooks],
+        [[notebook.digest, [[one.name, one.digest] for one in notebook.beside]] for notebook in work.notebooks],
         [notebook.digest for notebook in work.superseded],
         {name: question["version"] for name, question in questions.items()},
         vars(limits),
@@ -218,15 +353,23 @@ def key_of(work, questions, limits, weak):
 class _Jobs:
     """The jobs of the sandbox, one for each notebook, and which work each belongs to."""
 
-    def __init__(self, work, questions):
+    def __init__(self, work, questions, store):
         self.work = work
         self.questions = questions
+        self.store = store
+
+    def __len__(self):
+        return sum(len(one.notebooks) for one in self.work)
 
     def __iter__(self):
         for order, one in enumerate(self.work):
             asked = marking.asked_of_sandbox(marking.of_student(self.questions[one.assignment], one.student))
             for part, notebook in enumerate(one.notebooks):
-                yield {"id": f"{order} {part}", "cells": notebook.cells, "questions": asked, "seed": 0}
+                cells = notebook.cells
+                self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
+                files = {name: base64.b64encode(data).decode() for name, data in notebook.files.items()}
+                job = {"id": f"{order} {part}", "cells": cells, "questions": asked, "seed": 0}
+                yield {**job, "files": files} if files else job
 
     def whole(self, results):
         """Give each work with the results of its notebooks, once it has them all."""
@@ -245,27 +388,35 @@ def run_here(jobs, workers, limits, allow_weak_isolation):
     """Run jobs on this machine. A notebook under which the sandbox dies again and again is given up, alone."""
     from .sandbox import WorkerDied, given_up, run_notebooks
 
-    waiting = {job["id"]: job for job in jobs}
+    jobs, running = iter(jobs), {}
     options = {"limits": limits, "allow_weak_isolation": allow_weak_isolation}
-    while waiting:
+
+    def remembered():
+        # Only what is being run: a class needs no more memory than its workers do.
+        for job in jobs:
+            running[job["id"]] = job
+            yield job
+
+    while True:
         try:
-            for result in run_notebooks(list(waiting.values()), min(workers, len(waiting)), **options):
-                del waiting[result["id"]]
+            for result in run_notebooks(remembered(), workers, **options):
+                del running[result["id"]]
                 yield result
+            return
         except WorkerDied:
-            # One of the first that are not done: each of them gets a sandbox of its own.
-            for job in list(waiting.values())[: 2 * workers]:
-                del waiting[job["id"]]
+            # One of those that were being run: each of them gets a sandbox of its own.
+            for job in list(running.values()):
+                del running[job["id"]]
                 try:
                     yield from run_notebooks([job], 1, **options)
                 except WorkerDied as error:
                     yield given_up(job, str(error))
 
 
-def record_of(work, results, key, limits):
+def record_of(work, results, key, questions, limits):
     """The record of a student's work, before it is judged."""
     notebooks = []
-    for notebook, result in zip(work.notebooks, results):
+    for notebook, result in zip(work.notebooks, results, strict=True):
         notebooks.append(
             {
                 "file": notebook.file,
@@ -273,6 +424,8 @@ def record_of(work, results, key, limits):
                 "finished": result["finished"],
                 "cells": result["cells"],
                 "notes": result["notes"],
+                "tried": result.get("tried", []),
+                "beside": [one.name for one in notebook.beside],
                 "unknown questions": result["unknown questions"],
                 "runs": result["runs"],
                 "seed": result["seed"],
@@ -285,6 +438,8 @@ def record_of(work, results, key, limits):
         given = [result["answers"][name] for result in results]
         # Of several notebooks the one that says something; they have no question in common.
         answers[name] = min(given, key=_says_little)
+        if "secret" in answers[name]:
+            answers[name]["secret"]["calls"] = in_secret.digest(questions[name]["secret"])
     return {
         "format": FORMAT,
         "key": key,
@@ -309,18 +464,29 @@ def _says_little(answer):
     )
 
 
+#: How a cell ends that a limit ended: what is missing then may have been lost to it.
+BY_A_LIMIT = ("timeout", "memory", "disk", "output")
+
+
 def marked(record, questions, decisions=None):
-    """A record with the verdicts on its answers."""
+    """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
+    limited = any(
+        cell["outcome"] in BY_A_LIMIT or "SIGKILL" in cell.get("error", "")
+        for notebook in record["notebooks"]
+        for cell in notebook["cells"]
+    )
     marks = {}
     for name, question in marking.of_student(questions, record["student"]).items():
-        found = marking.mark(name, question, record["answers"].get(name, {"outcome": "missing"}), record["finished"])
-        decided = (decisions or {}).get((record["student"], name))
-        if decided is not None and found["outcome"] == "undecided":
-            share, comment = decided
+        answer = record["answers"].get(name, {"outcome": "missing"})
+        found = marking.mark(name, question, answer, record["finished"], limited)
+        decided = (decisions or {}).get((record["student"], record["assignment"], name))
+        if decided is not None and decided.answer == digest_of_answer(record, name):
             found |= {
                 "outcome": "decided",
-                "points": round(question["worth"] * share, 4),
-                "messages": [comment] if comment else [],
+                "points": round(question["worth"] * decided.credit, 4),
+                "messages": [said for said in (*decided.rubric, decided.comment) if said],
+                "before": {key: found[key] for key in ("outcome", "note", "points", "messages")},
+                "decided": {"who": decided.who, "when": decided.when, "id": decided.id},
             }
         marks[name] = {**found, "title": question["title"]}
     return {
@@ -382,8 +548,8 @@ class Moved(NamedTuple):
     questions: list
 
 
-def regrade(out, *, solutions=None):
-    """Judge the stored answers again, by the questions and a person's decisions as they are now.
+def regrade(out, *, solutions=None, show=None):
+    """Judge the stored answers again, by the questions and people's decisions as they are now.
 
     Returns
     -------
@@ -398,10 +564,18 @@ def regrade(out, *, solutions=None):
         names = sorted({record["assignment"] for record in store.all()})
         if not names:
             raise NothingToGrade(f"There are no records in {store.folder}.")
-        course = Course(solutions, json.loads((store.folder / COURSE).read_text("utf8")))
+        known = _read(store.folder / COURSE)
+        unknown = sorted(set(names) - set(known))
+        if unknown:
+            raise NothingToGrade(
+                f"{store.folder / COURSE} does not say which notebooks make up {', '.join(map(repr, unknown))}; "
+                "grade again with --assignment."
+            )
+        course = Course(solutions, {name: known[name] for name in names})
         questions = course.questions(names, store.folder / "questions")
-        decisions = read_decisions(store.folder / DECISIONS)
-        moved = []
+        ledger = Ledger(store.folder)
+        _take_in_decisions(ledger, store, show or sys.stderr)
+        decisions, moved = ledger.current(), []
         for record in store.all():
             again = marked(record, questions[record["assignment"]], decisions)
             if again == record:
@@ -418,31 +592,3 @@ def regrade(out, *, solutions=None):
         store.log(f"graded again: {len(moved)} moved")
         reports.write_all(store)
     return moved
-
-
-def read_decisions(path):
-    """What a person decided: the credit from 0 to 1, and a comment, by student and question.
-
-    Raises
-    ------
-    ValueError
-        A line cannot be read; the message says which.
-    """
-    from .tables import as_written
-
-    found = {}
-    with contextlib.suppress(FileNotFoundError), open(path, encoding="utf-8-sig", newline="") as file:
-        for number, row in enumerate(csv.DictReader(file), 2):
-            credit = (row.get("credit") or "").strip()
-            if not credit:
-                continue
-            try:
-                share = float(credit)
-                if not 0 <= share <= 1:
-                    raise ValueError
-            except ValueError:
-                raise ValueError(
-                    f"{path}, line {number}: credit is a number from 0 to 1, and this is {credit!r}."
-                ) from None
-            found[as_written(row["student"]), row["question"]] = share, (row.get("comment") or "").strip()
-    return found

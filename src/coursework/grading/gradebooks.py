@@ -79,7 +79,7 @@ class Field(NamedTuple):
 class Gradebook:
     """A table of a learning management system, of which cells can be changed one at a time."""
 
-    def __init__(self, data):
+    def __init__(self, data, names=None):
         self.encoding, self.mark = _encoding(data)
         text = data[len(self.mark) :].decode(self.encoding)
         self.delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
@@ -87,10 +87,14 @@ class Gradebook:
         if len(self.lines) < 2:
             raise CannotExport("The gradebook has no students.")
         self.header = [field.says.strip() for field in self.lines[0][0]]
+        self.ours = {theirs.casefold(): ours.casefold() for ours, theirs in (names or {}).items()}
+        unknown = sorted(set(self.ours) - {name.casefold() for name in self.header})
+        if unknown:
+            raise CannotExport(f"There is no column {unknown[0]!r}; there are {', '.join(map(repr, self.header))}.")
 
     def column(self, *names):
         """The number of the first column that has one of these names; ``None`` if there is none."""
-        lower = [name.lower() for name in self.header]
+        lower = [self.ours.get(name.casefold(), name.lower()) for name in self.header]
         return next((lower.index(name) for name in names if name in lower), None)
 
     def says(self, line, column):
@@ -145,7 +149,7 @@ def _split(text, delimiter):
 # --- the systems --------------------------------------------------------------------------------
 
 
-def fill(path, marks, column=None, filled=None):
+def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
     """Fill the gradebook of Canvas, Moodle or Brightspace.
 
     Parameters
@@ -157,6 +161,10 @@ def fill(path, marks, column=None, filled=None):
         The name of the column to fill, or its beginning; needed where several could be meant.
     filled : path, optional
         Where the filled gradebook goes.
+    names : dict, optional
+        What columns are called in this gradebook, by their names in English.
+    overwrite : bool
+        Whether something else that stands in a cell, such as Canvas's ``EX`` for excused, is written over.
 
     Returns
     -------
@@ -169,7 +177,7 @@ def fill(path, marks, column=None, filled=None):
     """
     path = Path(path)
     try:
-        book = Gradebook(path.read_bytes())
+        book = Gradebook(path.read_bytes(), names)
     except (OSError, UnicodeDecodeError) as error:
         raise CannotExport(f"{path} cannot be read: {error}.") from None
     system = _system(book)
@@ -180,10 +188,10 @@ def fill(path, marks, column=None, filled=None):
     said = [f"{system}: column {book.header[place]!r}."]
     if scale != 1:
         said.append(
-            f"The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: points are "
-            "scaled."
+            f"The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: "
+            "points are scaled."
         )
-    filled_in, waiting, closed = 0, [], []
+    filled_in, waiting, closed, kept = 0, [], [], []
     for line, student in sorted(found.items()):
         if marks.undecided(student):
             waiting.append(student)
@@ -191,6 +199,11 @@ def fill(path, marks, column=None, filled=None):
             closed.append(student)
         else:
             text = number(round(marks.points(student) * scale, 2))
+            there = book.says(line, place)
+            if there not in ("", "-") and not _is_same(there, text):
+                kept.append(f"{student}: {there}, and graded {text}")
+                if not overwrite:
+                    continue
             book.put(line, place, text.replace(".", ",") if comma else text)
             filled_in += 1
     target = Path(filled) if filled else path.with_name(f"{path.stem}-filled{path.suffix}")
@@ -208,11 +221,22 @@ def fill(path, marks, column=None, filled=None):
         ("Of a name that is there more than once, so not filled in", several),
         ("Not filled in, because a person has still to decide", waiting),
         ("Not filled in, because the system allows no change", closed),
+        (
+            "Written over, as you said" if overwrite else "Not filled in, because something stands there (--overwrite)",
+            kept,
+        ),
     ):
         if names:
             said.append(f"{heading} ({len(names)}):")
             said += [f"  {readable(name, 200)}" for name in names]
     return said
+
+
+def _is_same(there, text):
+    try:
+        return float(there.replace(",", ".")) == float(text)
+    except ValueError:
+        return False
 
 
 def _system(book):
@@ -224,7 +248,8 @@ def _system(book):
         return "Canvas"
     raise CannotExport(
         "This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or Brightspace "
-        f"(OrgDefinedId, End-of-Line Indicator). Its columns: {', '.join(book.header)[:300]}"
+        f"(OrgDefinedId, End-of-Line Indicator). In another language, say which is which: --name 'identifier=...'. "
+        f"Its columns: {', '.join(book.header)[:300]}"
     )
 
 
@@ -327,6 +352,10 @@ def _keys_of_student(system, student, identity):
     if system.lower() in identity and system != "Brightspace":
         yield "id", identity[system.lower()]
         return
+    for own in identity.get("own", ()):
+        yield "own", own.lower()
+    if "email" in identity:
+        yield "own", identity["email"].lower().partition("@")[0]
     if not identity:
         yield "own", student.lower()  # the folder's name is all that is known
     if "name" in identity:

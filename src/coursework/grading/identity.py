@@ -38,6 +38,8 @@ class Claim(NamedTuple):
         What a roster may know the student by, the surest first.
     source : str
         The same for all that one student handed in, and for nobody else's.
+    file : str
+        The path of the file as its author named it.
     declared : tuple
         The greater, the newer.
     late : bool
@@ -48,6 +50,7 @@ class Claim(NamedTuple):
     student: str
     keys: tuple
     source: str
+    file: str
     declared: tuple = ()
     late: bool = False
     given_by_system: bool = False
@@ -119,7 +122,15 @@ class Layout:
         number = int(again["number"]) if again else 0
         name = "anonymous" if kind == "canvas anonymous" else _clean(found["name"])
         keys = ((kind, found["user"]),) + ((("letters", name),) if kind == "canvas" else ())
-        return Claim(f"{name}_{found['user']}", keys, f"{kind} {found['user']}", (number,), bool(found["late"]), True)
+        return Claim(
+            f"{name}_{found['user']}",
+            keys,
+            f"{kind} {found['user']}" + (f" {name}" if kind == "canvas" else ""),
+            _inside(parts, found["file"]),
+            (number,),
+            bool(found["late"]),
+            True,
+        )
 
     def _moodle(self, parts):
         found = MOODLE.fullmatch(parts[0])
@@ -127,7 +138,11 @@ class Layout:
             return None
         name, user = _clean(found["name"]), found["user"]
         return Claim(
-            f"{name} {user}", (("moodle", user), ("name", name)), f"moodle {user} {name}", given_by_system=True
+            f"{name} {user}",
+            (("moodle", user), ("name", name)),
+            f"moodle {user} {name}",
+            _inside(parts, found["file"]),
+            given_by_system=True,
         )
 
     def _brightspace(self, parts):
@@ -136,7 +151,9 @@ class Layout:
             return None
         name, user = _clean(found["name"]), found["user"]
         keys = (("brightspace", user), ("name", name))
-        return Claim(f"{name} {user}", keys, f"brightspace {user}", _when(found["when"]), False, True)
+        return Claim(
+            f"{name} {user}", keys, f"brightspace {user}", _inside(parts), _when(found["when"]), given_by_system=True
+        )
 
     def _blackboard(self, parts):
         found = BLACKBOARD.fullmatch(parts[0])
@@ -144,22 +161,29 @@ class Layout:
             return None
         user = found["who"].removeprefix(self.prefix) if self.prefix else found["who"].rpartition("_")[2]
         when = tuple(map(int, found["when"].split("-")))
-        return Claim(_clean(user), (("own", user),), f"blackboard {user}", when, False, True)
+        return Claim(
+            _clean(user), (("own", user),), f"blackboard {user}", _inside(parts, found["file"]), when, False, True
+        )
 
     def _github(self, parts):
         user = parts[0].removeprefix(self.prefix)
-        return Claim(_clean(user), (("github", user), ("own", user)), f"repository {parts[0]}")
+        return Claim(_clean(user), (("github", user), ("own", user)), f"repository {parts[0]}", _inside(parts))
 
     def _own(self, parts):
         if len(parts) > 1:
-            return Claim(_clean(parts[0]), _own(parts[0]), f"folder {parts[0]}")
+            return Claim(_clean(parts[0]), _own(parts[0]), f"folder {parts[0]}", _inside(parts))
         stem = PurePosixPath(parts[0]).stem
         for assignment in self.assignments:
             rest = stem.replace(assignment, "").strip(" _-.()")
             if assignment in stem and rest:
                 # A second way of writing the same name is a second claim.
-                return Claim(_clean(rest), _own(rest), f"files {stem.replace(assignment, '*')}")
-        return Claim(_clean(stem), _own(stem), f"file {stem}")
+                return Claim(_clean(rest), _own(rest), f"files {stem.replace(assignment, '*')}", parts[0])
+        return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0])
+
+
+def _inside(parts, first=None):
+    """The path below what the system wrote; `first` is what a student named of the first part."""
+    return "/".join(([first] if first else []) + list(parts[1:]))
 
 
 def _fits(pattern, in_file=True):

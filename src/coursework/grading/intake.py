@@ -1,39 +1,50 @@
 """What was handed in: notebooks found in a folder or an archive, read strictly, and never written to.
 
 Understood are a folder of notebooks, a folder for each student, nbgrader's ``submitted/student/assignment``,
-and the archives (packed or unpacked) that Canvas, Moodle and Brightspace hand out. Everything here was named
-and written by strangers. What is not an honest notebook is refused by its name, with a reason, and the rest
-goes on: no link is followed, nothing is unpacked on disk, nothing is repaired.
+repositories of GitHub Classroom, and the archives (packed or unpacked) that Canvas, Moodle, Brightspace and
+Blackboard hand out; in each of them also an archive that a student packed. Everything here was named and written
+by strangers. What is not an honest notebook is refused by its name, with a reason, and the rest goes on: no link
+is followed, nothing is unpacked on disk, nothing is repaired. :mod:`coursework.grading.identity` says whose it is.
 """
 
 import codecs
 import contextlib
 import hashlib
+import io
 import json
 import os
 import re
 import stat
-import unicodedata
 import zipfile
+from collections import Counter
+from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import NamedTuple
+
+from .identity import Claim, Layout
 
 MOST_BYTES = 20 << 20  # of one notebook
 MOST_CELLS = 1_000
 MOST_CODE = 1 << 20  # characters in the code cells of one notebook
-MOST_FILES = 50_000
+MOST_FILES = 200_000
+MOST_VALUES = 1_000_000  # of the JSON of one notebook: each takes up to a hundred bytes of memory
+MOST_BESIDE, MOST_BYTES_BESIDE = 50, 8 << 20  # files that lie beside one notebook, and their bytes
 DEEPEST = 10  # folders within folders
 MOST_UNPACKED = 4 << 30  # bytes of one archive, all files together
 
 #: Files that systems and browsers leave behind: no student handed them in.
-LITTER = ("__MACOSX", ".DS_Store", "Thumbs.db", "desktop.ini", ".ipynb_checkpoints", ".coursework", "__pycache__")
-CANVAS = re.compile(r"(?P<name>[^_]+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
-MOODLE = re.compile(r"(?P<name>.+)_(?P<user>\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<file>.*))?")
-BRIGHTSPACE = re.compile(
-    r"(?P<user>\d+)-(?P<folder>\d+) - (?P<name>.+?) - (?P<when>\w{3,9} \d{1,2}, \d{4} \d{3,4} [AP]M)"
+LITTER = (
+    ".git",
+    "__MACOSX",
+    ".DS_Store",
+    "Thumbs.db",
+    "desktop.ini",
+    ".ipynb_checkpoints",
+    ".coursework",
+    "__pycache__",
 )
-RESUBMITTED = re.compile(r"(?P<stem>.+?)-(?P<number>\d{1,3})")
-MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+INDEXES = ("index.html", "timestamp.txt")  # what Brightspace and nbgrader put there
+TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
 
@@ -45,45 +56,84 @@ class Refused(NamedTuple):
     why: str
 
 
+class Beside(NamedTuple):
+    """A file that was handed in beside a notebook, for its code to read."""
+
+    name: str
+    digest: str
+    read: Callable
+
+
 class Notebook(NamedTuple):
-    """A notebook that was handed in.
+    """A notebook that was handed in; its cells are read when they are needed, so that a class needs no memory.
 
     Attributes
     ----------
     file : str
         Its path in the submissions, as it was named.
     student : str
-        Who handed it in, as far as the file's name or folder says.
+        Who handed it in: by the roster, or as far as the file's name or folder says.
     identity : dict
         The numbers and names under which a learning management system knows the student.
+    matched : str
+        How it is known whose it is.
     digest : str
         SHA-256 of the bytes that were read.
-    cells : list of dict
-        ``source`` and ``execution_count`` of each code cell.
     named : list of str
         The names in its calls of ``check``, and nbgrader's names of its cells.
     folder : str
         The folder it lies in, which may be named after its assignment.
     order : tuple
         The greater, the newer: what the name declares, then the time of the file.
+    late : bool
+    claim : Claim
+    read : function
+        Gives its bytes.
+    beside : tuple of Beside
     """
 
     file: str
     student: str
     identity: dict
+    matched: str
     digest: str
-    cells: list
     named: list
     folder: str
     order: tuple
     late: bool
+    claim: Claim
+    read: Callable
+    beside: tuple = ()
+
+    @property
+    def cells(self):
+        """``source`` and ``execution_count`` of each code cell.
+
+        Raises
+        ------
+        Unfit
+            It was changed or removed since it was looked at first.
+        """
+        return read_notebook(_unchanged(self))[0]
+
+    @property
+    def files(self):
+        """The bytes of the files beside it, by name."""
+        return {one.name: _unchanged(one) for one in self.beside}
+
+
+def _unchanged(one):
+    data = one.read()
+    if hashlib.sha256(data).hexdigest() != one.digest:
+        raise Unfit("It was changed while the class was graded.")
+    return data
 
 
 class Unfit(ValueError):
     """A file cannot be graded; the message says why."""
 
 
-def take_in(path, assignments=()):
+def take_in(path, assignments=(), roster=None, student=None):
     """Read all that was handed in.
 
     Parameters
@@ -92,78 +142,175 @@ def take_in(path, assignments=()):
         A folder, a zip archive or one notebook.
     assignments : iterable of str
         Names of assignments, to tell a student's name from an assignment's in the name of a file.
+    roster : Roster, optional
+        Who is in the course. What fits nobody in it, or several, is refused: a person must say whose it is.
+    student : str, optional
+        The one student who handed all of it in.
 
     Returns
     -------
     notebooks : list of Notebook
     refused : list of Refused
     """
-    notebooks, refused, files = [], [], []
-    with contextlib.ExitStack() as stack:
-        for name, when, read in _files(os.fspath(path), refused, stack):
-            if len(files) >= MOST_FILES:
-                refused.append(
-                    Refused(name, "", f"There are more than {MOST_FILES} files; the rest was not looked at.")
-                )
-                break
-            files.append((name, when, read))
-        layout = _Layout([name for name, _, _ in files], assignments)
-        for name, when, read in files:
-            who = layout.who(name)
-            if not name.lower().endswith(".ipynb"):
-                if not _is_by_the_way(name):
-                    refused.append(Refused(name, who.student, "This is no notebook: its name does not end in .ipynb."))
+    found, refused, files, repositories = [], [], [], set()
+    for name, when, read in _files(os.fspath(path), refused, repositories):
+        if len(files) >= MOST_FILES:
+            refused.append(Refused(name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."))
+            break
+        files.append((name, when, read))
+    layout = Layout([name for name, _, _ in files], assignments, repositories, roster)
+    others = {}
+    for name, when, read in files:
+        if name.lower().endswith(".zip"):
+            for inner, data in _inside_archive(name, read, refused):
+                _take(found, others, refused, layout, inner, when, data, name)
+        else:
+            _take(found, others, refused, layout, name, when, read, name)
+    notebooks = [_with_student(one, roster, student, refused) for one in found]
+    notebooks = _without_conflicts([one for one in notebooks if one], refused)
+    have = {one.claim.source for one in found}
+    for source, beside in others.items():
+        for claim, name, _ in beside:
+            if PurePosixPath(name).name in INDEXES:
                 continue
-            try:
-                data = read()
-                cells, grade_ids = read_notebook(data)
-            except Unfit as found:
-                refused.append(Refused(name, who.student, str(found)))
-                continue
-            named = [found for cell in cells for found in CHECK.findall(cell["source"])]
-            notebooks.append(
-                Notebook(
-                    name,
-                    who.student,
-                    who.identity,
-                    hashlib.sha256(data).hexdigest(),
-                    cells,
-                    [*named, *grade_ids],
-                    PurePosixPath(name).parent.name,
-                    (who.declared, when),
-                    who.late,
+            if not _is_by_the_way(name) or (claim and source not in have):
+                whose = claim.student if claim else ""
+                refused.append(Refused(name, whose, "This is no notebook: its name does not end in .ipynb."))
+    return [one._replace(beside=_beside(one, others)) for one in notebooks], refused
+
+
+def _take(found, others, refused, layout, name, when, read, outer):
+    """Look at one file; `outer` is its name, or that of the archive it was packed in, which says whose it is."""
+    claim = layout.claim(outer)
+    if name != outer and claim:
+        claim = claim._replace(file=name.removeprefix(f"{outer}/"))
+    if not name.lower().endswith(".ipynb"):
+        others.setdefault(claim.source if claim else None, []).append((claim, name, read))
+        return
+    if claim is None:
+        refused.append(Refused(name, "", "Its name does not say whose it is, as those of the others do."))
+        return
+    try:
+        data = read()
+        cells, grade_ids = read_notebook(data)
+    except Unfit as error:
+        refused.append(Refused(name, claim.student, str(error)))
+        return
+    named = [one for cell in cells for one in CHECK.findall(cell["source"])]
+    found.append(
+        Notebook(
+            name,
+            claim.student,
+            {},
+            "",
+            hashlib.sha256(data).hexdigest(),
+            sorted({*named, *grade_ids}),
+            PurePosixPath(name).parent.name,
+            (claim.declared, when),
+            claim.late,
+            claim,
+            read,
+        )
+    )
+
+
+def _with_student(one, roster, student, refused):
+    """The notebook with its student, or ``None`` if nobody knows whose it is."""
+    known = {kind: value for kind, value in one.claim.keys if kind in ("canvas", "moodle", "brightspace", "name")}
+    if "letters" in dict(one.claim.keys):
+        known["name"] = dict(one.claim.keys)["letters"]
+    if student is not None:
+        return one._replace(student=student, matched="as you said", identity=roster.identity(student) if roster else {})
+    if roster is None:
+        return one._replace(matched="as its name or folder says", identity=known if one.claim.given_by_system else {})
+    found, how = roster.find(one.claim.keys, one.claim.source)
+    if found is None:
+        refused.append(Refused(one.file, one.claim.student, f"{how} Whose is it? {NOT_MATCHED}"))
+        return None
+    return one._replace(student=found, matched=how, identity={**known, **roster.identity(found)})
+
+
+NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of the roster."
+
+
+def _without_conflicts(notebooks, refused):
+    """Leave out what two submissions claim to be: one of them may be a classmate's."""
+    claims = {}
+    for one in notebooks:
+        if one.matched != "as you said":
+            claims.setdefault(one.student, set()).add(one.claim.source)
+    unsure = {student: sources for student, sources in claims.items() if len(sources) > 1}
+    for one in notebooks:
+        if one.student in unsure:
+            sources = ", ".join(sorted(unsure[one.student]))
+            refused.append(
+                Refused(
+                    one.file,
+                    one.student,
+                    f"Two submissions claim to be this student's: {sources}. Neither was graded: whose are they?",
                 )
             )
-    return notebooks, refused
+    return [one for one in notebooks if one.student not in unsure]
+
+
+def _beside(one, others):
+    """The files that lie where the notebook lies, or below, by the names that its code would use."""
+    folder, found, total = PurePosixPath(one.claim.file).parent, [], 0
+    for claim, _, read in others.get(one.claim.source, ()):
+        name = PurePosixPath(claim.file)
+        if not name.is_relative_to(folder) or name == folder:
+            continue
+        try:
+            data = read()
+        except Unfit:
+            continue
+        total += len(data)
+        if len(found) >= MOST_BESIDE or total > MOST_BYTES_BESIDE:
+            break
+        found.append(Beside(str(name.relative_to(folder)), hashlib.sha256(data).hexdigest(), read))
+    return tuple(sorted(found))
 
 
 # --- finding the files --------------------------------------------------------------------------
 
 
-def _files(path, refused, stack):
-    """Give the name of each file, its time, and a function that reads it while the stack is open: in a fixed order."""
+class _Folder:
+    """A folder that is held open for as long as somebody may read from it."""
+
+    def __init__(self, path):
+        self.handle = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+
+    def __del__(self):
+        os.close(self.handle)
+
+
+def _files(path, refused, repositories):
+    """Give the name of each file, its time, and a function that reads it: in a fixed order.
+
+    The names of folders that are repositories of Git are added to ``repositories``.
+    """
     if os.path.isdir(path):
-        yield from _files_of_folder(path, refused, stack)
+        yield from _files_of_folder(path, refused, repositories)
     elif zipfile.is_zipfile(path):
-        yield from _files_of_archive(path, refused, stack)
+        yield from _files_of_archive(path, refused, repositories)
     elif path.lower().endswith(".zip"):
         raise Unfit(f"{path} is no zip archive, or a damaged one.")
     elif os.path.exists(path):
         folder, name = os.path.split(os.path.abspath(path))
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-        stack.callback(os.close, handle)
-        yield name, os.stat(path).st_mtime_ns, lambda: _read_file(name, handle)
+        held = _Folder(folder)
+        yield name, os.stat(path).st_mtime_ns, lambda: _read_file(name, held.handle)
     else:
         raise Unfit(f"There is nothing at {path}.")
 
 
-def _files_of_folder(root, refused, stack):
+def _files_of_folder(root, refused, repositories):
     # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
-    top = os.open(root, os.O_RDONLY | os.O_DIRECTORY)
-    stack.callback(os.close, top)
-    for folder, folders, files, handle in os.fwalk(".", dir_fd=top, follow_symlinks=False):
+    top = _Folder(root)
+    for folder, folders, files, handle in os.fwalk(".", dir_fd=top.handle, follow_symlinks=False):
         folders.sort()
         inside = os.path.normpath(folder)
+        if ".git" in folders:
+            repositories.add(_text(inside))
         for name in sorted(files + folders):
             full = name if inside == "." else f"{inside}/{name}"
             if _is_litter(full):
@@ -176,7 +323,7 @@ def _files_of_folder(root, refused, stack):
             if stat.S_ISLNK(about.st_mode):
                 refused.append(Refused(_text(full), "", "This is a link to another place. It was not followed."))
             elif stat.S_ISREG(about.st_mode):
-                yield _text(full), about.st_mtime_ns, lambda full=full: _read_below(top, full)
+                yield _text(full), about.st_mtime_ns, lambda full=full: _read_below(top.handle, full)
             elif not stat.S_ISDIR(about.st_mode):
                 refused.append(Refused(_text(full), "", "This is no file but a device or a channel."))
         folders[:] = [name for name in folders if not _is_litter(name)]
@@ -226,8 +373,8 @@ def _no_more_than(data):
     return data
 
 
-def _files_of_archive(path, refused, stack):
-    archive = stack.enter_context(zipfile.ZipFile(path))
+def _files_of_archive(path, refused, repositories):
+    archive = zipfile.ZipFile(path)
     entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
     times = {}
     for entry in entries:
@@ -236,6 +383,8 @@ def _files_of_archive(path, refused, stack):
     for entry in entries:
         name = entry.filename
         shown = name.encode("utf8", "backslashreplace").decode("utf8")
+        if "/.git/" in name:
+            repositories.add(shown.partition("/.git/")[0])
         if entry.is_dir() or _is_litter(name):
             continue
         why = _why_not_unpacked(entry, name)
@@ -276,89 +425,58 @@ def _read_entry(archive, entry):
         raise
 
 
-# --- who handed it in ---------------------------------------------------------------------------
+def _inside_archive(name, read, refused):
+    """The files of an archive that a student packed: their names, and functions that read them."""
+    try:
+        data = read()
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
+    except (Unfit, zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
+        refused.append(Refused(name, "", f"This archive cannot be read: {str(error)[:100]}"))
+        return
+    if len(entries) > MOST_BESIDE or sum(entry.file_size for entry in entries) > MOST_BYTES:
+        refused.append(Refused(name, "", "This archive holds too much to be somebody's work."))
+        return
+    names = Counter(entry.filename for entry in entries)
+    for entry in entries:
+        inner = f"{name}/" + entry.filename.encode("utf8", "backslashreplace").decode("utf8")
+        if entry.is_dir() or _is_litter(entry.filename):
+            continue
+        why = _why_not_unpacked(entry, entry.filename)
+        if names[entry.filename] > 1:
+            why = "The archive holds this name more than once."
+        if why:
+            refused.append(Refused(inner, "", why))
+        else:
+            yield inner, lambda entry=entry: _read_packed(read, entry)
 
 
-class _Who(NamedTuple):
-    student: str
-    identity: dict
-    declared: tuple
-    late: bool
-
-
-class _Layout:
-    """Tells from the names of all files whose each is."""
-
-    def __init__(self, names, assignments):
-        self.assignments = sorted(assignments, key=len, reverse=True)
-        notebooks = [PurePosixPath(name) for name in names if name.lower().endswith(".ipynb")]
-        # Canvas marks files and not folders; a name with two numbers in it may be a student's own.
-        self.canvas = 2 * sum(bool(CANVAS.fullmatch(path.name)) for path in notebooks) > len(notebooks)
-
-    def who(self, name):
-        path = PurePosixPath(name)
-        for part in path.parts[:-1]:
-            found = MOODLE.fullmatch(part)
-            if found:
-                return self._moodle(found)
-            found = BRIGHTSPACE.fullmatch(part)
-            if found:
-                identity = {"brightspace": found["user"], "name": _clean(found["name"])}
-                return _Who(f"{identity['name']} {found['user']}", identity, _when(found["when"]), False)
-        found = MOODLE.fullmatch(path.name)
-        if found:
-            return self._moodle(found)
-        found = CANVAS.fullmatch(path.name) if self.canvas else None
-        if found:
-            again = RESUBMITTED.fullmatch(PurePosixPath(found["file"]).stem)
-            number = int(again["number"]) if again else 0
-            identity = {"canvas": found["user"], "name": _clean(found["name"])}
-            return _Who(f"{identity['name']}_{found['user']}", identity, (number,), bool(found["late"]))
-        parts = list(path.parts)
-        if "submitted" in parts[:-1]:
-            parts = parts[parts.index("submitted") + 1 :]
-        student = _clean(parts[0]) if len(parts) > 1 else self._without_assignment(path.stem)
-        return _Who(student, {}, (), False)
-
-    @staticmethod
-    def _moodle(found):
-        identity = {"moodle": found["user"], "name": _clean(found["name"])}
-        return _Who(f"{identity['name']} {found['user']}", identity, (), False)
-
-    def _without_assignment(self, stem):
-        for assignment in self.assignments:
-            if assignment in stem and stem != assignment:
-                rest = stem.replace(assignment, "").strip(" _-.()")
-                if rest:
-                    return _clean(rest)
-        return _clean(stem)
+def _read_packed(read, entry):
+    with zipfile.ZipFile(io.BytesIO(read())) as archive:
+        return _read_entry(archive, entry)
 
 
 def _is_by_the_way(name):
     """Whether a file is none that a student handed in for marks: an index, a picture beside a notebook."""
     path = PurePosixPath(name)
-    return path.name in ("index.html", "timestamp.txt") or path.suffix.lower() in (
-        ".csv",
-        ".png",
-        ".jpg",
-        ".jpeg",
-        ".svg",
-        ".md",
-        ".json",
+    return (
+        path.name in ("index.html", "timestamp.txt")
+        or path.suffix.lower()
+        in (
+            ".csv",
+            ".png",
+            ".jpg",
+            ".jpeg",
+            ".svg",
+            ".md",
+            ".json",
+            ".py",
+            ".yml",
+            ".yaml",
+            ".toml",
+        )
+        or path.name in (".gitignore", ".gitattributes", "LICENSE", "requirements.txt")
     )
-
-
-def _clean(name):
-    """A name in one spelling, of a length that is one."""
-    return " ".join(unicodedata.normalize("NFC", name).split())[:120] or "without a name"
-
-
-def _when(text):
-    """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are the same in every language setting."""
-    month, day, year, clock, half = text.replace(",", "").split()
-    number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0
-    hour = int(clock[:-2]) % 12 + (12 if half == "PM" else 0)
-    return int(year), number, int(day), hour, int(clock[-2:])
 
 
 # --- reading a notebook -------------------------------------------------------------------------
@@ -433,6 +551,11 @@ def _json(data):
         raise Unfit("The file is empty.")
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise Unfit("It is written in UTF-16; notebooks are written in UTF-8.")
+    if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
+        # Only now: signs in texts, such as a long output, are no values.
+        without_texts = TEXT.sub(b"", data)
+        if sum(map(without_texts.count, (b",", b"[", b"{"))) > MOST_VALUES:
+            raise Unfit(f"It is made of more than {MOST_VALUES} parts; no notebook is.")
     try:
         return json.loads(data.decode("utf-8-sig"), object_pairs_hook=_no_key_twice)
     except Unfit:

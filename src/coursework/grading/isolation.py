@@ -307,6 +307,9 @@ def drop_privileges(user):
     header = struct.pack("=Ii", 0x20080522, 0)
     _call("capset", _library.capset(header, b"\0" * 24))
     forbid_new_privileges()
+    # No other process of this user looks into this one, and what handles crashes here, perhaps as root, is not
+    # handed the memory of one. The limit of core files alone does not stop a handler.
+    _call("dumpable", _library.prctl(4, 0, 0, 0, 0))
 
 
 def forbid_new_privileges():
@@ -431,6 +434,11 @@ def _privilege(target):
     _call("prctl", _library.prctl(24, 0, 0, 0, 0))
 
 
+def _dump(target):
+    if _library.prctl(3, 0, 0, 0, 0) == 0:
+        raise PermissionError("its memory is not dumped")
+
+
 def _memory(target):
     mmap.mmap(-1, target["limits"]["memory_bytes"] + (1 << 20)).close()
 
@@ -482,6 +490,7 @@ ATTEMPTS = {
     "start a process": (_process, {SECCOMP}),
     "start a program": (_program, {SECCOMP}),
     "use a privilege": (_privilege, {PRIVILEGES}),
+    "have its memory dumped": (_dump, {PRIVILEGES}),
     "take more memory than allowed": (_memory, {LIMITS}),
     "write a longer file than allowed": (_file, {LIMITS}),
     "open more files than allowed": (_files, {LIMITS}),

@@ -15,10 +15,10 @@ from ..authoring.source import checked_names, read_source
 from ..checking.evaluate import MP
 from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
 from ..checking.plain import NotPlain, read_plain
-from ..checking.plugins import folders_of, packages
 from ..checking.questions import compare
 from ..checking.reply import Reply
 from ..checking.variants import variant_of
+from . import secret as in_secret
 from .store import write
 from .versions import software
 
@@ -41,13 +41,13 @@ def names_asked(path):
     return checked_names(SimpleNamespace(cells=cells))
 
 
-def questions_of(path, edition=""):
+def questions_of(path, secret, edition=""):
     """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
     source = read_source(path, edition=edition)
-    found = {name: about(question) for name, question in source.questions.items()}
+    found = {name: about(question, secret) for name, question in source.questions.items()}
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
         for name, question in read_source(path, number, edition).questions.items():
-            found[name].setdefault("others", []).append(about(question))
+            found[name].setdefault("others", []).append(about(question, secret))
     return found
 
 
@@ -72,7 +72,7 @@ def of_student(questions, identity):
     return own
 
 
-def about(question):
+def about(question, secret):
     """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it."""
     found = json.loads(
         json.dumps(
@@ -86,6 +86,9 @@ def about(question):
                     text: {"outcome": entry.outcome, "notes": entry.notes} for text, entry in question.entries.items()
                 },
                 "right": _canonical_of(question),
+                "plain": question.plain if question.public["kind"] != "function" else None,
+                "secret": in_secret.secret_of(question, secret),
+                "bits": round(question.guessing_bits()),
             }
         )
     )
@@ -99,26 +102,29 @@ def _canonical_of(question):
     return [MP.nstr(number, 30) for number in canonical(question.public, reading)]
 
 
-def load_questions(paths, kept, edition=""):
+def load_questions(paths, kept, secret, edition=""):
     """The questions of several notebooks with solutions, by name.
 
     What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
     notebook and from the versions of the software.
     """
-    ours, found = json.dumps(software()).encode(), {}
+    ours, found = hashlib.sha256(json.dumps(software()).encode() + secret).digest(), {}
     for path in map(Path, paths):
         place = (
             Path(kept)
             / f"{path.stem}-{hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]}.json"
         )
         if not place.exists():
-            write(place, json.dumps(questions_of(path, edition), ensure_ascii=False))
+            write(place, json.dumps(questions_of(path, secret, edition), ensure_ascii=False))
         found.update(json.loads(place.read_text("utf8")))
     return found
 
 
 def asked_of_sandbox(questions):
-    """What the sandbox is told of each question: the answer's name and the calls of a function, no more."""
+    """What the sandbox is told of each question: the answer's name and the calls of a function, no more.
+
+    Of the secret calls a notebook learns when it has handed in everything else.
+    """
     variables = [question["variable"] for question in questions.values()]
     return {
         name: {
@@ -128,6 +134,9 @@ def asked_of_sandbox(questions):
             "calls": None
             if question["public"]["kind"] != "function"
             else {"arguments": question["public"]["calls"], "as": question["public"]["takes"]},
+            "secret calls": None
+            if question["public"]["kind"] != "function" or not question["secret"]
+            else {"arguments": question["secret"]["calls"], "as": question["public"]["takes"]},
         }
         # The numbers of the student's own variant, which its notebook may use by name.
         | ({"given": question["public"]["given"]} if question["public"].get("given") else {})
@@ -138,7 +147,7 @@ def asked_of_sandbox(questions):
 # --- one answer ---------------------------------------------------------------------------------
 
 
-def mark(name, question, answer, finished=True):
+def mark(name, question, answer, finished=True, limited=False):
     """Judge what the sandbox says of an answer.
 
     Parameters
@@ -150,14 +159,17 @@ def mark(name, question, answer, finished=True):
         As :mod:`coursework.grading.sandbox` gives it.
     finished : bool
         Whether the notebook came to its end; if not, an answer that is missing may be due to that.
+    limited : bool
+        Whether a cell was stopped by a limit: an answer that is missing may be due to that, too.
 
     Returns
     -------
     dict
         ``outcome``, ``note`` with its ``details``, ``messages``, ``points``, ``worth``, the ``version`` of the
-        question, and ``group``, which identical answers have in common.
+        question, ``group``, which identical answers have in common, and ``bits``, about how many a script had to
+        guess.
     """
-    reply, text = judge(name, question, answer, finished)
+    reply, text = judge(name, question, answer, finished, limited)
     if reply.outcome == "wrong" and any(
         judge(name, other, answer)[0].outcome == "correct" for other in question.get("siblings", [])
     ):
@@ -173,16 +185,21 @@ def mark(name, question, answer, finished=True):
         "worth": question["worth"],
         "group": hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
         "version": question["version"],
+        "bits": question["bits"],
     }
 
 
-def judge(name, question, answer, finished=True):
+def judge(name, question, answer, finished=True, limited=False):
     """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
     state = answer["outcome"]
     if state == "missing":
         if not finished:
             return _undecided(
                 name, "not reached", "The notebook did not come to its end, and this answer was not reached."
+            ), ""
+        if limited:
+            return _undecided(
+                name, "lost to a limit", "A cell was stopped by a limit of time or memory, and this answer is missing."
             ), ""
         variable = f" under the name `{question['variable']}`" if question["variable"] else ""
         return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
@@ -210,11 +227,51 @@ def judge(name, question, answer, finished=True):
                 "The value agrees with the right one to about three digits: it "
                 "may have been rounded where an exact answer is asked for.",
             )
+        if reply.outcome == "not attempted":
+            reply.messages = ["Nothing was answered."]  # there is no "yet" any more
+        if reply.outcome == "correct" or (reply.note and question["credit"].get(reply.note)):
+            reply = _in_secret(name, question, answer, plain, reply, found[-1])
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     except Exception as error:  # a fault of ours costs no student a mark
         reply = _undecided(name, "not worked out", f"This answer could not be worked out ({type(error).__name__}).")
     return reply, "".join(found)
+
+
+def _in_secret(name, question, answer, plain, reply, text):
+    """The reply, if the answer is what it seems to be also where its author could not look."""
+    place, public = question["secret"], question["public"]
+    if place is None:
+        return reply
+    right = place["right"] if reply.outcome == "correct" else place["partly"].get(text)
+    if right is None:
+        return reply  # a mistaken function: what it would return elsewhere is not known
+    elsewhere = {**public, **{name: place[name] for name in ("salt", "calls") if name in place}}
+    if "calls" in place:
+        said = answer.get("secret", {})
+        if "unreadable" in said and said["unreadable"] not in CUT_SHORT:
+            return _elsewhere_wrong(name)
+        if "plain" not in said or said.get("calls") != in_secret.digest(place):
+            return _undecided(
+                name, "not called", "The function could not be called with other arguments than those of the check."
+            )
+        plain = read_plain(said["plain"])
+    try:
+        numbers = in_secret.numbers_of(elsewhere, plain)
+    except (Blank, Fault):
+        return _elsewhere_wrong(name)
+    except Undecidable as error:
+        return _undecided(name, "undecidable", str(error))
+    return reply if in_secret.agree(public, numbers, right) else _elsewhere_wrong(name)
+
+
+def _elsewhere_wrong(name):
+    return Reply(
+        name,
+        "wrong",
+        "right only where it is checked",
+        ["This agrees with the right answer where the check looks, and not everywhere."],
+    )
 
 
 def _undecided(name, note, message):
@@ -230,5 +287,5 @@ def _nearly_right(question, plain):
         return False
     right = [MP.mpf(number) for number in question["right"]]
     return len(numbers) == len(right) and all(
-        abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right)
+        abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right, strict=True)
     )

@@ -11,11 +11,15 @@ A line is one of
                                           and "line", and "threads": true if it left any running
     {"answer": question, "from": "check" or "variable", "cell": i or null, "plain": data}
     {"answer": question, "from": ..., "cell": ..., "unreadable": text}
+    {"tried": text, "cell": i or null}    what a notebook has no business with: a hint for a person
     {"done": true}
+    {"secret": question, "plain": data} or {"secret": question, "unreadable": text}
 
-and is written the moment it is known, so that what comes later cannot lose it.
+and is written the moment it is known, so that what comes later cannot lose it. Only after "done" come the
+arguments of the secret calls: what knows them then can hand in no answer any more in which they would be shown.
 """
 
+import base64
 import json
 import os
 import random
@@ -23,6 +27,7 @@ import re
 import signal
 import sys
 import threading
+import time
 import types
 import warnings
 
@@ -30,8 +35,37 @@ from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.variants import Given
 
 LONGEST_ERROR = 500
+MOST_TRIED = 10  # hints of one notebook
 # Magics whose body is the student's code; the others are about the notebook and do nothing here.
 MAGICS_WITH_CODE = ("time", "capture", "prun")
+
+
+TICK = 0.5  # seconds by the clock between two looks at whether a step waits
+#: Less of a tick than this share is spent by what waits, and more by what is kept waiting by a busy machine.
+WAITING = 0.02
+#: Events of the interpreter that honest notebooks do not bring about, and what to say of them.
+SUSPICIOUS = {
+    "socket.connect": "connected to a socket",
+    "socket.bind": "opened a server",
+    "os.fork": "started a process",
+    "os.forkpty": "started a process",
+    "os.posix_spawn": "started a program",
+    "os.exec": "started a program",
+    "os.system": "started a program",
+    "subprocess.Popen": "started a program",
+    "os.kill": "sent a signal",
+    "os.killpg": "sent a signal",
+    "ctypes.string_at": "read memory by address",
+    "ctypes.dlopen": "loaded a library of the system",
+    "ctypes.dlsym": "called the system directly",
+    "sys._getframe": "looked into the frames that call it",
+    "sys._current_frames": "looked into the frames that call it",
+    "gc.get_objects": "searched the memory",
+    "gc.get_referrers": "searched the memory",
+    "sys.settrace": "traced the grader",
+    "sys.setprofile": "traced the grader",
+    "code.__new__": "made code by hand",
+}
 
 
 class OutOfTime(BaseException):
@@ -80,6 +114,16 @@ def nothing(*arguments, **options):
     """Stands for what only shows something."""
 
 
+def arguments_of(calls):
+    """The arguments of each call to a function, made anew: it may change them."""
+    arguments = json.loads(json.dumps(calls["arguments"]))
+    if calls["as"] == "arrays":
+        import numpy
+
+        arguments = [[numpy.array(a) if isinstance(a, list) else a for a in call] for call in arguments]
+    return arguments
+
+
 def warm_up():
     """Load what is imported on first use, before the children are forked."""
     import IPython.display  # noqa: F401
@@ -96,19 +140,26 @@ def transformer():
     return TransformerManager()
 
 
-def run(job, records, limits, folder):
-    """Run the job that is read from the handle `job`; write records to the handle `records`."""
+def run(job, records, secret, limits, folder):
+    """Run the job that is read from the handle `job`; write records to the handle `records`.
+
+    The secret calls are read from the handle `secret` at the end.
+    """
     with open(job, "rb") as file:
         job = json.load(file)
     random.seed(job["seed"])
     sys.modules["numpy"].random.seed(job["seed"])
-    _Notebook(job, records, limits, folder).run()
+    _Notebook(job, records, secret, limits, folder).run()
 
 
 class _Notebook:
-    def __init__(self, job, records, limits, folder):
+    def __init__(self, job, records, secret, limits, folder):
         self.job = job
         self.records = records
+        self.secret = secret
+        self.functions = {}
+        self.tried = set()
+        self.noticing = False
         self.limits = limits
         self.folder = folder
         self.encode = json.JSONEncoder(check_circular=False, allow_nan=False).encode
@@ -116,6 +167,7 @@ class _Notebook:
         self.writing = False
         self.cell = None
         self.answered = set()
+        self.wall_left, self.looked = 0, (0, 0)
         self.skipped = {tuple(step) for step in job["skip"]}
         self.recursion_limit = sys.getrecursionlimit()
         self.module = types.ModuleType("__main__")
@@ -133,6 +185,31 @@ class _Notebook:
             if question not in self.answered and variable in self.names:
                 self.record(question, self.names[variable], "variable")
         self.emit({"done": True})
+        self.call_secretly()
+
+    def call_secretly(self):
+        """Call the functions that are answers with arguments that nobody could prepare them for."""
+        with open(self.secret, "rb") as file:
+            calls = json.loads(file.read() or b"{}")
+        for question, about in calls.items():
+            if question not in self.functions or ("answer", question) in self.skipped:
+                continue
+            function, names = self.functions[question]
+            # As it was when it was checked, though a later cell may have used its names for something else.
+            self.names.clear()
+            self.names.update(names)
+            found = {"secret": question}
+
+            def read(function=function, about=about, found=found):
+                try:
+                    found["plain"] = to_plain(function, arguments_of(about))
+                except NotPlain as error:
+                    found["unreadable"] = str(error)[:LONGEST_ERROR]
+
+            end = self.step(["answer", question], read, self.limits["answer"])
+            if end["outcome"] != "done":
+                found = {"secret": question, "unreadable": end["error"]}
+            self.emit(found)
 
     def prepare(self):
         sys.modules["__main__"] = self.module
@@ -145,8 +222,13 @@ class _Notebook:
         package.hint = package.progress = package.me = nothing
         package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
         sys.modules["coursework"] = package
+        for name, data in self.job["files"].items():
+            os.makedirs(os.path.dirname(os.path.join(self.folder, name)), exist_ok=True)
+            with open(os.path.join(self.folder, name), "wb") as file:
+                file.write(base64.b64decode(data))
         sys.argv = ["notebook"]
         sys.path.insert(0, self.folder)
+        sys.addaudithook(self.notice)
         warnings.resetwarnings()
         warnings.simplefilter("ignore")
 
@@ -178,24 +260,60 @@ class _Notebook:
             self.emit(found | {"unreadable": end["error"]})
         elif "plain" in found and found["plain"]["value"] != ["blank"]:
             self.answered.add(question)
+            if found["plain"]["value"][0] == "function":
+                self.functions[question] = answer, dict(self.names)
 
     def calls(self, question):
         calls = self.job["calls"].get(question)
-        if calls is None:
-            return None
-        arguments = json.loads(json.dumps(calls["arguments"]))  # the function may change what it is given
-        if calls["as"] == "arrays":
-            import numpy
+        return None if calls is None else arguments_of(calls)
 
-            arguments = [[numpy.array(a) if isinstance(a, list) else a for a in call] for call in arguments]
-        return arguments
+    def notice(self, event, arguments):
+        """Hear of what the interpreter is asked to do, and note what no exercise needs."""
+        if self.noticing or (event != "open" and event not in SUSPICIOUS):
+            return
+        self.noticing = True  # what is done here is no event of the notebook's
+        try:
+            self.note_event(event, arguments)
+        finally:
+            self.noticing = False
+
+    def note_event(self, event, arguments):
+        if event == "open":
+            path, mode, _ = arguments
+            if not isinstance(path, str) or not self.is_elsewhere(path, mode):
+                return
+            said = f"opened {path[:100]}"
+        elif self.is_from_a_cell():
+            said = SUSPICIOUS[event]
+        else:
+            return
+        if said not in self.tried and len(self.tried) < MOST_TRIED:
+            self.tried.add(said)
+            self.emit({"tried": said, "cell": self.cell})
+
+    def is_elsewhere(self, path, mode):
+        """Whether a file is none of the notebook's own and none of Python's."""
+        if not os.path.isabs(path):
+            return ".." in path.split("/") and self.is_from_a_cell()
+        if path.startswith((self.folder, "/dev/", sys.prefix, sys.base_prefix, "/usr/share/zoneinfo")):
+            return False
+        return self.is_from_a_cell()
+
+    def is_from_a_cell(self):
+        """Whether the code of a cell asks for it itself, and no library on its behalf."""
+        frame, depth = sys._getframe(2), 0
+        while frame is not None and depth < 6:
+            if frame.f_code.co_filename.startswith("<cell "):
+                return True
+            frame, depth = frame.f_back, depth + 1
+        return False
 
     # -- one step: a cell, or the reading of an answer
 
     def step(self, step, action, seconds):
         """Do one thing within its time. Steps may be nested: a check within a cell."""
         self.emit({"begin": step})
-        outer = signal.setitimer(signal.ITIMER_PROF, 0), signal.setitimer(signal.ITIMER_REAL, 0)
+        outer = self.time_left()
         end = {"end": step, "outcome": "done"}
         try:
             try:
@@ -213,8 +331,8 @@ class _Notebook:
         if step[0] == "cell" and threading.active_count() > 1:
             end["threads"] = True
         self.emit(end)
-        if outer[0][0] or outer[1][0]:
-            self.start_timers(outer[0][0], outer[1][0])
+        if outer[0]:
+            self.start_timers(*outer)
         return end
 
     def start_timers(self, processor, wall):
@@ -222,8 +340,14 @@ class _Notebook:
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, self.time_is_up)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGPROF, signal.SIGALRM))
+        self.wall_left, self.looked = wall, (time.monotonic(), time.process_time())
         signal.setitimer(signal.ITIMER_PROF, processor)
-        signal.setitimer(signal.ITIMER_REAL, wall)
+        signal.setitimer(signal.ITIMER_REAL, min(wall, TICK), TICK)
+
+    def time_left(self):
+        """What is left of the processor's time and of the clock's, with both stopped."""
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        return signal.setitimer(signal.ITIMER_PROF, 0)[0], self.wall_left
 
     @staticmethod
     def stop_timers():
@@ -232,8 +356,17 @@ class _Notebook:
 
     def time_is_up(self, number, frame):
         if self.writing:  # half a record would be worse than being late
-            signal.setitimer(signal.ITIMER_REAL, 0.02)
+            signal.setitimer(signal.ITIMER_REAL, 0.02, TICK)
+            self.wall_left = self.wall_left if number == signal.SIGALRM else 0
             return
+        if number == signal.SIGALRM:
+            now = time.monotonic(), time.process_time()
+            elapsed, used = (moment - before for moment, before in zip(now, self.looked, strict=True))
+            self.looked = now
+            # What computes on a busy machine is charged for what it got, and not for what others got.
+            self.wall_left -= elapsed if used < WAITING * elapsed else used
+            if self.wall_left > 0:
+                return
         raise OutOfTime
 
     def emit(self, record):

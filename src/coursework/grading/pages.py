@@ -122,12 +122,12 @@ def message(said):
 
 
 @functools.lru_cache(2_000)
-def formula(source):
+def formula(source, longest=300):
     """TeX as MathML, or as it is where it cannot be turned into that."""
     from latex2mathml.converter import convert
 
     try:
-        if len(source) > 300:
+        if len(source) > longest:
             raise ValueError
         found = convert(source)
         # A student's words may have come into a message: only what draws mathematics is let through.

@@ -59,6 +59,12 @@ class Records:
             return record["done"] is True
         if keys == {"begin"}:
             return self.is_step(record["begin"])
+        if keys == {"tried", "cell"}:
+            return is_text(record["tried"], LONGEST_NAME) and self.is_cell(record["cell"])
+        if keys in ({"secret", "plain"}, {"secret", "unreadable"}):
+            if "plain" in keys:
+                read_plain(record["plain"])
+            return is_text(record["secret"], LONGEST_NAME) and is_text(record.get("unreadable", ""), LONGEST_TEXT)
         if "end" in keys:
             return (
                 keys <= {"end", "outcome", "error", "line", "threads"}
@@ -74,10 +80,13 @@ class Records:
             return (
                 is_text(record["answer"], LONGEST_NAME)
                 and record["from"] in ("check", "variable")
-                and (record["cell"] is None or is_count(record["cell"], 0, self.number_of_cells))
+                and self.is_cell(record["cell"])
                 and is_text(record.get("unreadable", ""), LONGEST_TEXT)
             )
         return False
+
+    def is_cell(self, cell):
+        return cell is None or is_count(cell, 0, self.number_of_cells)
 
     def is_step(self, step):
         if not isinstance(step, list) or len(step) != 2:

@@ -11,6 +11,7 @@ from statistics import mean, median
 from ..checking.plugins import plugins
 from ..checking.reply import OUTCOMES
 from . import pages
+from .ledger import stable_id
 from .pages import text
 from .store import file_name, write
 from .tables import number, table
@@ -43,7 +44,9 @@ DEEDS = {
     "not unit length": "gave something that has not unit length",
     "degrees": "gave angles in degrees",
     "unreadable": "gave something that cannot be read as an answer",
+    "right only where it is checked": "gave something that is right only where the check looks",
 }
+GUESSABLE = 20  # bits: a script tries a million answers in some hours
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
     "works only out of order": "It works only if its cells are run in another order than they stand in. The answers "
@@ -69,6 +72,7 @@ def write_all(store):
         rows.append(shorter)
         undecided += [
             (
+                stable_id(record["student"], record["assignment"], name),
                 record["student"],
                 name,
                 mark["worth"],
@@ -84,10 +88,10 @@ def write_all(store):
     write(
         store.folder / "undecided.csv",
         table(
-            ("student", "question", "credit", "comment", "worth", "why", "message", "answer"),
+            ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer"),
             [
-                (student, name, "", "", worth, why, said, answer)
-                for student, name, worth, why, said, answer in undecided
+                (one, student, name, "", "", worth, why, said, answer)
+                for one, student, name, worth, why, said, answer in undecided
             ],
         ),
     )
@@ -163,7 +167,9 @@ def feedback(record):
 def _question(order, name, mark, plain):
     sign, word = DECIDED if mark["outcome"] == "decided" else OUTCOMES[mark["outcome"]][:2]
     paragraphs = "".join(f"<p>{pages.message(said)}</p>" for said in mark["messages"])
-    read = pages.answer_as_text(plain) if plain and mark["outcome"] != "not attempted" else ""
+    # What a function returned is not repeated: a list of it would do for a friend's answer.
+    is_shown = plain and mark["outcome"] != "not attempted" and plain["value"][0] != "function"
+    read = pages.answer_as_text(plain) if is_shown else ""
     answer = f'<p class="soft">Your answer, as it was read:</p><pre>{text(read, 2_000)}</pre>' if read else ""
     return (
         f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(_title(mark))}</h3>'
@@ -434,6 +440,8 @@ def _odd(records):
         for notebook in record["notebooks"]:
             for note in notebook["notes"]:
                 kinds.setdefault(note, []).append(record["student"])
+            for said in notebook.get("tried", ()):
+                kinds.setdefault(f"its code {said}", []).append(record["student"])
             for outcome in {cell["outcome"] for cell in notebook["cells"]} - {"done", "not run", "error"}:
                 kinds.setdefault(f"stopped by a limit or by itself: {outcome}", []).append(record["student"])
         if record["superseded"]:

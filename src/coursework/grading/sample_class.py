@@ -196,11 +196,11 @@ def _slip(question):
     return None
 
 
-def _expected(question, answer):
+def _expected(question, known, answer):
     """What is to come of an answer: its outcome and note."""
-    from .marking import about, judge
+    from .marking import judge
 
-    reply, _ = judge(question.name, about(question), {"outcome": "recorded", "plain": question.to_plain(answer)})
+    reply, _ = judge(question.name, known, {"outcome": "recorded", "plain": question.to_plain(answer)})
     return reply.outcome, reply.note
 
 
@@ -219,11 +219,13 @@ class _Answers:
             self.wrong[name] = self._with_code(exercise, question, [*mistaken[:6], _slip(question)])
 
     def _with_code(self, exercise, question, answers):
-        found = []
+        from .marking import about
+
+        found, known = [], about(question, b"any secret: the class is the same with all")
         for answer in answers:
             code = code_of(answer, exercise.names) if not callable(answer) else None
             if code is not None and len(code) < 1500:
-                found.append((f"{question.variable} = {code}", _expected(question, answer)))
+                found.append((f"{question.variable} = {code}", _expected(question, known, answer)))
         return found
 
 

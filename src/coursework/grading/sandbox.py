@@ -17,6 +17,7 @@ notebook is run again without that cell, a limited number of times.
 
 import contextlib
 import dataclasses
+import fcntl
 import json
 import os
 import queue
@@ -57,7 +58,8 @@ class WorkerDied(RuntimeError):
 class Limits:
     """What one notebook may use. Seconds are of processor time unless they say wall.
 
-    Wall times are for code that waits; they are longer, so that a busy machine costs nobody an answer.
+    Wall times are for code that waits. The time in which it could have run and the machine was busy with others
+    does not count, so that load costs nobody an answer.
     """
 
     cell_seconds: float = 20
@@ -356,6 +358,7 @@ class _Run:
         self.number_of_runs = 0
         self.damaged = 0
         self.unknown = {}
+        self.tried = {}
         self.notes = []
         if not isinstance(job["id"], str) or not all(isinstance(cell["source"], str) for cell in job["cells"]):
             raise TypeError("a job has an id and cells with sources, all texts")
@@ -376,6 +379,7 @@ class _Run:
             "answers": {question: answers.get(question, {"outcome": "missing"}) for question in self.questions},
             "unknown questions": list(self.unknown)[:MOST_UNKNOWN],
             "notes": self.notes,
+            "tried": list(self.tried),
             "runs": self.number_of_runs,
             "seed": self.job.get("seed", 0),
             "isolation": self.sandbox.isolation_in_force(),
@@ -409,6 +413,7 @@ class _Run:
             self.damaged += once.records.damaged
             cells |= {index: cell for index, cell in once.cells.items() if ["cell", index] not in skip}
             self.unknown |= once.unknown
+            self.tried |= once.tried
             for question, answer in once.answers.items():
                 if "plain" in answer or answers.get(question, {}).get("outcome") != "recorded":
                     answers[question] = answer
@@ -425,6 +430,7 @@ class _Run:
                 cells[culprit[1]] = once.ending
             elif culprit[1] in self.questions and answers.get(culprit[1], {}).get("outcome") != "recorded":
                 answers[culprit[1]] = once.ending
+            self.deadline += once.kept_waiting
             if time.monotonic() >= self.deadline:
                 break
             skip = [*skip, culprit]
@@ -451,12 +457,18 @@ class _Once:
                 "order": order,
                 "skip": skip,
                 "seed": job.get("seed", 0),
+                "files": job.get("files", {}),
                 "variables": {q: about["variable"] for q, about in job["questions"].items() if about.get("variable")},
                 "calls": {q: about["calls"] for q, about in job["questions"].items() if about.get("calls")},
                 "given": {q: about["given"] for q, about in job["questions"].items() if about.get("given")},
             }
         ).encode()
+        self.secret_calls = {
+            q: about["secret calls"] for q, about in job["questions"].items() if about.get("secret calls")
+        }
         self.records = records.Records(len(job["cells"]))
+        self.process = None
+        self.kept_waiting = 0.0  # seconds in which the machine was busy with others
         self.steps = []  # begun and not ended, outermost first
         self.begun = []
         self.deadlines = []
@@ -464,6 +476,7 @@ class _Once:
         self.questions = job["questions"]
         self.answers = {}
         self.unknown = {}
+        self.tried = {}
         self.left_threads = []
         self.finished = False
         self.killed_for = None
@@ -472,22 +485,34 @@ class _Once:
 
     def watch(self):
         """Start the child, take its records, keep its time; return when all of it is gone."""
-        job = os.memfd_create("job")
-        reading, writing = os.pipe()
-        try:
-            with open(job, "wb", closefd=False) as file:
-                file.write(self.job)
-            os.lseek(job, 0, os.SEEK_SET)
-            self.sandbox.send({"run": {"limits": self.limits.for_child()}}, [job, writing])
-            os.close(writing)
-            writing = None
-            ended = self.follow(reading)
-        finally:
-            os.close(job)
-            os.close(reading)
-            if writing is not None:
-                os.close(writing)
+        with contextlib.ExitStack() as stack:
+            # What it gets and what it gives; the secret calls are written when it has nothing more to give.
+            job = os.memfd_create("job")
+            ends = [job, *os.pipe(), *os.pipe()]
+            handles = [
+                stack.enter_context(open(end, "rb+" if end == job else mode, 0))
+                for end, mode in zip(ends, ("rb", "rb", "wb", "rb", "wb"), strict=True)
+            ]
+            job, reading, writing, secret, self.secret = handles
+            job.write(self.job)
+            job.seek(0)
+            self.sandbox.send(
+                {"run": {"limits": self.limits.for_child()}}, [job.fileno(), writing.fileno(), secret.fileno()]
+            )
+            writing.close()
+            secret.close()
+            ended = self.follow(reading.fileno())
         self.conclude(ended)
+
+    def tell_the_secret(self):
+        """Give the secret calls; what does not fit into the pipe at once is not given, and nobody waits."""
+        data = json.dumps(self.secret_calls).encode() if self.secret_calls else b""
+        with contextlib.suppress(OSError):
+            os.set_blocking(self.secret.fileno(), False)
+            if len(data) > fcntl.fcntl(self.secret, fcntl.F_GETPIPE_SZ):
+                fcntl.fcntl(self.secret, fcntl.F_SETPIPE_SZ, 1 << 20)
+            self.secret.write(data)
+        self.secret.close()
 
     def follow(self, reading):
         control = self.sandbox.control
@@ -499,6 +524,8 @@ class _Once:
             now = time.monotonic()
             if self.killed_for is None:
                 deadline, reason = self.next_deadline()
+                if now >= deadline and self.give_back():
+                    continue
                 if now >= deadline or self.records.too_many:
                     self.killed_for = "output" if self.records.too_many else reason
                     self.blamed = list(self.steps)
@@ -525,7 +552,23 @@ class _Once:
                 self.note(record)
         return bool(data)
 
+    def give_back(self):
+        """Put all deadlines off by the time in which the machine was busy with others; whether there was any."""
+        if self.process is None:
+            self.process = running_below(self.sandbox.process.pid)
+        waited = kept_waiting(self.process) - self.kept_waiting
+        if waited < 0.01:
+            return False
+        self.kept_waiting += waited
+        self.notebook_deadline += waited
+        self.deadlines = [deadline + waited for deadline in self.deadlines]
+        if self.finished:
+            self.done_by += waited
+        return True
+
     def next_deadline(self):
+        if self.finished and self.steps:
+            return self.deadlines[-1], "done"
         if self.finished:  # it only has to exit now
             return self.done_by, "done"
         if self.deadlines and self.deadlines[-1] < self.notebook_deadline:
@@ -534,7 +577,18 @@ class _Once:
 
     def note(self, record):
         now = time.monotonic()
-        if "begin" in record:
+        if self.finished:
+            self.done_by = now + self.limits.grace_seconds
+            if "secret" in record and record["secret"] in self.secret_calls:
+                answer = self.answers.get(record["secret"], {})
+                if "plain" in answer:
+                    answer["secret"] = {name: record[name] for name in ("plain", "unreadable") if name in record}
+            if not ("begin" in record or "end" in record) or (record.get("begin") or record["end"])[0] != "answer":
+                return  # it knows the secret calls now: nothing that it says of anything else is heard
+        if "tried" in record:
+            if len(self.tried) < MOST_UNKNOWN:
+                self.tried[record["tried"]] = True
+        elif "begin" in record:
             step = record["begin"]
             wall = self.limits.cell_wall_seconds if step[0] == "cell" else self.limits.answer_wall_seconds
             if len(self.steps) < DEEPEST_STEPS:
@@ -570,6 +624,8 @@ class _Once:
         elif "done" in record and not self.finished:
             self.finished = True
             self.done_by = now + self.limits.grace_seconds
+            self.steps, self.begun, self.deadlines = [], [], []
+            self.tell_the_secret()
 
     def conclude(self, ended):
         """Name how the child ended."""
@@ -607,6 +663,23 @@ def given_up(job, why):
     }
 
 
+def running_below(process):
+    """The number of the last process below another: a notebook's, which has none below itself; ``None`` if hidden."""
+    with contextlib.suppress(OSError, ValueError, IndexError):
+        while children := Path(f"/proc/{process}/task/{process}/children").read_text().split():
+            process = int(children[-1])
+        return process
+    return None
+
+
+def kept_waiting(process):
+    """The seconds for which a process could have run and others did; 0 where the system does not tell."""
+    try:
+        return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) / 1e9
+    except (OSError, ValueError, IndexError):
+        return 0.0
+
+
 def threads_of(user):
     """How many threads `user` has on this machine: they count against a limit of threads."""
     total = 0
@@ -629,7 +702,9 @@ def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, w
             {"id": text,
              "cells": [{"source": text, "execution_count": number or None}, ...],   # code cells
              "questions": {name: {"variable": text or None,
-                                  "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or None}},
+                                  "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or None,
+                                  "secret calls": the same, optional}},
+             "files": {name: base64 text},                                          # optional, beside it
              "seed": number}                                                        # optional, 0
     workers : int
         How many notebooks run at a time; each worker is a warm parent of its own.

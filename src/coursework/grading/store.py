@@ -13,7 +13,7 @@ import re
 import secrets
 from pathlib import Path
 
-FORMAT = 1
+FORMAT = 2
 
 
 class InUse(RuntimeError):
@@ -57,6 +57,31 @@ class Store:
 
     def save(self, record):
         write(self.place(record["student"], record["assignment"]), as_text(record))
+
+    def keep_work(self, digest, sources):
+        """Keep the code of a notebook, for people to look at beside its answers."""
+        place = self.folder / "work" / f"{digest}.json"
+        if not place.exists():
+            write(place, json.dumps(sources, ensure_ascii=False), lasting=False)
+
+    def work(self, digest):
+        """The code cells of a notebook, or nothing if they were not kept."""
+        place = self.folder / "work" / f"{digest}.json"
+        return self.json_in(place) if place.exists() else []
+
+    @staticmethod
+    def json_in(path):
+        return json.loads(path.read_text("utf8"))
+
+    def put_aside(self, student, assignment):
+        """Move a record, and the page made of it, to where it counts no more; give its new place."""
+        place = self.place(student, assignment)
+        aside = self.folder / "put-aside" / place.relative_to(self.records)
+        aside.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(place, aside)
+        page = self.folder / "feedback" / file_name(student) / f"{file_name(assignment)}.html"
+        page.unlink(missing_ok=True)
+        return aside
 
     def all(self):
         """All records, by student and assignment, one at a time."""

@@ -8,7 +8,7 @@ It speaks with the process that started it in JSON, one message each:
 
     in   {"start": {...}}                      once: how to isolate, what to try
     out  {"ready": report}
-    in   {"run": {"limits": {...}}}            with two handles: the job, and where records go
+    in   {"run": {"limits": {...}}}            with three handles: the job, where records go, and the secret calls
     out  {"ended": {"signal": n} or {"code": n}, "scratch full": bool}
     in   {"kill": true}                        while a notebook runs
 """
@@ -29,7 +29,9 @@ from coursework.checking.plugins import packages
 from coursework.grading import isolation, scratch
 from coursework.grading.isolation import LAYERS, LIMITS, NAMESPACES, PRIVILEGES, IsolationError
 
-JOB, RECORDS = 3, 4  # the handles that a notebook's process has, beside input and output to nowhere
+# The handles that a notebook's process has, beside input and output to nowhere; the last is where it learns of the
+# secret calls, at its end.
+JOB, RECORDS, SECRET = 3, 4, 5
 NOT_CONFINED = 120
 LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on disk is
 LONGEST_MESSAGE = 1 << 16
@@ -284,17 +286,16 @@ class WarmParent:
                 return
             if "run" not in message:
                 continue  # a late "kill": what it was meant for has ended
-            job, records = handles
-            send(self.control, self.run(message["run"], job, records))
+            send(self.control, self.run(message["run"], handles))
 
-    def run(self, run, job, records):
+    def run(self, run, handles):
         folder = self.new_scratch(self.layers)
         parent = os.getpid()
         child = os.fork()
         if child == 0:
-            self.be_notebook(parent, run, job, records, folder)
-        os.close(job)
-        os.close(records)
+            self.be_notebook(parent, run, handles, folder)
+        for handle in handles:
+            os.close(handle)
         full = self.wait(child, None if folder == self.base else folder, run["limits"]["scratch_bytes"])
         status = self.end_all(child)
         self.remove_scratch(folder)
@@ -314,15 +315,15 @@ class WarmParent:
         finally:
             os.close(handle)
 
-    def be_notebook(self, parent, run, job, records, folder):
+    def be_notebook(self, parent, run, handles, folder):
         """In the child: give up all that a notebook must not have, and run it. Does not return."""
         code = NOT_CONFINED
         try:
-            # Away from the low numbers first, so that neither is written over.
-            job, records = os.dup2(job, 200, False), os.dup2(records, 201, False)
-            os.dup2(job, JOB, False)
-            os.dup2(records, RECORDS, False)
-            os.closerange(RECORDS + 1, 1 << 20)
+            # Away from the low numbers first, so that none is written over.
+            handles = [os.dup2(handle, 200 + order, False) for order, handle in enumerate(handles)]
+            for handle, place in zip(handles, (JOB, RECORDS, SECRET), strict=True):
+                os.dup2(handle, place, False)
+            os.closerange(SECRET + 1, 1 << 20)
             self.confine(self.layers, run["limits"], folder)
             os.dup2(1, 2)  # from here on nothing is heard of it but records
             if os.getppid() != parent:
@@ -331,7 +332,7 @@ class WarmParent:
             code = 1
             from coursework.grading import notebook
 
-            notebook.run(JOB, RECORDS, run["limits"], folder)
+            notebook.run(JOB, RECORDS, SECRET, run["limits"], folder)
             code = 0
         except Exception as error:
             os.write(2, f"{type(error).__name__}: {error}\n".encode(errors="replace"))
@@ -341,7 +342,7 @@ class WarmParent:
 
 def receive(control):
     """The next message and its handles; (None, []) when the other side is gone."""
-    data, handles, _, _ = socket.recv_fds(control, LONGEST_MESSAGE, 2)
+    data, handles, _, _ = socket.recv_fds(control, LONGEST_MESSAGE, 3)
     return (json.loads(data) if data else None), handles
 
 

@@ -1,0 +1,148 @@
+"""A plain answer as mathematics on a page: TeX of a few operations, turned into MathML.
+
+What a student wrote comes in by its structure only: names are letters and digits, and whatever else is in an
+answer is not written here, but shown as text.
+"""
+
+import re
+
+from .pages import formula
+
+LONGEST = 4_000  # of the TeX of one answer
+GREEK = (
+    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho sigma tau "
+    "upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"
+).split()
+CONSTANTS = {"Pi": r"\pi", "Exp1": "e", "ImaginaryUnit": "i", "GoldenRatio": r"\phi"}
+FUNCTIONS = {
+    **{name: rf"\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "log", "sinh", "cosh", "tanh")},
+    **{f"a{name}": rf"\arc{name}" for name in ("sin", "cos", "tan")},
+    "exp": r"\exp",
+    "atan2": r"\mathrm{atan2}",
+}
+
+
+class NoMathematics(ValueError):
+    """An answer is not of a kind that is shown as mathematics, or too long."""
+
+
+def answer_as_mathematics(plain):
+    """The MathML of a plain answer, or an empty text where it is shown as text only."""
+    if not plain:
+        return ""
+    try:
+        found = formula(_value(plain["value"], plain["nodes"]), LONGEST)
+    except NoMathematics:
+        return ""
+    return found if found.startswith("<math") else ""
+
+
+def _value(value, nodes):
+    kind, *rest = value
+    writer = _Writer(nodes)
+    if kind == "expression":
+        return writer.node(rest[0], 0)
+    if kind == "matrix":
+        rows, columns, entries = rest
+        if not entries:
+            raise NoMathematics
+        lines = [entries[row * columns : (row + 1) * columns] for row in range(rows)]
+        return _table([[writer.node(entry, 0) for entry in line] for line in lines])
+    if kind == "list" and rest[0] and all(part[0] == "expression" for part in rest[0]):
+        return _table([[writer.node(part[1], 0) for part in rest[0]]])
+    if (
+        kind == "list"
+        and rest[0]
+        and all(
+            part[0] == "list" and part[1] and all(inner[0] == "expression" for inner in part[1]) for part in rest[0]
+        )
+    ):
+        return _table([[writer.node(inner[1], 0) for inner in part[1]] for part in rest[0]])
+    if kind == "frame" and len(rest[1]) == 1:
+        ((other, inner),) = rest[1].items()
+        return rf"{{}}^{{{_name(rest[0])}}}\mathbf{{C}}^{{{_name(other)}}} = " + _value(inner, nodes)
+    raise NoMathematics
+
+
+def _table(lines):
+    inside = r" \\ ".join(" & ".join(line) for line in lines)
+    return rf"\begin{{bmatrix}} {inside} \end{{bmatrix}}"
+
+
+def _name(name):
+    base, _, index = name.partition("_")
+    if not re.fullmatch(r"[A-Za-z0-9]{1,20}", base) or not re.fullmatch(r"[A-Za-z0-9]{0,20}", index):
+        raise NoMathematics
+    shown = rf"\{base}" if base in GREEK else base if len(base) == 1 else rf"\mathrm{{{base}}}"
+    return f"{shown}_{{{index}}}" if index else shown
+
+
+class _Writer:
+    def __init__(self, nodes):
+        self.nodes = nodes
+        self.left = LONGEST
+
+    def node(self, order, around, depth=0):
+        """One node; `around` is how tightly what stands round it binds: 0 nothing, 1 a sum, 2 a product, 3 a power."""
+        self.left -= 1
+        if self.left <= 0 or depth > 30:
+            raise NoMathematics
+        operation, *rest = self.nodes[order]
+
+        def inner(child, binding=0):
+            return self.node(child, binding, depth + 1)
+
+        def bracketed(text, binding):
+            return rf"\left({text}\right)" if around > binding else text
+
+        if operation == "symbol":
+            dots = len(rest[0]) - len(rest[0].rstrip("'"))
+            return _name(rest[0].rstrip("'")) + "'" * dots
+        if operation == "constant":
+            if rest[0] not in CONSTANTS:
+                raise NoMathematics
+            return CONSTANTS[rest[0]]
+        if operation == "integer":
+            return bracketed(rest[0], 1 if rest[0].startswith("-") else 9)
+        if operation == "rational":
+            sign = "-" if rest[0].startswith("-") else ""
+            return bracketed(rf"{sign}\frac{{{rest[0].lstrip('-')}}}{{{rest[1]}}}", 1 if sign else 2)
+        if operation == "float":
+            found = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(rest[0]):.6g}")
+            if not found:
+                raise NoMathematics
+            power = rf" \cdot 10^{{{int(found[2])}}}" if found[2] else ""
+            return bracketed(found[1] + power, 1 if power or found[1].startswith("-") else 9)
+        if operation == "Add":
+            text = " + ".join(inner(child, 1) for child in rest).replace("+ -", "- ")
+            return bracketed(text, 0)
+        if operation == "Mul":
+            return self.product(rest, around, depth)
+        if operation == "Pow":
+            base, exponent = rest
+            if self.nodes[exponent] == ["rational", "1", "2"]:
+                return rf"\sqrt{{{inner(base)}}}"
+            if self.nodes[exponent] == ["integer", "-1"]:
+                return bracketed(rf"\frac{{1}}{{{inner(base)}}}", 2)
+            return bracketed(rf"{{{inner(base, 3)}}}^{{{inner(exponent)}}}", 2)
+        if operation == "Abs":
+            return rf"\left|{inner(rest[0])}\right|"
+        if operation in FUNCTIONS and rest:
+            return rf"{FUNCTIONS[operation]}\left({', '.join(map(inner, rest))}\right)"
+        raise NoMathematics
+
+    def product(self, factors, around, depth):
+        above, below, sign = [], [], ""
+        for factor in factors:
+            operation, *rest = self.nodes[factor]
+            if [operation, *rest] == ["integer", "-1"] and not above:
+                sign = "-"
+            elif operation == "Pow" and self.nodes[rest[1]] == ["integer", "-1"]:
+                below.append(self.node(rest[0], 2 if len(factors) > 2 else 0, depth + 1))
+            else:
+                above.append(self.node(factor, 2, depth + 1))
+        top = r" \, ".join(above) or "1"
+        text = sign + (rf"\frac{{{top}}}{{{' , '.join(below)}}}" if below else top)
+        if len(below) > 1:
+            raise NoMathematics
+        return rf"\left({text}\right)" if around > (1 if sign else 2) else text
