@@ -18,8 +18,9 @@ from pathlib import Path
 
 from ..checking.check import calls_for
 from ..checking.evaluate import MP
-from ..checking.kinds import WORDS, Blank, Fault, Undecidable, canonical, cell_of, read
+from ..checking.kinds import Blank, Fault, Undecidable, canonical, cell_of, read
 from ..checking.plain import NotPlain, to_plain
+from ..checking.plugins import kinds
 
 FILE = ".grading-secret"
 CALLS = 3
@@ -67,11 +68,12 @@ def secret_of(question, secret):
         mistake that earns something, by its fingerprint.
     """
     public = question.public
-    if public["kind"] in WORDS or (public["kind"] != "function" and not public.get("symbols")):
+    is_function = public["kind"] == "function"
+    if not is_function and (kinds()[public["kind"]].text or not public.get("symbols")):
         return None  # a word or a number is the same everywhere
     for attempt in range(ATTEMPTS):
         seed = hmac.digest(secret, f"{question.name} {attempt}".encode(), "sha256").hex()
-        if public["kind"] == "function":
+        if is_function:
             found = _of_function(question, seed)
         else:
             found = _of_expression(question, seed)
