@@ -1,5 +1,6 @@
 """Notebooks in, answers out as plain data: what is recorded, what is named, and what costs nobody else."""
 
+import base64
 import contextlib
 import json
 import os
@@ -308,6 +309,34 @@ def test_honest_cells_run(sandbox, source, monkeypatch):
     assert result["answers"]["q"]["plain"]["nodes"] and result["notes"] == []
 
 
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ["3 * 4", "x = _ + 1\ncheck('q', x)"],
+        [(7, "3 * 4"), (8, "check('q', Out[7] + 1)")],
+        [(7, "3 * 4"), (8, "check('q', _7 + 1)")],
+        ["12", "None", "1 if False else None", "check('q', _ + 1)"],
+        ["import asyncio\nasync def f():\n    await asyncio.sleep(0)\n    return 13", "x = await f()", "check('q', x)"],
+        ["import asyncio", "check('q', (await asyncio.gather(asyncio.sleep(0, 13)))[0])"],
+        ["%%writefile own.py\nvalue = 12", "%%writefile -a own.py\nvalue += 1", "import own\ncheck('q', own.value)"],
+        ["from helpers import own\ncheck('q', own.value)"],
+        ["check('q', int(open('data/table.csv').read().split(',')[1]))"],
+    ],
+)  # fmt: skip
+def test_cells_run_as_in_jupyter(sandbox, cells):
+    beside = {"helpers/own.py": b"value = 13", "helpers/__init__.py": b"", "data/table.csv": b"12,13"}
+    files = {name: base64.b64encode(data).decode() for name, data in beside.items()}
+    result = sandbox.run(notebook(*cells, questions={"q": None}) | {"files": files})
+    assert result["answers"]["q"].get("plain") == integer(13), result["cells"]
+
+
+def test_files_beside_lead_nowhere(sandbox):
+    """Names come from an archive and were looked at before; here they may be anything."""
+    files = {"../outside": "", "/tmp/outside": "", "a/../../outside": "", "fine": base64.b64encode(b"x").decode()}
+    result = sandbox.run(notebook("check('q', len(open('fine').read()))", questions={"q": None}) | {"files": files})
+    assert result["answers"]["q"]["plain"] == integer(1)
+
+
 def test_a_cell_of_text_only_for_the_shell_does_nothing(sandbox):
     result = sandbox.run(notebook("%%bash\nrm -rf *", "%%html\n<b>x</b>", "?print", "", "# nothing"))
     assert outcomes(result) == ["done"] * 5
@@ -390,7 +419,7 @@ for result in run_notebooks(json.loads(sys.argv[1]), workers=2, **options):
 
 @pytest.fixture(params=["with bubblewrap", "without bubblewrap"])
 def environment(request, tmp_path):
-    """The environment of a grader that finds bubblewrap, or does not, with a folder of its own for what is temporary."""
+    """The environment of a grader that finds bubblewrap, or does not, with its own folder for what is temporary."""
     bubblewrap = shutil.which("bwrap")
     if request.param == "with bubblewrap" and bubblewrap is None:
         pytest.skip("bubblewrap is not installed")

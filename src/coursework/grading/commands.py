@@ -69,6 +69,9 @@ def add_commands(commands):
         "--overwrite", action="store_true", help="fill in also where something else stands; otherwise it stays"
     )
     export.add_argument("--assignment", help="the assignment whose points are handed on, if there are several")
+    export.add_argument(
+        "--feedback", metavar="FILE.zip", help="write the pages of feedback, named for your system to take them back"
+    )
     export.add_argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table")
     export.add_argument(
         "--gradescope", metavar="results.json", help="write the results of a Gradescope autograder, for one student"
@@ -161,18 +164,21 @@ def merge(out, ledgers):
             )
 
 
-def export(out, lms, filled, column, name, overwrite, assignment, nbgrader, gradescope, student):
+def export(out, lms, filled, column, name, overwrite, assignment, feedback, nbgrader, gradescope, student):
     from . import gradebooks
     from .store import Store
 
-    if not (lms or nbgrader or gradescope):
-        sys.exit("coursework export: name what to write: --lms, --nbgrader or --gradescope.")
+    if not (lms or feedback or nbgrader or gradescope):
+        sys.exit("coursework export: name what to write: --lms, --feedback, --nbgrader or --gradescope.")
     try:
-        marks = gradebooks.Marks(Store(out), assignment)
+        store = Store(out)
+        marks = gradebooks.Marks(store, assignment)
         if lms:
             names = dict(one.partition("=")[::2] for one in name)
             said = gradebooks.fill(lms, marks, column, filled, names, overwrite)
             print(*said, sep="\n")
+        if feedback:
+            print(f"{gradebooks.write_feedback(feedback, marks, store)} pages of feedback: {feedback}")
         if nbgrader:
             gradebooks.write_nbgrader(nbgrader, marks)
         if gradescope:

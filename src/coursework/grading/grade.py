@@ -316,8 +316,8 @@ def _say_guessable(questions, show):
         cheap = {name: question for name, question in asked.items() if question["bits"] < GUESSABLE}
         if cheap:
             print(
-                f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} points "
-                f"could be guessed by a script that tries answers ({', '.join(sorted(cheap))}).",
+                f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} "
+                f"points could be guessed by a script that tries answers ({', '.join(sorted(cheap))}).",
                 file=show,
             )
 

@@ -5,13 +5,15 @@ quotation marks and line ends, stays as the system wrote it, so that the system 
 student wrote gets into it.
 """
 
+import io
 import json
 import re
-from pathlib import Path
+import zipfile
+from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 from ..checking.reply import plain_text
-from .store import write
+from .store import file_name, write
 from .tables import number, readable, table
 
 NBGRADER = (
@@ -360,6 +362,40 @@ def _keys_of_student(system, student, identity):
         yield "own", student.lower()  # the folder's name is all that is known
     if "name" in identity:
         yield "name", identity["name"].lower()
+
+
+def write_feedback(path, marks, store):
+    """Write an archive of the pages of feedback, named so that the system which handed the work out takes them back.
+
+    Canvas knows a student by the beginning of the file's name, Moodle and Brightspace by the folder's: a page
+    stands where the notebook stood. Give the number of pages.
+
+    Raises
+    ------
+    CannotExport
+        A page is missing, or two would have one name.
+    """
+    pages = {}
+    for record in marks.records:
+        page = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
+        if not page.exists():
+            raise CannotExport(f"There is no feedback for {record['student']!r}: grade again.")
+        place = PurePosixPath(record["notebooks"][0]["file"])
+        folder = place.parts[:-1]
+        name = str(PurePosixPath(*folder, f"{place.stem}-feedback.html"))
+        if name in pages:
+            raise CannotExport(
+                f"Two pages of feedback would be called {name!r}; name one assignment with --assignment."
+            )
+        pages[name] = page.read_bytes()
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in sorted(pages.items()):
+            entry = zipfile.ZipInfo(name)  # with a fixed date: the same pages give the same bytes
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, content)
+    write(path, data.getvalue())
+    return len(pages)
 
 
 def write_nbgrader(path, marks):

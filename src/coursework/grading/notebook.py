@@ -19,7 +19,9 @@ and is written the moment it is known, so that what comes later cannot lose it. 
 arguments of the secret calls: what knows them then can hand in no answer any more in which they would be shown.
 """
 
+import ast
 import base64
+import inspect
 import json
 import os
 import random
@@ -40,6 +42,7 @@ MOST_TRIED = 10  # hints of one notebook
 MAGICS_WITH_CODE = ("time", "capture", "prun")
 
 
+AWAIT = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
 TICK = 0.5  # seconds by the clock between two looks at whether a step waits
 #: Less of a tick than this share is spent by what waits, and more by what is kept waiting by a busy machine.
 WAITING = 0.02
@@ -85,6 +88,10 @@ class Shell:
     def run_cell_magic(self, name, line, cell):
         if name in MAGICS_WITH_CODE:
             self._execute(cell)
+        elif name in ("writefile", "file") and line.strip():
+            *options, path = line.split()
+            with open(path.strip("'\""), "a" if options in (["-a"], ["--append"]) else "w", encoding="utf8") as file:
+                file.write(cell)
 
     def system(self, command):
         return None
@@ -158,6 +165,8 @@ class _Notebook:
         self.records = records
         self.secret = secret
         self.functions = {}
+        self.number = None
+        self.loop = None
         self.tried = set()
         self.noticing = False
         self.limits = limits
@@ -179,6 +188,8 @@ class _Notebook:
         for index in self.job["order"]:
             if ("cell", index) not in self.skipped:
                 self.cell = index
+                # As Jupyter numbered it when it was run last; a cell that never ran follows the one before.
+                self.number = self.job["numbers"][index] or (self.number or 0) + 1
                 self.step(["cell", index], lambda: self.execute(self.job["cells"][index]), self.limits["cell"])
         self.cell = None
         for question, variable in self.job["variables"].items():
@@ -223,9 +234,11 @@ class _Notebook:
         package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
         sys.modules["coursework"] = package
         for name, data in self.job["files"].items():
-            os.makedirs(os.path.dirname(os.path.join(self.folder, name)), exist_ok=True)
-            with open(os.path.join(self.folder, name), "wb") as file:
-                file.write(base64.b64decode(data))
+            path = os.path.normpath(os.path.join(self.folder, name))
+            if path.startswith(f"{self.folder}/"):
+                os.makedirs(os.path.dirname(path), exist_ok=True)
+                with open(path, "wb") as file:
+                    file.write(base64.b64decode(data))
         sys.argv = ["notebook"]
         sys.path.insert(0, self.folder)
         sys.addaudithook(self.notice)
@@ -233,9 +246,33 @@ class _Notebook:
         warnings.simplefilter("ignore")
 
     def execute(self, source):
-        """Run source as a notebook's cell is run."""
-        code = compile(self.transformer.transform_cell(source), f"<cell {self.cell}>", "exec", dont_inherit=True)
-        exec(code, self.names)
+        """Run source as a notebook's cell is run; the value of its last line becomes ``_`` and ``Out[number]``."""
+        name = f"<cell {self.cell}>"
+        tree = ast.parse(self.transformer.transform_cell(source), name)
+        last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+        self.evaluate(compile(tree, name, "exec", AWAIT, dont_inherit=True))
+        # What ends in a semicolon is shown neither, and is a value all the same.
+        if last is not None:
+            value = self.evaluate(compile(ast.Expression(last.value), name, "eval", AWAIT, dont_inherit=True))
+            if value is not None:
+                self.keep(value)
+
+    def evaluate(self, code):
+        """Run code, to the end of what it awaits if it awaits something."""
+        value = eval(code, self.names)
+        if code.co_flags & inspect.CO_COROUTINE:
+            import asyncio
+
+            if self.loop is None:
+                self.loop = asyncio.new_event_loop()
+            return self.loop.run_until_complete(value)
+        return value
+
+    def keep(self, value):
+        names = self.names
+        names["___"], names["__"], names["_"] = names.get("__", ""), names.get("_", ""), value
+        if isinstance(names.get("Out"), dict) and self.number is not None:
+            names["Out"][self.number] = names[f"_{self.number}"] = value
 
     def check(self, question, answer=None, *rest, **options):
         """Stands for `coursework.checking.check` here: records the answer and tells nothing."""

@@ -454,6 +454,7 @@ class _Once:
         self.job = json.dumps(
             {
                 "cells": [cell["source"] for cell in job["cells"]],
+                "numbers": [cell.get("execution_count") for cell in job["cells"]],
                 "order": order,
                 "skip": skip,
                 "seed": job.get("seed", 0),
