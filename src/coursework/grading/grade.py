@@ -235,7 +235,13 @@ def grade(
         progress = _Progress(len(waiting), show)
         decisions = ledger.current()
         for one, found in jobs.whole(results):
-            record = record_of(one, found, keys[one.student, one.assignment], marking.of_student(questions[one.assignment], one.student), limits)
+            record = record_of(
+                one,
+                found,
+                keys[one.student, one.assignment],
+                marking.of_student(questions[one.assignment], one.student),
+                limits,
+            )
             record = marked(record, questions[one.assignment], decisions)
             store.save(record)
             store.log(f"graded: {one.student!r} {one.assignment}")

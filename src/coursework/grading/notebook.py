@@ -35,6 +35,7 @@ import warnings
 
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.variants import Given
+from coursework.grading.event_loop import PipeEventLoop
 
 LONGEST_ERROR = 500
 MOST_TRIED = 10  # hints of one notebook
@@ -261,10 +262,8 @@ class _Notebook:
         """Run code, to the end of what it awaits if it awaits something."""
         value = eval(code, self.names)
         if code.co_flags & inspect.CO_COROUTINE:
-            import asyncio
-
             if self.loop is None:
-                self.loop = asyncio.new_event_loop()
+                self.loop = PipeEventLoop()
             return self.loop.run_until_complete(value)
         return value
 
