@@ -7,6 +7,7 @@ run that finds a record with the right key leaves it alone, so a run that was ki
 
 import base64
 import hashlib
+import itertools
 import json
 import os
 import platform
@@ -411,6 +412,8 @@ def run_here(jobs, workers, limits, allow_weak_isolation):
             return
         except WorkerDied:
             # One of those that were being run: each of them gets a sandbox of its own.
+            if not running and not any(True for _ in itertools.islice(remembered(), 1)):
+                return
             for job in list(running.values()):
                 del running[job["id"]]
                 try:

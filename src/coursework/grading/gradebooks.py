@@ -90,7 +90,8 @@ class Gradebook:
             raise CannotExport("The gradebook has no students.")
         self.header = [field.says.strip() for field in self.lines[0][0]]
         self.ours = {theirs.casefold(): ours.casefold() for ours, theirs in (names or {}).items()}
-        unknown = sorted(set(self.ours) - {name.casefold() for name in self.header})
+        there = {name.casefold() for name in self.header}
+        unknown = [theirs for theirs in (names or {}).values() if theirs.casefold() not in there]
         if unknown:
             raise CannotExport(f"There is no column {unknown[0]!r}; there are {', '.join(map(repr, self.header))}.")
 
