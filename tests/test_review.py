@@ -268,6 +268,7 @@ def test_pages_are_accessible_and_fit_a_telephone(out, browser, scheme):
         context.close()
 
 
+@pytest.mark.long
 def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
     """A class of a hundred, each answer different: every one decided, without a mouse, and nothing lost."""
     out = shutil.copytree(graded / "out", tmp_path / "out")

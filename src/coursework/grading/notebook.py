@@ -26,6 +26,7 @@ import json
 import os
 import random
 import re
+import select
 import signal
 import sys
 import threading
@@ -38,6 +39,7 @@ from coursework.checking.variants import Given
 from coursework.grading.event_loop import PipeEventLoop
 
 LONGEST_ERROR = 500
+WAIT_FOR_SECRET = 30  # seconds; whoever swallowed the records is not answered
 MOST_TRIED = 10  # hints of one notebook
 # Magics whose body is the student's code; the others are about the notebook and do nothing here.
 MAGICS_WITH_CODE = ("time", "capture", "prun")
@@ -201,6 +203,9 @@ class _Notebook:
 
     def call_secretly(self):
         """Call the functions that are answers with arguments that nobody could prepare them for."""
+        if not self.functions or not select.select([self.secret], [], [], WAIT_FOR_SECRET)[0]:
+            return
+        os.set_blocking(self.secret, True)
         with open(self.secret, "rb") as file:
             calls = json.loads(file.read() or b"{}")
         for question, about in calls.items():

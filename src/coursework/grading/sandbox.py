@@ -495,6 +495,7 @@ class _Once:
                 for end, mode in zip(ends, ("rb", "rb", "wb", "rb", "wb"), strict=True)
             ]
             job, reading, writing, secret, self.secret = handles
+            os.set_blocking(secret.fileno(), False)  # to a notebook that reads it too early it is empty
             job.write(self.job)
             job.seek(0)
             self.sandbox.send(
