@@ -150,7 +150,7 @@ def test_what_a_student_wrote_is_shown_and_never_obeyed(out):
         response, _ = served.ask(f"/{served.secret}/")
         policy = response.getheader("Content-Security-Policy")
         assert policy == POLICY and "unsafe" not in policy and "script-src 'self'" in policy
-        assert response.getheader("Referrer-Policy") == "no-referrer"
+        assert response.getheader("Referrer-Policy") == "same-origin"
         _, text = served.ask(f"/{served.secret}/?show=invalid&search=script")
         (cluster,) = set(re.findall(r"answer/([0-9a-f]{16})", text))
         _, page = served.ask(f"/{served.secret}/answer/{cluster}")

@@ -122,7 +122,7 @@ def test_the_grader_finds_the_same_variant_from_the_roster():
 
 
 def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course, tmp_path):
-    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path)
+    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
     assert len(found[NAME]["others"]) == 5 and "others" not in found["levers/plain"]
     for number in (0, 4):
         student = student_with(number) if number else next(f"{k}" for k in range(99) if not variant(f"{k}"))

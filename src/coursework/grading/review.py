@@ -33,7 +33,7 @@ POLICY = (
 HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",
+    "Referrer-Policy": "same-origin",  # with none at all, a browser hides the origin of the own form, too
     "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
 }
