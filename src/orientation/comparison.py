@@ -175,17 +175,17 @@ def diagnose(
     match = functools.partial(_match, tolerance=tolerance)
     if all(map(match, answers, truths)):
         return Diagnosis(True, ())
-    # A matrix that is no orientation cannot come from a turn: its fault is told alone. Symbols that
-    # obey a condition, as a quaternion's four do, miss it at random values: then nothing can be told.
-    fault = _fault(answers)
-    if fault and not _fault(truths):
-        return Diagnosis(False, (fault,))
     mixups = itertools.chain(
         _transpositions(truths) if len(given) == 9 else _quaternion_mixups(truths),
         _substitutions(expected, names, points),
         _sequence_mixups(turned, sequence, given=angles is not None, symbols=bool(names)),
     )
     causes = [cause for cause, values in mixups if all(map(match, answers, values))]
+    # A matrix that is no orientation comes from no turn: then its fault is told. Symbols that obey a condition, as
+    # a quaternion's four do, miss it at random values: then nothing can be told.
+    fault = None if causes else _fault(answers)
+    if fault and not _fault(truths):
+        causes = [fault]
     return Diagnosis(False, tuple(dict.fromkeys(causes)))
 
 
