@@ -11,6 +11,8 @@ from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 METRICS = ("entries", "angle")
 #: The mean by angle is looked for from so many of the orientations, if they are spread too far to be sure of one.
 STARTS = 100
+#: Steps towards a mean after which it is taken as it is; a few are enough unless orientations lie half a turn apart.
+MOST_STEPS = 200
 
 
 def angle_between(first: Values, second: Values) -> Result:
@@ -145,7 +147,7 @@ def _mean_by_angle(dcms, weights, average):
     import numpy
 
     def settled(guess):
-        for _ in range(200):
+        for _ in range(MOST_STEPS):
             step = weights @ rotation_vector_from_dcm(dcms @ guess.T)
             guess = dcm_from_rotation_vector(step) @ guess
             if numpy.linalg.norm(step) < 1e-14:

@@ -140,9 +140,9 @@ def dcm_from_directions(observed: Values, reference: Values, deviations: Values 
             f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie along one line, or "
             "observed and reference are mirror images of each other. Is one of the two frames left-handed?"
         )
-    left = left.copy()
-    left[..., :, 2] *= numpy.round(sign)[..., None]
-    return left @ right
+    handed = left.copy()
+    handed[..., :, 2] *= numpy.round(sign)[..., None]
+    return handed @ right
 
 
 def directions_covariance(observed: Values, deviations: Values) -> Result:
