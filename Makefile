@@ -24,7 +24,7 @@ help:
 	@echo "make new-question NAME=belt-trick/twist TITLE='A twist' KIND='quaternion'   a question for it"
 	@echo "make check      style, types, pins and links (a minute at most, no browser)"
 	@echo "make test       try every part of the book and its software (minutes)"
-	@echo "make test-all   run every test, as continuous integration does"
+	@echo "make test-all   run every test, as every night"
 	@echo "make times      the same, and write down what each part costs in tests/TIMES.md"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"

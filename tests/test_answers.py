@@ -15,7 +15,7 @@ from coursework.__main__ import main as coursework
 from website.lite import fingerprint_of_code
 from website.take_away import notebook_address
 
-EXERCISE, CHAPTER = "exercises/simple-orientations", "chapters/simple-orientations"
+EXERCISE, CHAPTER = "exercises/simple-orientations", "chapters/successive-orientations"
 BLANK = "A_C_N = ...  # your answer"
 ANSWER, OTHER = 2, 4  # cells of the exercise, from 1
 CODES = """() => [...document.querySelectorAll('div.cell')].map((cell) =>

@@ -23,7 +23,7 @@ from website.serve import Handler, server
 
 PAGES = [name for name in html_pages() if 'id="live-data"' in (HTML / name).read_text("utf8")]
 ELSEWHERE = "https://cdn.jsdelivr.net/**"
-QUIET = "chapters/simple-orientations.html"  # has cells with and without NumPy, and runs in a moment
+QUIET = "chapters/successive-orientations.html"  # has cells with and without NumPy, and runs in a moment
 
 # The results of a page, as the reader sees them: each cell's output, without what differs on purpose.
 RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
