@@ -344,7 +344,7 @@ def test_hidden_code_runs_before_the_cell_below_it(context, site):
 
     def with_hidden_code(route):
         page = route.fetch()
-        text, count = re.subn(r'"cells":\s*\{', r'"cells":{"0":{"before":"hidden = 6 * 7"},', page.text(), count=1)
+        text, count = re.subn(r'"cells":\s*\{', r'"cells":{"2":{"before":"hidden = 6 * 7"},', page.text(), count=1)
         assert count == 1
         text = re.sub(r'"hidden = 6 \* 7"\},\s*\}', '"hidden = 6 * 7"}}', text)
         route.fulfill(response=page, body=text)
@@ -582,7 +582,7 @@ def test_jupyters_commands_get_a_hint(shared):
 
 def test_run_after_a_stopped_cell_leaves_that_out(shared):
     assert "Stopped." in stop(shared, 3, ENDLESS)
-    assert "after it" in shared.try_code(5, "print('after it')")
+    assert "after it" in shared.try_code(4, "print('after it')")
     assert "Stopped." in shared.below(3)
 
 
