@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..checking.kinds import Fault, Undecidable
-from ..checking.mistakes import message
+from ..checking.mistakes import GENERAL, message
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
-from ..checking.questions import compare, judge, notebook_questions
+from ..checking.questions import judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
@@ -70,7 +70,7 @@ def try_question(question, against_sealed=True):
         question.to_plain(another_answer(question.public, question.answer, random.Random(seed))) for seed in range(9)
     )
     other = next((plain for plain in others if question.fingerprint_of(plain) not in question.entries), None)
-    other = Reply(question.name, "wrong") if other is None else _compare(question, other)
+    other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
     if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
     return Finding(
@@ -79,45 +79,40 @@ def try_question(question, against_sealed=True):
         [form for form, _ in forms],
         named,
         unmoved,
-        question.guessing_bits(),
+        0,
         faults,
-    )
-
-
-def _compare(question, plain):
-    return compare(
-        question.name,
-        question.public,
-        plain,
-        lambda text: question.entries[text]._asdict() if text in question.entries else None,
     )
 
 
 def _judge(question, answer):
     try:
-        return _compare(question, question.to_plain(answer))
+        return question.reply_to(question.to_plain(answer))
     except NotPlain as error:
         return Reply(question.name, "invalid", "unreadable", [str(error)])
 
 
 def _try_mistakes(question, faults):
     named, unmoved = [], []
-    right = question.fingerprint_of(question.plain)
     for mistake in question.mistakes:
         said = message(question.public, mistake.note, mistake.details)
         try:
             plain = question.to_plain(mistake.answer)
-            if question.fingerprint_of(plain) == right:
+            reply = question.reply_to(plain)
+            if reply.outcome == "correct":
                 unmoved.append(mistake.note)
                 if mistake.note == "authored":
                     faults.append(f"This authored mistake gives the right answer: {said}")
                 continue
-            reply = _compare(question, plain)
+            entry = question.entries[question.fingerprint_of(plain)]
         except (Fault, Undecidable, NotPlain) as refused:
             named.append((mistake.note, f"(refused for its form) {refused}"))
             continue
-        entry = question.entries[question.fingerprint_of(plain)]
-        if reply.outcome != "wrong" or [mistake.note, mistake.details] not in entry.notes:
+        except KeyError:
+            faults.append(f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not known: {reply.messages}')
+            continue
+        known = [note for case in entry.cases for note in case["notes"]]
+        covered = mistake.note in GENERAL and known
+        if reply.outcome != "wrong" or not covered and [mistake.note, mistake.details] not in known:
             faults.append(
                 f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its own message.'
             )
