@@ -6,8 +6,8 @@ there is one of.
 
 from coursework.checking.evaluate import MP
 from coursework.checking.kinds import (
-    TRANSPOSED,
     FUNCTIONS,
+    TRANSPOSED,
     Fault,
     components,
     leaf,
@@ -169,9 +169,11 @@ def _determinant(rows):
 
 #: Where to begin with each kind of question.
 BEGIN = {
-    "direction cosine matrix": "Write down what one row is: the components of one unit vector of the first frame along those of the second. Draw the two triads for a small angle and read off one row.",
-    "quaternion": "What is the axis, as a unit vector, and what is the angle? Half of it goes into the sine and cosine.",
-    "Euler angles": "Which turn comes first, and about which axis? Compare the matrix of the three turns with the one that is given, and begin with its simplest entry.",
+    "direction cosine matrix": "Write down what one row is: the components of one unit vector of the first "
+    "frame along those of the second. Draw the two triads for a small angle and read off one row.",
+    "quaternion": "What is the axis, as a unit vector, and what is the angle? Half of it goes into sine and cosine.",
+    "Euler angles": "Which turn comes first, and about which axis? Compare the matrix of the three turns with the one "
+    "that is given, and begin with its simplest entry.",
     "axis and angle": "Which vector does the turn leave as it is? It is the axis; the trace gives the angle.",
     "sequence": "Which axis do the first two frames share? And which one the next two?",
 }

@@ -320,7 +320,7 @@ class Question:
 
 
 def ladder_of(public, authored, turns, solution):
-    """The steps of a question's ladder: its author's, or where to begin, what it is built of, how its solution begins."""
+    """The steps of a ladder: its author's, or where to begin, what the answer is built of, how the solution begins."""
     if authored is not None:
         return list(authored)
     begin = (kinds()[public["kind"]].begin, kind_of_values(public).begin)

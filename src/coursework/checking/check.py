@@ -128,7 +128,7 @@ def _show_next_hint(question, reply, entry):
 
 
 def progress() -> Reply:
-    """Show how far you are, chapter by chapter, and what is worth another look; from the record beside this notebook."""
+    """Show how far you are, by chapter, and what is worth another look; from the record beside this notebook."""
     record = {name: entry for name, entry in _read_progress().items() if isinstance(entry, dict) and "outcome" in entry}
     if not record:
         return Reply("progress", "hints", "", ["Nothing has been checked in this folder yet."])

@@ -474,7 +474,7 @@ SEVERAL = "More than one of these is not right."
 #: Where to begin with each kind of question.
 BEGIN = {
     "expression": "Name what is known and what is asked for, and write down one equation that connects them.",
-    "vector": "Along which frame are the components asked for? Write the vector down in the frame where it is simplest.",
+    "vector": "Along which frame are the components asked for? Write the vector down where it is simplest.",
     "matrix": "Take one entry and work it out alone; then ask which rule gives all the others.",
     "choice": "Put each of the possibilities to the test on the simplest case that tells them apart.",
     "words": "Take them one by one, and begin with those that you are sure of; find a test for the others.",

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from .plugins import kind_of_values, kinds
 
-
 #: Factors that are forgotten or put in twice, as they are said.
 FACTORS = (("2", "2"), ("one half", "1/2"), ("3", "3"), ("one third", "1/3"), ("4", "4"), ("one quarter", "1/4"))
 NUMBERS = (

@@ -212,8 +212,8 @@ def _not_known(name, question, plain, reading, find, content):
             "wrong",
             "rounded too far",
             [
-                f"This is close, but off by more than the {tolerance:g} that is allowed. Was it rounded too far, here or "
-                "on the way? Keep all digits until the end."
+                f"This is close, but off by more than the {tolerance:g} that is allowed. Was it rounded too far, "
+                "here or on the way? Keep all digits until the end."
             ],
         )
     decimals = _decimals(question, plain, reading)
