@@ -128,7 +128,7 @@ def run_notebook(notebook, folder):
 
 def sealed_file(source):
     """The text of the file with the sealed questions of a notebook."""
-    code = solution_code(source.questions.values())
+    code = solution_code(source.notebook)
     questions = {
         name: {"answer": question.variable, **question.sealed(code)} for name, question in source.questions.items()
     }
@@ -159,7 +159,7 @@ def _release_variant(path, number, course):
     if not kept.exists():
         source = read_source(path, number, course.edition)
         for name, question in source.questions.items():
-            faults = try_question(question, against_sealed=False).faults
+            faults = try_question(question, budget=0, against_sealed=False).faults
             if faults:
                 raise AuthorError(f"{name}, variant {number}, {question.public['given']}: {faults[0]}")
         kept.parent.mkdir(parents=True, exist_ok=True)
