@@ -47,13 +47,13 @@ FORGOTTEN = {
         "appendix/solutions.ipynb",
         "{solution-start} exercise-scalar-last",
         "{solution-start} exercise-scalar",
-        r"chapters/unit-quaternions.ipynb:\d+ \(cell 27\): exercise-scalar-last has no",
+        r"chapters/unit-quaternions.ipynb:\d+ \(cell 35\): exercise-scalar-last has no",
     ),
     "sealed question": (
         "tests/solutions/chapters.ipynb",
         "question('chapters/scalar-last'",
         "question('chapters/scalar'",
-        r"chapters/unit-quaternions.ipynb:\d+ \(cell 28\): chapters/scalar-last is no question of",
+        r"chapters/unit-quaternions.ipynb:\d+ \(cell 36\): chapters/scalar-last is no question of",
     ),
     "place among the chapters": (
         "_toc.yml",
