@@ -227,7 +227,7 @@ def test_too_wide_a_line_stops_the_printing(browser):
 
 def test_without_a_browser_it_says_so(monkeypatch):
     monkeypatch.setattr(browser_module.shutil, "which", lambda name: None)
-    with pytest.raises(SystemExit, match="Chromium or Chrome, and neither is on this machine"):
+    with pytest.raises(SystemExit, match="Neither Chromium nor Chrome is on this machine"):
         with browser_module.open_browser():
             pass
 

@@ -40,7 +40,7 @@ const progress = (() => {
   return {
     page,
     all: () => record.pages,
-    isKept: () => kept,
+    isKept: () => kept && !window.keepsNothing, // the page's head puts a store that lasts as long as the page where storage is forbidden
     here: () => record.pages[page] ?? { read: [], done: [], checked: [], answers: {} },
     change(action) {
       if (kept) load(); // another tab may have written meanwhile
