@@ -182,7 +182,7 @@ def aftermath():
 
 
 def test_the_corpus_is_large_and_its_names_differ():
-    assert len({attack.name for attack in ATTACKS}) == len(ATTACKS) >= 40
+    assert len({attack.name for attack in ATTACKS}) == len(ATTACKS) >= 80
 
 
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)

@@ -141,14 +141,21 @@ def test_a_captured_worker_runs_nothing_here(submissions, solutions, tmp_path, d
 
 
 @pytest.mark.long
-def test_a_lost_scheduler_is_said_and_nothing_is_lost(submissions, solutions, tmp_path):
-    put(submissions, "slow", handed_in(sum="import time\ntime.sleep(20)\nsine = 0"))
+def test_a_lost_scheduler_is_said_and_nothing_is_lost(submissions, solutions, tmp_path, monkeypatch):
+    from coursework.grading import cluster as running
+
+    monkeypatch.setattr(running, "CONNECT_WITHIN", "8s")  # it is given up after as long
+    # The last of all by its name: it is at work when the scheduler is lost, and not yet recorded.
+    put(submissions, "takes-long", handed_in(sum="import time\ntime.sleep(20)\nsine = 0"))
     out, over = tmp_path / "out", threading.Event()
 
     def lose_the_scheduler():
         while not over.wait(0.01):
             if len(list((out / "records").glob("*/*.json"))) >= 2:
-                processes[0].kill()
+                # The command that was started may wait for the scheduler, which is below it.
+                for victim in [processes[0], *psutil.Process(processes[0].pid).children(recursive=True)]:
+                    with contextlib.suppress(psutil.NoSuchProcess):
+                        victim.kill()
                 return
 
     with cluster(tmp_path) as (address, processes):
@@ -162,7 +169,7 @@ def test_a_lost_scheduler_is_said_and_nothing_is_lost(submissions, solutions, tm
             killer.join()
     kept = len(list((out / "records").glob("*/*.json")))
     assert kept >= 2
-    put(submissions, "slow", handed_in())
+    put(submissions, "takes-long", handed_in())
     assert graded(submissions, solutions, out) == {"graded": 8 - kept, "kept": kept, "refused": 0}
 
 

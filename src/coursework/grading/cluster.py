@@ -128,7 +128,7 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
         except OSError as error:
             raise ValueError(f"There is no Dask scheduler to be reached at {address} ({error}).") from None
         client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
-        stack.callback(client.unregister_worker_plugin, name)
+        stack.callback(_leave, client, name)
         sent = {}
         for job in jobs:
             future = client.submit(run_job, json.dumps(job).encode(), name, key=f"{name} {job['id']}", pure=False)
@@ -137,11 +137,12 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
             _, job = sent.pop(future.key)
             try:
                 answer = json.loads(future.result())
-            except (FutureCancelledError, CancelledError):
-                raise ValueError(
-                    f"The scheduler at {address} was lost. What was graded is kept; the same command goes on."
-                ) from None
             except Exception as error:
+                # What a worker did comes as a pickle, which stays one: an error of the connection is our own client's.
+                if client.status != "running" or isinstance(error, (FutureCancelledError, CancelledError, OSError)):
+                    raise ValueError(
+                        f"The scheduler at {address} was lost. What was graded is kept; the same command goes on."
+                    ) from None
                 # An error comes as a pickle, and stays one. That worker after worker died is no secret in it.
                 if not any(b"KilledWorker" in part for part in error.args if isinstance(part, bytes)):
                     raise ValueError(
@@ -152,6 +153,13 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
                 continue
             _demand_sound(answer, job, ours)
             yield answer["result"]
+
+
+def _leave(client, name):
+    """End the sandboxes of the workers. Where the scheduler is gone, its workers end with it: nobody is to be told."""
+    if client.status == "running":
+        with contextlib.suppress(OSError):  # it may be lost at this very moment
+            client.unregister_worker_plugin(name)
 
 
 def _demand_sound(answer, job, ours):

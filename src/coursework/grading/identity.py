@@ -222,6 +222,12 @@ def _clean(name):
     return " ".join(unicodedata.normalize("NFC", name).split())[:120] or "without a name"
 
 
+def looks_like(name):
+    """What a person sees of a name: wide letters as narrow ones, and nothing of signs that are not seen."""
+    plain = unicodedata.normalize("NFKC", name)
+    return "".join(sign for sign in plain if unicodedata.category(sign) not in ("Cf", "Cc"))
+
+
 def _when(text):
     """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are the same in every language setting."""
     month, day, year, clock, half = text.replace(",", "").split()

@@ -21,7 +21,7 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from .identity import Claim, Layout
+from .identity import Claim, Layout, looks_like
 
 MOST_BYTES = 20 << 20  # of one notebook
 MOST_CELLS = 1_000
@@ -238,8 +238,14 @@ def _without_conflicts(notebooks, refused):
     claims = {}
     for one in notebooks:
         if one.matched != "as you said":
-            claims.setdefault(one.student, set()).add(one.claim.source)
-    unsure = {student: sources for student, sources in claims.items() if len(sources) > 1}
+            # A name that only looks the same, by a sign that nobody sees, claims the same.
+            for identity in (looks_like(one.student), *_numbers(one.claim)):
+                claims.setdefault(identity, {}).setdefault(one.claim.source, set()).add(one.student)
+    unsure = {}
+    for sources in claims.values():
+        if len(sources) > 1:
+            for student in set().union(*sources.values()):
+                unsure.setdefault(student, set()).update(sources)
     for one in notebooks:
         if one.student in unsure:
             sources = ", ".join(sorted(unsure[one.student]))
@@ -251,6 +257,11 @@ def _without_conflicts(notebooks, refused):
                 )
             )
     return [one for one in notebooks if one.student not in unsure]
+
+
+def _numbers(claim):
+    """The number by which the system knows a student: it writes none beside two names."""
+    return [key for key in claim.keys if claim.given_by_system and key[0] in ("canvas", "moodle", "brightspace")]
 
 
 def _beside(one, others):
