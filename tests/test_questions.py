@@ -173,6 +173,35 @@ def test_paper_shows_the_answers(context, site):
     assert page.locator("details.replies:not([open])").count() == 0 and page.locator(".covered").count() == 0
 
 
+# Goes through the lecture by arrow keys; returns the blocks that no step showed, and the steps that showed nothing.
+LECTURE = """() => {
+  const blocks = [...document.querySelectorAll(".bd-article section > *, .recap > .question, .recap > p")].filter(
+    (block) => block.tagName !== "SECTION" && block.textContent.trim());
+  const unseen = new Set(blocks), empty = [];
+  const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  press("Home");
+  const count = Number(document.querySelector(".lecture-bar").textContent.split(" ").at(-1));
+  for (let step = 1; step <= count; step += 1) {
+    const shown = blocks.filter((block) => block.getBoundingClientRect().height);
+    if (!shown.some((block) => !/^H\\d$/.test(block.tagName))) empty.push(step);
+    for (const block of shown) unseen.delete(block);
+    press("ArrowRight");
+  }
+  return [[...unseen].map((block) => block.textContent.trim().slice(0, 60)), empty];
+}"""
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("name", [path.stem for path in sorted((HTML / "chapters").glob("*.html"))])
+def test_every_block_of_a_page_is_in_a_step_of_its_lecture_and_on_its_handout(context, site, name):
+    page = opened(context, site, f"chapters/{name}")
+    page.keyboard.press("l")
+    assert page.evaluate(LECTURE) == [[], []]
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.evaluate(LECTURE)[0] == []
+
+
 def test_lecture_mode_goes_through_the_page_step_by_step(context, site):
     page = opened(context, site)
     page.keyboard.press("l")

@@ -35,6 +35,16 @@ MATHEMATICS = r"""() => {
   if (raw) faults.push("raw TeX: " + raw[0]);
   return faults;
 }"""
+# What lies beyond the edge of a box that scrolls or cuts: as good as not there for who does not look for it.
+HIDDEN = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
+  && getComputedStyle(box).overflowX !== "visible" && box.scrollWidth > box.clientWidth + 1
+  && !box.closest("svg, input, select, textarea, .katex-mathml, .unseen")).map((box) =>
+  `${box.className} hides ${box.scrollWidth - box.clientWidth} px: ${box.textContent.trim().slice(0, 80)}`)"""
+# What scrolls sideways shows that it does, by a shadow at the edge.
+WITHOUT_SHADOW = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
+  && ["auto", "scroll"].includes(getComputedStyle(box).overflowX) && box.scrollWidth > box.clientWidth + 1
+  && !getComputedStyle(box).backgroundImage.includes("gradient") && !box.closest("textarea")).map((box) =>
+  `${box.tagName}.${box.className}: ${box.textContent.trim().slice(0, 80)}`)"""
 SIDEWAYS = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
 
@@ -107,6 +117,8 @@ def test_page_in_light_and_wide(browser, site, name):
         assert bool(page.query_selector(".katex")) or not name.startswith("chapters/")
         assert violations(page) == []
         assert page.evaluate(SIDEWAYS) <= 0, "the page scrolls sideways"
+        page.evaluate("document.querySelectorAll('article details').forEach((details) => { details.open = true; })")
+        assert page.evaluate(HIDDEN) == []
         page.set_viewport_size(NARROW)
         assert page.evaluate(SIDEWAYS) <= 0, "the narrow page scrolls sideways"
         assert sum(visit.bytes.values()) <= HEAVIEST, visit.bytes
@@ -125,6 +137,7 @@ def test_page_in_dark_and_narrow(browser, site, name):
             ".math-box", "all => all.map(b => [b.scrollWidth > b.clientWidth + 1, b.tabIndex === 0])"
         )
         assert all(overflows == stop for overflows, stop in boxes), "only wide boxes are stops of the Tab key"
+        assert page.evaluate(WITHOUT_SHADOW) == []
         # What is set of the formulas, thousands of elements, takes the colour of the text around it: the wide
         # pages were looked at with all of them.
         page.evaluate("document.querySelectorAll('.katex-html > *').forEach((element) => element.remove())")

@@ -3,9 +3,12 @@
 ``orientation`` does not load this package, which needs anywidget.
 """
 
+from .belt import BeltFigure
+from .challenge import ChallengeFigure
 from .explorer import SequenceExplorer
 from .figure import MovingFigure
 from .gimbal import GimbalFigure
+from .hands import HandsFigure
 from .motion import MotionFigure
 from .nine_numbers import NineNumbersFigure
 from .phone import PhoneFigure
@@ -15,7 +18,10 @@ from .successive import SuccessiveFigure
 from .triad import TriadFigure
 
 __all__ = [
+    "BeltFigure",
+    "ChallengeFigure",
     "GimbalFigure",
+    "HandsFigure",
     "MotionFigure",
     "MovingFigure",
     "NineNumbersFigure",

@@ -16,7 +16,7 @@ FILE = FOLDER / "js" / "glyphs.js"
 
 #: Every text that a figure sets as mathematics.
 LABELS = (
-    *(rf"\hat{{{frame}}}_{axis}" for frame in "nabcd" for axis in "xyz"),
+    *(rf"\hat{{{frame}}}_{axis}" for frame in "nabcdm" for axis in "xyz"),
     r"\hat{e}",
     *"NABCDtxyz",
     r"\alpha",

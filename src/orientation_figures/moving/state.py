@@ -17,41 +17,87 @@ class Numbers(traitlets.TraitType):
     shape : tuple
         ``()`` for one number, ``(3,)`` for a vector, ``(3, 3)`` for a matrix.
     largest : float, optional
-        No number may be larger than this, or smaller than its negative.
+        No number may be larger than this.
+    smallest : float, optional
+        Or smaller than this; as it stands, the negative of ``largest``.
     """
 
     info_text = "real numbers"
 
-    def __init__(self, default, shape=(), largest=math.inf, **more):
+    def __init__(self, default, shape=(), largest=math.inf, smallest=None, **more):
         super().__init__(number_tuples(default, shape, "default"), **more)
         self.shape, self.largest = shape, largest
+        self.smallest = -largest if smallest is None else smallest
 
     def validate(self, obj, value):
         try:
             numbers = number_tuples(value, self.shape, self.name)
         except (TypeError, ValueError) as error:
             raise traitlets.TraitError(str(error)) from None
-        worst = max(map(abs, _entries(numbers)))
+        entries = _entries(numbers)
         # A slider's end, converted from degrees, may be a rounding beyond.
-        if worst > self.largest + 1e-12:
+        if max(entries) > self.largest + 1e-12 or min(entries) < self.smallest - 1e-12:
             cause = ". Angles are in radians, not degrees" if (self.largest / math.pi).is_integer() else ""
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: numbers from -{self.largest:.6g} to {self.largest:.6g} were expected{cause}"
+                f"{self.name} is {value!r}: numbers from {self.smallest:.6g} to {self.largest:.6g} were expected{cause}"
             )
         return numbers
 
 
 class Direction(Numbers):
-    """A vector that is not zero, kept at unit length."""
+    """A vector that is not zero, of ``size`` components, kept at unit length."""
 
-    def __init__(self, default, **more):
-        super().__init__(_unit(default), (3,), **more)
+    def __init__(self, default, size=3, **more):
+        super().__init__(_unit(default), (size,), **more)
 
     def validate(self, obj, value):
         vector = super().validate(obj, value)
         if not any(vector):
             raise traitlets.TraitError(f"{self.name} is {vector}: a zero vector points nowhere")
         return _unit(vector)
+
+
+COUNTS = {0: "no", 1: "one", 3: "three", 4: "four", 20: "twenty"}
+
+
+class Turns(traitlets.TraitType):
+    """A few turns, each an axis and an angle in radians."""
+
+    def __init__(self, default, fewest=1, most=4, **more):
+        super().__init__(default, **more)
+        self.fewest, self.most = fewest, most
+
+    def validate(self, obj, value):
+        turns = (
+            tuple(tuple(turn) for turn in value)
+            if isinstance(value, (list, tuple))
+            and self.fewest <= len(value) <= self.most
+            and all(isinstance(turn, (list, tuple)) and len(turn) == 2 for turn in value)
+            else None
+        )
+        if turns is None:
+            raise traitlets.TraitError(
+                f"{self.name} is {value!r}: {COUNTS[self.fewest]} to {COUNTS[self.most]} pairs were expected, each an "
+                "axis and an angle in radians, as (('z', 0.7), ('x', 0.5))"
+            )
+        return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
+
+    def _axis(self, axis):
+        if axis not in ("x", "y", "z"):
+            raise traitlets.TraitError(f"{self.name} holds the axis {axis!r}: 'x', 'y' or 'z' was expected")
+        return axis
+
+    def _angle(self, angle):
+        try:
+            number = number_tuples(angle, (), "angle")
+        except (TypeError, ValueError) as error:
+            raise traitlets.TraitError(f"{self.name}: {error}") from None
+        if abs(number) > math.pi + 1e-12:
+            raise traitlets.TraitError(
+                f"{self.name} holds the angle {number:.6g}: it must be from -pi to pi. Angles are in radians, "
+                "not degrees"
+            )
+        return number
 
 
 class Sequence(traitlets.TraitType):

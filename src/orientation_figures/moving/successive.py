@@ -4,48 +4,13 @@ import math
 
 import traitlets
 
-from orientation._numbers_and_symbols import number_tuples
 from orientation.axis_angle import axis_angle_from_dcm
 from orientation.direction_cosines import simple_dcm
 
 from .figure import MovingFigure
-from .state import Numbers
+from .state import Numbers, Turns
 
 COMPARISONS = ("nothing", "1 and 2 exchanged", "2 and 3 exchanged", "3 and 4 exchanged", "body and space fixed")
-
-
-class Turns(traitlets.TraitType):
-    """One to four turns, each an axis and an angle in radians."""
-
-    def validate(self, obj, value):
-        turns = (
-            tuple(tuple(turn) for turn in value)
-            if isinstance(value, (list, tuple))
-            and all(isinstance(turn, (list, tuple)) and len(turn) == 2 for turn in value)
-            else ()
-        )
-        if not 1 <= len(turns) <= 4:
-            raise traitlets.TraitError(
-                f"turns is {value!r}: one to four pairs were expected, each an axis and an "
-                "angle in radians, as (('z', 0.7), ('x', 0.5))"
-            )
-        return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
-
-    def _axis(self, axis):
-        if axis not in ("x", "y", "z"):
-            raise traitlets.TraitError(f"turns holds the axis {axis!r}: 'x', 'y' or 'z' was expected")
-        return axis
-
-    def _angle(self, angle):
-        try:
-            number = number_tuples(angle, (), "angle")
-        except (TypeError, ValueError) as error:
-            raise traitlets.TraitError(f"turns: {error}") from None
-        if abs(number) > math.pi + 1e-12:
-            raise traitlets.TraitError(
-                f"turns holds the angle {number:.6g}: it must be from -pi to pi. Angles are in radians, not degrees"
-            )
-        return number
 
 
 class SuccessiveFigure(MovingFigure):

@@ -13,24 +13,24 @@
   const collect = (section) => {
     let step = [];
     const close = () => {
-      if (step.some((block) => !/^H\d$/.test(block.tagName) || section.children.length === 1)) {
-        steps.push(step);
-        step = [];
-      }
+      if (step.length) steps.push(step);
+      step = [];
     };
     for (const block of section.children) {
       if (block.tagName === "SECTION") {
         close();
-        if (step.length) steps.push(step);
-        step = [];
         collect(block);
+      } else if (block.matches(".recap")) {
+        // Its questions come one by one; what stands beside them comes with each.
+        close();
+        for (const question of block.querySelectorAll(":scope > .question")) steps.push([block, question]);
       } else {
         step.push(block);
-        if (block.matches(SHOWS) || block.querySelector?.(":scope > figure")) close();
+        // A heading waits for what follows it.
+        if (block.matches(SHOWS) || block.querySelector(":scope > figure")) close();
       }
     }
     close();
-    if (step.length) steps.push(step);
   };
 
   let now = -1;

@@ -1,0 +1,66 @@
+"""The belt trick: one full turn leaves a twist that stays, two full turns leave none."""
+
+import math
+
+from orientation.quaternions import dcm_from_quaternion
+
+from .figure import MovingFigure
+from .state import Numbers
+
+FULL = 4 * math.pi
+
+
+class BeltFigure(MovingFigure):
+    r"""A plate that hangs on a wall by a belt, and is turned about the belt's own line.
+
+    Along the belt the orientation goes from that of the wall to that of the plate, as a curve of quaternions from 1
+    to :math:`q`. After one full turn it ends at :math:`-1`, after two at 1. Then the belt can be passed round the
+    plate while the plate is held: after two full turns that takes the twist out, after one it only reverses it.
+
+    Attributes
+    ----------
+    angle : float
+        What the plate has been turned by, radians from 0 to :math:`4\pi`.
+    passed : float
+        How far the belt has been passed round the plate, from 0 to 1. It counts only after one or two full turns.
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> from orientation_figures.moving import BeltFigure
+    >>> BeltFigure(angle=4*pi, passed=1).quaternion_at(0.3)
+    (1.0, 0.0, 0.0, 0.0)
+    """
+
+    kind = "belt"
+    sheet = (-180, -125, 180, 130)
+    room = (500, 620)
+    angle = Numbers(2 * math.pi, largest=FULL, smallest=0).tag(sync=True, state=True)
+    passed = Numbers(0.0, largest=1.0, smallest=0).tag(sync=True, state=True)
+
+    @property
+    def dcm(self):
+        """Direction cosine matrix of the plate with respect to the wall, shape ``(3, 3)``."""
+        return dcm_from_quaternion(self.quaternion_at(1))
+
+    def quaternion_at(self, share):
+        """Return the unit quaternion of the belt at a share of its length, four floats; the belt lies along y.
+
+        Its first and last sixth stay straight, so that the plate keeps away from the wall.
+        """
+        share = min(1, max(0, 1.5 * share - 0.25))
+        whole = self.angle / math.pi / 2
+        turns = round(whole) if abs(whole - round(whole)) < 1e-9 else 0
+        if turns == 2:
+            # Circles through 1 on the sphere of quaternions, from a great one down to a point.
+            tilt = self.passed * math.pi / 2
+            round_ = 2 * math.pi * share
+            size = math.cos(tilt)
+            along, across = size * math.sin(round_), size * math.sin(tilt) * (1 - math.cos(round_))
+            scalar = 1 - size * size * (1 - math.cos(round_))
+        else:
+            # Half circles from 1 to -1, from one way round to the other.
+            tilt = self.passed * math.pi if turns == 1 else 0.0
+            half = self.angle * share / 2
+            scalar, along, across = math.cos(half), math.cos(tilt) * math.sin(half), math.sin(tilt) * math.sin(half)
+        return tuple(round(entry, 15) + 0.0 for entry in (scalar, 0.0, along, across))

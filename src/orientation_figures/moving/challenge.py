@@ -1,0 +1,58 @@
+"""Challenges: match a matrix, undo what was done, find the sequence of a ghost."""
+
+import math
+
+import traitlets
+
+from orientation.axis_angle import axis_angle_from_dcm
+
+from .figure import MovingFigure
+from .state import Turns
+from .successive import chain
+
+
+class ChallengeFigure(MovingFigure):
+    r"""A box with the frame :math:`A`, which the reader turns about its own axes to a goal.
+
+    In the task 'match' the goal is an orientation of which only the matrix is shown. In 'undo' the box has been
+    turned, and the goal is where it came from, :math:`N`. In 'ghost' a ghost has made three turns through angles
+    that are told, about axes that are not. How well it is done is said by the angle that remains.
+
+    Attributes
+    ----------
+    task : {'match', 'undo', 'ghost'}
+    given : tuple of one to three pairs
+        The turns of the challenge, each an axis 'x', 'y' or 'z' and an angle in radians: of the goal in 'match' and
+        'ghost', and in 'undo' those that are to be undone.
+    turns : tuple of no to twenty pairs
+        The reader's own turns, each about a unit vector of the box (body fixed).
+
+    Examples
+    --------
+    >>> from orientation_figures.moving import ChallengeFigure
+    >>> figure = ChallengeFigure(task='undo', given=[('z', 0.5), ('x', 0.3)], turns=[('x', -0.3)])
+    >>> round(figure.remaining, 6)
+    0.5
+    """
+
+    kind = "challenge"
+    sheet = (-180, -172, 180, 172)
+    room = (545, 885)
+    task = traitlets.Enum(("match", "undo", "ghost"), "match").tag(sync=True, state=True)
+    given = Turns((("z", math.pi / 2), ("x", math.pi / 3)), most=3).tag(sync=True, state=True)
+    turns = Turns((), fewest=0, most=20).tag(sync=True, state=True)
+
+    @property
+    def dcm(self):
+        r""":math:`{}^A\mathbf{C}^N` of the box as it is now, shape ``(3, 3)``."""
+        return chain((*self.given, *self.turns) if self.task == "undo" else self.turns, "body")[-1]
+
+    @property
+    def goal(self):
+        """Direction cosine matrix of the goal with respect to N, shape ``(3, 3)``."""
+        return chain(() if self.task == "undo" else self.given, "body")[-1]
+
+    @property
+    def remaining(self):
+        """Angle of the turn from the box to its goal, in radians."""
+        return float(axis_angle_from_dcm(self.goal @ self.dcm.T)[1])

@@ -1,0 +1,103 @@
+import { IDENTITY, add, dcmFromQuaternion, dot, scale } from './mathematics.js';
+import { Sheet, button, change, degrees, element, fixed, follow, glide, group, liveText, numberTable, onceAFrame, open, plain,
+  radians, readout, slider, stage } from './shared.js';
+
+// As in belt.py.
+const SIZE = 96, LENGTH = 3, WIDTH = 0.19, PIECES = 72, WALL = [0.9, 0.06, 0.9], PLATE = [0.62, 0.09, 0.44];
+const FULL = 4 * Math.PI;
+
+// After how many full turns the plate stands, 1 or 2; else 0.
+const fullTurns = (angle) => [1, 2].find((turns) => Math.abs(angle - 2 * Math.PI * turns) < 1e-8) ?? 0;
+
+// The unit quaternion of the belt at a share of its length, as BeltFigure.quaternion_at.
+export function quaternionAt(angle, passed, part) {
+  const share = Math.min(1, Math.max(0, 1.5 * part - 0.25));
+  const turns = fullTurns(angle);
+  if (turns === 2) {
+    const tilt = passed * Math.PI / 2, round = 2 * Math.PI * share, size = Math.cos(tilt);
+    return [1 - size * size * (1 - Math.cos(round)), 0, size * Math.sin(round), size * Math.sin(tilt) * (1 - Math.cos(round))];
+  }
+  const tilt = turns === 1 ? passed * Math.PI : 0, half = angle * share / 2;
+  return [Math.cos(half), 0, Math.cos(tilt) * Math.sin(half), Math.sin(tilt) * Math.sin(half)];
+}
+
+// A plate on a belt: one full turn leaves a twist that stays, two leave none.
+export function render({ model, el }) {
+  let stop = () => {};
+  const turnTo = (angle) => {
+    stop();
+    change(model, { angle: Math.min(FULL, Math.max(0, angle)), passed: 0 });
+  };
+  const sheet = new Sheet({ bounds: [-180, -125, 180, 130], size: SIZE, changed: () => redraw(),
+    name: 'A belt from a wall to a plate.',
+    grab(part, at) {
+      if (!part) return null;
+      const angle = model.get('angle');
+      return (to) => turnTo(radians(Math.round(degrees(angle) + 1.5 * (to[1] - at[1]))));
+    } });
+  const redraw = onceAFrame(draw);
+  const angle = slider({ symbol: '$\\theta$', name: 'theta, turn of the plate', min: 0, max: 720, change: turnTo, more: () => '' });
+  const passed = slider({ symbol: '', name: 'Belt passed round the plate', unit: 'per cent', sign: '%', factor: 0.01, min: 0, max: 100, more: () => '',
+    change: (value) => { stop(); change(model, { passed: value }); } });
+  const presets = [['No turn', 0], ['One full turn', 1], ['Two full turns', 2]].map(([name, turns]) => button(name, () => {
+    stop();
+    const from = model.get('angle'), to = 2 * Math.PI * turns;
+    change(model, { passed: 0 });
+    stop = glide((part) => change(model, { angle: part === 1 ? to : from + part * (to - from) }), 1.6);
+  }));
+  const round = button('Pass the belt round the plate', () => {
+    stop();
+    const from = model.get('passed') > 0.99 ? 0 : model.get('passed');
+    stop = glide((part) => change(model, { passed: from + part * (1 - from) }), 4);
+  });
+  const parts = ['$q_0$', '$q_i$', '$q_j$', '$q_k$'];
+  const table = numberTable({ name: 'Quaternions', kind: 'belt', rows: ['wall', 'middle', 'plate'], columns: parts,
+    names: ['wall', 'middle of the belt', 'plate'].map((where) => ['q 0', 'q i', 'q j', 'q k'].map((part) => `${where}, ${part}`)), light: () => {} });
+  const text = liveText();
+  open(el, stage(sheet, text),
+    element('div', { class: 'controls' }, angle.element, group('Turn the plate', 'row-of-controls', ...presets), 
+      element('div', { class: 'row-of-controls' }, round), passed.element),
+    element('div', { class: 'readouts' }, readout(['The quaternion along the belt'], table.element)));
+
+  function draw() {
+    const theta = model.get('angle'), part = model.get('passed'), turns = fullTurns(theta);
+    angle.show(theta);
+    passed.show(part);
+    round.disabled = !turns;
+    passed.element.style.visibility = turns ? '' : 'hidden';
+    table.show([0, 0.5, 1].map((share) => quaternionAt(theta, part, share).map((entry) => fixed(entry))));
+    sheet.draw(() => picture(sheet, theta, part));
+    text.say(sentence(theta, part, turns));
+  }
+
+  draw();
+  return follow(model, ['angle', 'passed'], redraw);
+}
+
+function picture(sheet, theta, passed) {
+  const frames = Array.from({ length: PIECES + 1 }, (_, k) => dcmFromQuaternion(quaternionAt(theta, passed, k / PIECES)));
+  let place = [0, -LENGTH / 2, 0];
+  sheet.box(IDENTITY, WALL, 'N', add(place, [0, -0.03, 0]));
+  for (let k = 0; k < PIECES; k += 1) {
+    const next = add(place, scale(LENGTH / PIECES / 2, add(frames[k][1], frames[k + 1][1])));
+    const corner = (at, m, side) => add(at, scale(side * WIDTH, frames[k + m][0]));
+    sheet.area([corner(place, 0, -1), corner(place, 0, 1), corner(next, 1, 1), corner(next, 1, -1)],
+      dot(frames[k][2], sheet.view[2]) > 0 ? 'B' : 'D', 38, false);
+    place = next;
+  }
+  const end = frames.at(-1), plate = add(place, scale(0.045, end[1]));
+  sheet.box(end, PLATE, 'A', plate);
+  sheet.triad('A', end, { origin: plate, reach: 0.62, labels: false });
+  sheet.grip(plate, 'plate', 40);
+}
+
+function sentence(theta, passed, turns) {
+  const by = `The plate has been turned by ${plain(degrees(theta), 0)}°.`;
+  if (!turns) return `${by} The belt is twisted as far. Go on to one full turn, or to two.`;
+  if (turns === 1) {
+    return `${by} It lies as at first, but the belt is twisted, and $q$ has come to −1. ${passed > 0.995
+      ? 'Passed round the plate, the belt is twisted the other way: the twist has not gone.' : 'Now hold the plate and pass the belt round it.'}`;
+  }
+  return `${by} The belt is twisted twice, and $q$ is 1 again. ${passed > 0.995
+    ? 'Passed round the plate, which has not turned, the belt is flat: two full turns can be undone, one cannot.' : 'Hold the plate and pass the belt round it.'}`;
+}
