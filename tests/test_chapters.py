@@ -151,3 +151,14 @@ def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
     assert len(read_source(path).questions) == len(new.EXAMPLES)
     with pytest.raises(SystemExit, match="has a question trial/words already"):
         new.new_question("trial/words", "", "words")
+
+
+EQUATIONS = re.findall(
+    r":eq:`([^`]*)`", "".join(path.read_text("utf8") for path in (REPOSITORY / "src" / "orientation").glob("*.py"))
+)
+
+
+def test_docstrings_name_equations_of_the_book():
+    """By their labels, from which the reference page makes numbers and links: numbers move."""
+    texts = "".join(path.read_text("utf8") for path in (REPOSITORY / "chapters").glob("*.ipynb"))
+    assert len(EQUATIONS) >= 20 and [label for label in EQUATIONS if f"$$ ({label})" not in texts] == []

@@ -50,6 +50,7 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
     Notes
     -----
     Source: Kane, Likins and Levinson (1983).
+    In the book: :eq:`equation-three-rates`.
     """
     i, j, k, sign = layout_of(sequence)
     last = AXES.index(sequence[2])
@@ -149,6 +150,7 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
     Notes
     -----
     Source: Hughes (1986).
+    In the book: :eq:`equation-dcm-rate`.
     """
 
     def formula(f, xx, xy, xz, yx, yy, yz, zx, zy, zz, x, y, z):
@@ -194,6 +196,7 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
     Notes
     -----
     Source: Shuster (1993).
+    In the book: :eq:`equation-quaternion-rate`.
     """
 
     def formula(f, a, b, c, d, x, y, z):

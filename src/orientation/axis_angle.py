@@ -67,7 +67,8 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Result:
 
     Notes
     -----
-    Source: Rodrigues' formula Rodrigues (1840), transposed to act on components.
+    Source: the formula of Rodrigues (1840), transposed to act on components.
+    In the book: :eq:`equation-axis-angle`.
     """
     return evaluate(axis_angle_formula, (3, 3), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD)
 
@@ -117,6 +118,7 @@ def quaternion_from_axis_angle(axis: Values, angle: Values) -> Result:
     Notes
     -----
     Source: Moore (2022), section "Alternatives for representing orientation"; Shuster (1993).
+    In the book: :eq:`equation-half-angle`.
     """
 
     def formula(f, x, y, z, angle):
@@ -166,6 +168,10 @@ def axis_angle_from_dcm(dcm: Values) -> tuple[Result, Result]:
     >>> axis, angle = axis_angle_from_dcm(simple_dcm('z', -0.5))
     >>> axis.tolist(), round(angle, 12)
     ([0.0, 0.0, -1.0], 0.5)
+
+    Notes
+    -----
+    In the book: :eq:`equation-back-axis`.
     """
 
     def formula(f, *entries):

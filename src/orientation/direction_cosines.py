@@ -52,6 +52,7 @@ def simple_dcm(axis: str, angle: Values) -> Result:
     Notes
     -----
     Source: Moore (2022), section "Simple orientations".
+    In the book: :eq:`equation-simple-matrix`.
     """
     if not isinstance(axis, str) or axis not in AXES:
         raise ValueError(
@@ -98,6 +99,10 @@ def check_dcm(dcm: Values) -> None:
     Traceback (most recent call last):
         ...
     ValueError: dcm is orthogonal but left-handed: its determinant is -1, not +1. One row or ...
+
+    Notes
+    -----
+    In the book: :eq:`equation-orthogonal`.
     """
     if is_symbolic(dcm):
         entries = symbol_components(dcm, (3, 3), "dcm")
@@ -214,6 +219,7 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     Notes
     -----
     Source: Kabsch (1978), Umeyama (1991).
+    In the book: :eq:`equation-nearest`.
     """
     import numpy
 

@@ -80,6 +80,7 @@ def dcm_from_body_fixed(angles: Values, sequence: str) -> Result:
     -----
     The three turns are multiplied out once, for axes in cyclic order; the other order only changes
     the sign of the angles. Source: Shuster (1993), Diebel (2006).
+    In the book: :eq:`equation-gimbal-chain`.
     """
     return evaluate(body_fixed_formula(sequence), (3, 3), ("angles", angles, (3,)))
 
@@ -147,6 +148,10 @@ def body_fixed_from_dcm(dcm: Values, sequence: str) -> Result:
     >>> from orientation import body_fixed_from_dcm, dcm_from_body_fixed
     >>> body_fixed_from_dcm(dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'), 'zxy').round(12).tolist()
     [0.1, 0.2, 0.3]
+
+    Notes
+    -----
+    In the book: :eq:`equation-back-psi` and :eq:`equation-back-rest`.
     """
     i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]

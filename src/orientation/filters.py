@@ -49,6 +49,7 @@ class MultiplicativeKalmanFilter:
     Notes
     -----
     Source: Lefferts, Markley and Shuster (1982); Markley (2003).
+    In the book: :eq:`equation-filter-turn` and :eq:`equation-filter-observe`.
     """
 
     def __init__(self, dcm, covariance, gyroscope_noise, bias_noise):

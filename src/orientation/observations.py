@@ -51,6 +51,7 @@ def dcm_from_two_directions(observed: Values, reference: Values) -> Result:
     Notes
     -----
     Source: Black (1964); Shuster and Oh (1981).
+    In the book: :eq:`equation-triad`.
     """
     body, fixed = (
         _triad(number_array(pair, (2, 3), name), name)
@@ -127,6 +128,7 @@ def dcm_from_directions(observed: Values, reference: Values, deviations: Values 
     Notes
     -----
     Source: Wahba (1965); Markley (1988).
+    In the book: :eq:`equation-wahba`.
     """
     import numpy
 
@@ -182,6 +184,7 @@ def directions_covariance(observed: Values, deviations: Values) -> Result:
     Notes
     -----
     Source: Shuster and Oh (1981).
+    In the book: :eq:`equation-directions-covariance`.
     """
     import numpy
 

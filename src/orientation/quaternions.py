@@ -70,6 +70,7 @@ def dcm_from_quaternion(quaternion: Values) -> Result:
     Notes
     -----
     Source: Shuster (1993), Moore (2022).
+    In the book: :eq:`equation-quaternion-vector`.
     """
 
     return evaluate(dcm_components_from_quaternion, (3, 3), ("quaternion", quaternion, (4,)), guard=QUATERNION_GUARD)
@@ -136,6 +137,7 @@ def quaternion_from_dcm(dcm: Values) -> Result:
     Notes
     -----
     Source: Shepperd (1978), Markley (2008).
+    In the book: :eq:`equation-back-quaternion`.
     """
     return evaluate(quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
@@ -166,6 +168,7 @@ def multiply_quaternions(first: Values, second: Values) -> Result:
     Notes
     -----
     Source: Hamilton (1844).
+    In the book: :eq:`equation-quaternion-product`.
     """
     return evaluate(product_components, (4,), ("first", first, (4,)), ("second", second, (4,)))
 
@@ -218,6 +221,7 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Res
     Notes
     -----
     Source: Shoemake (1985).
+    In the book: :eq:`equation-slerp`.
     """
 
     def excess(f, *components):

@@ -41,6 +41,7 @@ def dcm_from_rotation_vector(vector: Values) -> Result:
     Notes
     -----
     Source: Shuster (1993).
+    In the book: :eq:`equation-exponential-closed`.
     """
 
     def formula(f, x, y, z):
