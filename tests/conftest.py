@@ -31,12 +31,6 @@ APART = (
 )
 
 
-def pytest_configure(config):
-    """What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata."""
-    if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
-        raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
-
-
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
     """Share the tests out among processes by file: the cells of a notebook have one kernel, many tests one fixture.
@@ -60,6 +54,9 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    # What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata.
+    if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
+        raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
     warm_kernels.use()
     config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(
