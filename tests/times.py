@@ -20,7 +20,7 @@ HEAD = """# What the tests cost
 
 Written by `make times`. The unit is the processor time that starting Python and importing SymPy takes on the same
 machine, so that tables of different machines can be compared. `make test` leaves out what is marked as long, and of
-what is drawn by lot runs a few cases; continuous integration and `make test-all` run everything.
+what is drawn by lot runs a few cases; `make test-all`, as every night, runs everything.
 
 | part | `make test` | `make test-all` | share of everything |
 | --- | ---: | ---: | ---: |
