@@ -60,7 +60,9 @@ def pytest_configure(config):
     warm_kernels.use()
     config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(
-        "markers", "sampled(number): of the test's cases only so many, drawn by lot, run every time; the rest is long"
+        "markers",
+        "sampled(number): of the test's cases, or for a whole file of its tests, only so many, drawn by lot, run every "
+        "time; the rest is long",
     )
 
 
@@ -72,11 +74,13 @@ def pytest_report_header():
 def pytest_collection_modifyitems(items):
     cases = defaultdict(list)
     for item in items:
-        if item.get_closest_marker("sampled"):
-            cases[item.nodeid.partition("[")[0]].append(item)
-    for name, found in cases.items():
-        number = min(found[0].get_closest_marker("sampled").args[0], len(found))
-        chosen = random.Random(f"{SEED} {name}").sample(found, number)
+        for node, marker in item.iter_markers_with_node("sampled"):
+            if not item.get_closest_marker("long"):
+                name = node.nodeid.partition("[")[0]  # of the test, or of the file that is marked
+                cases[name, marker.args[0]].append(item)
+            break  # the closest
+    for (name, number), found in cases.items():
+        chosen = random.Random(f"{SEED} {name}").sample(found, min(number, len(found)))
         for item in found:
             if item not in chosen:
                 item.add_marker(pytest.mark.long)

@@ -162,6 +162,7 @@ def reply(outputs):
 NO_SWITCHING = "delete WebAssembly.Suspending; delete WebAssembly.promising; delete WebAssembly.Suspender;"
 
 
+@pytest.mark.long
 def test_exercise_is_solved_kept_and_downloaded(browser, site):
     context = browser.new_context(viewport={"width": 1300, "height": 900}, accept_downloads=True)
     script = NO_SWITCHING + (HTML / runtime.FOLDER / "pyodide" / "pyodide.js").read_text("utf8")

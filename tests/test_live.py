@@ -503,6 +503,7 @@ def stop(page, number, code):
     return page.below(number)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("code", [ENDLESS, HUGE])
 def test_stop_keeps_the_names_in_an_isolated_page(shared, code):
     assert shared.page.evaluate("crossOriginIsolated")
@@ -553,6 +554,7 @@ FAILURES = {
 }
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("pattern", "words", "answer"), [(p, *case) for p, cases in FAILURES.items() for case in cases]
 )
@@ -651,7 +653,7 @@ def test_keyboard(shared):
     assert shared.page.evaluate(focused) != "Code of cell 3"
 
 
-@pytest.mark.sampled(1)
+@pytest.mark.long
 @pytest.mark.parametrize(("theme", "width"), [("light", 1300), ("dark", 380)])
 def test_accessible_in_use(browser, site, theme, width):
     with Visit(browser, site, QUIET, theme, {"width": width, "height": 800}) as visit:

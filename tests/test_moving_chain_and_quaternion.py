@@ -192,6 +192,7 @@ def tab_to(page, name):
     pytest.fail(f"the Tab key does not come to {name!r}")
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("chain", CHAINS)
 def test_chain_shows_the_numbers_of_the_module(open_figure, chain):
     figure = SuccessiveFigure(**chain)
@@ -210,6 +211,7 @@ def test_chain_shows_the_numbers_of_the_module(open_figure, chain):
     assert np.abs(product - figure.dcm).max() < 0.03
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("angle", [0.0, 1.9, 2 * math.pi, 8.5, 4 * math.pi])
 def test_double_shows_the_numbers_of_the_module(open_figure, angle):
     figure = QuaternionFigure(angle=angle)
@@ -219,6 +221,7 @@ def test_double_shows_the_numbers_of_the_module(open_figure, angle):
     assert np.abs(matrix(page, "Direction cosine matrix of A with respect to N") - figure.dcm).max() < 5.01e-4
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("ends", ENDS)
 def test_ways_show_the_numbers_of_the_module(open_figure, ends):
     figure = QuaternionFigure(view="way", **ends)
@@ -360,7 +363,7 @@ EVERY = [
 ]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("make", EVERY)
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_accessible_in_both_themes_and_not_wider_than_a_phone(open_figure, make, theme):
@@ -380,7 +383,7 @@ STEADY = """() => {
 }"""
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 @pytest.mark.parametrize(
     "figure, start, end",
@@ -418,6 +421,7 @@ EARLY = """() => {
 }"""
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 @pytest.mark.parametrize(
     "figure", [SuccessiveFigure(share=0.0), QuaternionFigure(view="way", share=0.0), MotionFigure(time=0.0)]
