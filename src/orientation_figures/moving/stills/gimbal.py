@@ -65,6 +65,8 @@ def drawing(figure):
             add(layer, arm, drawing.line, [start * arm, end * arm], colour, "thick")
     marks.append((0, drawing.box, (D, CAMERA, (0, 0, 0), "D")))
     add(0.5, D[0], drawing.cylinder, CAMERA[0] / 2 * D[0], 0.5 * D[0], 0.15, "D")
+    if D[0] @ toward > 0:
+        marks.append((0.6, drawing.circle, (D[0], 0.09, 0.5 * D[0], "D", "fill-38")))
     for axis, start in zip(axes, (OUTER, OUTER, INNER)):
         for arm in (axis, -axis):
             add(7, arm, drawing.line, [(start + 0.1) * arm, END * arm], "ink", "guide")
