@@ -112,7 +112,7 @@ def test_both_languages_draw_the_same_picture(open_figure, kind):
     """
     page = open_figure(kind)
     (still, *_), (live, *_) = (page.evaluate(SHAPES, box) for box in (".still svg", ".live .sheet"))
-    assert len(still) >= 15
+    assert len(still) >= 12
     assert without_twin(still, live) == []
     assert len(without_twin(live, still)) == FOR_THE_HAND.get(kind, 0)
 
