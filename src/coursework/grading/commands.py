@@ -1,4 +1,4 @@
-"""The commands of instructors: ``coursework grade``, ``regrade``, ``export`` and ``sample-class``."""
+"""The commands of instructors, from ``coursework grade`` to ``coursework sample-class``."""
 
 import re
 import sys
@@ -49,6 +49,14 @@ def add_commands(commands):
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
     merge.add_argument("out", metavar="DIR")
     merge.add_argument("ledgers", nargs="+", metavar="ledger.jsonl")
+    term = commands.add_parser("term", help="what a whole course comes to: due dates, weights, statistics")
+    term.add_argument("out", metavar="DIR")
+    term.add_argument(
+        "--rules", required=True, metavar="FILE.toml", help="due dates, extensions, weights: see the book"
+    )
+    term.add_argument(
+        "--earlier", nargs="+", default=[], metavar="counts.json", help="the counts of other years, to compare"
+    )
     export = commands.add_parser("export", help="hand the marks on")
     export.add_argument("out", metavar="DIR")
     export.add_argument(
@@ -164,6 +172,18 @@ def merge(out, ledgers):
             )
 
 
+def term(out, rules, earlier):
+    from .course_pages import FOLDER, write_course
+    from .store import Store
+    from .term import BadRules, read_rules
+
+    try:
+        said = write_course(Store(out), read_rules(rules), earlier=earlier)
+    except BadRules as error:
+        sys.exit(f"coursework term: {error}")
+    print(*said, f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it", sep="\n")
+
+
 def export(out, lms, filled, column, name, overwrite, assignment, feedback, nbgrader, gradescope, student):
     from . import gradebooks
     from .store import Store
@@ -199,6 +219,7 @@ COMMANDS = {
     "regrade": regrade,
     "review": review,
     "merge": merge,
+    "term": term,
     "export": export,
     "sample-class": sample_class,
 }

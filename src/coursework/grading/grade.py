@@ -27,7 +27,7 @@ from .store import FORMAT, Store, as_text, write
 from .tables import number, readable, table
 from .versions import software
 
-REFUSED, COURSE, WHOSE = "refused.json", "course.json", "whose.csv"
+REFUSED, COURSE, WHOSE, ROSTER = "refused.json", "course.json", "whose.csv", "roster.json"
 
 
 MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
@@ -206,6 +206,8 @@ def grade(
             raise NothingToGrade(str(error)) from None
         work = sort_work(notebooks, course, refused)
         _say_whose(work, refused, roster, store, show)
+        if roster:
+            write(store.folder / ROSTER, as_text(sorted(roster.people)))
         if only_list:
             return {"graded": 0, "kept": 0, "refused": len(refused)}
         _demand_a_class(work, roster, student)
@@ -347,7 +349,10 @@ def key_of(work, questions, limits, weak):
     """What a record depends on, as one short text."""
     depends = [
         FORMAT,
-        [[notebook.digest, [[one.name, one.digest] for one in notebook.beside]] for notebook in work.notebooks],
+        [
+            [notebook.digest, notebook.handed_in, [[one.name, one.digest] for one in notebook.beside]]
+            for notebook in work.notebooks
+        ],
         [notebook.digest for notebook in work.superseded],
         {name: question["version"] for name, question in questions.items()},
         vars(limits),
@@ -440,6 +445,7 @@ def record_of(work, results, key, questions, limits):
                 "seed": result["seed"],
                 "isolation": result["isolation"],
                 "late": notebook.late,
+                "handed in": notebook.handed_in,
             }
         )
     answers, finished = {}, all(result["finished"] for result in results)

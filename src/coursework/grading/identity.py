@@ -6,6 +6,7 @@ knows whose they are: none of them is graded, and a person is asked.
 """
 
 import csv
+import datetime
 import os
 import re
 import unicodedata
@@ -45,6 +46,8 @@ class Claim(NamedTuple):
     late : bool
     given_by_system : bool
         Whether a learning management system wrote it.
+    handed_in : str
+        When, by the system's own clock; empty where it does not say.
     """
 
     student: str
@@ -54,6 +57,7 @@ class Claim(NamedTuple):
     declared: tuple = ()
     late: bool = False
     given_by_system: bool = False
+    handed_in: str = ""
 
 
 class Layout:
@@ -98,6 +102,8 @@ class Layout:
                 notebooks, first = inner, inside
         if "submitted" in first and first <= NBGRADER:
             self.enclosing += ("submitted",)
+        #: Whether nbgrader collected it, which says in a file when each was handed in.
+        self.is_nbgraders = self.enclosing[-1:] == ("submitted",)
 
     def _is_inside(self, parts):
         return len(parts) > len(self.enclosing) and parts[: len(self.enclosing)] == self.enclosing
@@ -151,8 +157,15 @@ class Layout:
             return None
         name, user = _clean(found["name"]), found["user"]
         keys = (("brightspace", user), ("name", name))
+        when = _when(found["when"])
         return Claim(
-            f"{name} {user}", keys, f"brightspace {user}", _inside(parts), _when(found["when"]), given_by_system=True
+            f"{name} {user}",
+            keys,
+            f"brightspace {user}",
+            _inside(parts),
+            when,
+            given_by_system=True,
+            handed_in=_as_time(when),
         )
 
     def _blackboard(self, parts):
@@ -161,9 +174,8 @@ class Layout:
             return None
         user = found["who"].removeprefix(self.prefix) if self.prefix else found["who"].rpartition("_")[2]
         when = tuple(map(int, found["when"].split("-")))
-        return Claim(
-            _clean(user), (("own", user),), f"blackboard {user}", _inside(parts, found["file"]), when, False, True
-        )
+        inside = _inside(parts, found["file"])
+        return Claim(_clean(user), (("own", user),), f"blackboard {user}", inside, when, False, True, _as_time(when))
 
     def _github(self, parts):
         user = parts[0].removeprefix(self.prefix)
@@ -179,6 +191,14 @@ class Layout:
                 # A second way of writing the same name is a second claim.
                 return Claim(_clean(rest), _own(rest), f"files {stem.replace(assignment, '*')}", parts[0])
         return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0])
+
+
+def _as_time(numbers):
+    """Year, month, day and so on as ISO 8601 has them, without a time zone; empty where they are no time."""
+    try:
+        return datetime.datetime(*numbers).isoformat()
+    except ValueError:
+        return ""
 
 
 def _inside(parts, first=None):
@@ -257,6 +277,7 @@ FIRST, LAST = ("first name", "first_name", "firstname"), ("last name", "last_nam
 WORDS = {
     "own": "the name of the folder",
     "name": "the full name",
+    "email": "the address",
     "letters": "the letters of the name",
     "canvas": "Canvas's number",
     "canvas anonymous": "Canvas's anonymous name",
@@ -285,10 +306,12 @@ class Roster:
     ----------
     people : dict
         What is known of each student, by the student's name here.
+    rows : dict
+        Each student's whole line, by the names of the columns in small letters.
     """
 
     def __init__(self, path):
-        self.people, self.index, self.claimed = {}, {}, {}
+        self.people, self.index, self.rows = {}, {}, {}
         for number, row in _rows(path):
             known = _known(row)
             student = next((value for kind in ("own", "email", "name") for value in known.get(kind, ())), None)
@@ -296,7 +319,7 @@ class Roster:
                 continue  # Canvas's line of possible points
             if student in self.people:
                 raise BadRoster(f"{path}, line {number}: {student!r} is there a second time.")
-            self.people[student] = known
+            self.people[student], self.rows[student] = known, row
             for kind, values in known.items():
                 for value in values:
                     self.index.setdefault((kind, _same(kind, value)), set()).add(student)

@@ -9,6 +9,7 @@ is followed, nothing is unpacked on disk, nothing is repaired. :mod:`coursework.
 
 import codecs
 import contextlib
+import datetime
 import hashlib
 import io
 import json
@@ -90,6 +91,8 @@ class Notebook(NamedTuple):
     read : function
         Gives its bytes.
     beside : tuple of Beside
+    handed_in : str
+        When, in ISO 8601, as the system says; without a time zone where the system names none.
     """
 
     file: str
@@ -104,6 +107,7 @@ class Notebook(NamedTuple):
     claim: Claim
     read: Callable
     beside: tuple = ()
+    handed_in: str = ""
 
     @property
     def cells(self):
@@ -176,7 +180,54 @@ def take_in(path, assignments=(), roster=None, student=None):
             if not _is_by_the_way(name) or (claim and source not in have):
                 whose = claim.student if claim else ""
                 refused.append(Refused(name, whose, "This is no notebook: its name does not end in .ipynb."))
-    return [one._replace(beside=_beside(one, others)) for one in notebooks], refused
+    return [
+        one._replace(beside=_beside(one, others), handed_in=_when(one, others, layout)) for one in notebooks
+    ], refused
+
+
+#: nbgrader's file beside what was handed in. Its time zone is UTC unless a course has changed that.
+TIMESTAMP = "timestamp.txt"
+
+
+def _when(one, others, layout):
+    """When a notebook was handed in, as the system says and never a student's file; empty if it says nothing."""
+    if one.claim.handed_in or not layout.is_nbgraders:
+        return one.claim.handed_in
+    place = PurePosixPath(*PurePosixPath(one.file).parts[: len(layout.enclosing) + 2], TIMESTAMP)
+    for _, name, read in others.get(one.claim.source, ()):
+        if PurePosixPath(name) == place:
+            with contextlib.suppress(Unfit, UnicodeDecodeError):
+                return as_time(read()[:200].decode("utf8").strip()) or ""
+    return ""
+
+
+#: How nbgrader, Moodle in English and spreadsheets write times.
+FORMATS = (
+    "%Y-%m-%d %H:%M:%S.%f",
+    "%A, %d %B %Y, %I:%M %p",
+    "%A, %B %d, %Y, %I:%M %p",
+    "%A, %d %B %Y, %H:%M",
+)
+
+
+def as_time(text):
+    """A time as a system writes it, in ISO 8601; ``None`` if it is none.
+
+    >>> as_time("2026-11-21 20:01:00.5 UTC"), as_time("Saturday, 21 November 2026, 8:01 PM")
+    ('2026-11-21T20:01:00.500000+00:00', '2026-11-21T20:01:00')
+    """
+    bare = text.strip()
+    zone = next((zone for zone in (" UTC", " GMT") if bare.endswith(zone)), "")
+    bare = bare.removesuffix(zone)
+    for read in (datetime.datetime.fromisoformat, *(_in_format(one) for one in FORMATS)):
+        with contextlib.suppress(ValueError):
+            found = read(bare)
+            return (found.replace(tzinfo=datetime.UTC) if zone else found).isoformat()
+    return None
+
+
+def _in_format(form):
+    return lambda text: datetime.datetime.strptime(text, form)
 
 
 def _take(found, others, refused, layout, name, when, read, outer):

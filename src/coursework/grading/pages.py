@@ -21,6 +21,7 @@ h1 { font-size: 1.75rem; line-height: 1.2; margin: 0 0 .2em; font-weight: 600; }
 h2 { font-size: 1.25rem; margin: 2.4rem 0 .6rem; font-weight: 600; }
 h3 { font-size: 1.05rem; margin: 1.9rem 0 .5rem; font-weight: 600; } .head h3 { margin: 0; }
 p { margin: .5em 0; }
+a { color: var(--open); }
 .soft, figcaption, th, .key { color: var(--soft); font-family: "Segoe UI", system-ui, sans-serif; font-size: .88rem; }
 .big { font-size: 2rem; line-height: 1.2; margin: .6rem 0 0; }
 section.question { border: 1px solid var(--rule); border-left: .35rem solid var(--none); border-radius: 4px; padding: .8rem 1rem;

@@ -14,7 +14,6 @@ from collections import Counter, defaultdict
 from typing import NamedTuple
 from urllib.parse import urlencode
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from tornado import httpserver, ioloop, netutil, web
 
@@ -23,7 +22,8 @@ from .ledger import Ledger, digest_of_answer
 from .mathematics import answer_as_mathematics
 from .reports import GUESSABLE, deed
 from .store import Store
-from .tables import number, readable
+from .tables import readable
+from .templates_of_pages import ENVIRONMENT
 
 ALONE = "127.0.0.1"
 POLICY = (
@@ -228,19 +228,6 @@ def _bare(source):
 
 
 # --- the server ---------------------------------------------------------------------------------
-
-ENVIRONMENT = Environment(
-    loader=PackageLoader("coursework.grading", "templates"),
-    autoescape=True,
-    undefined=StrictUndefined,
-    trim_blocks=True,
-)
-ENVIRONMENT.filters |= {
-    "readable": lambda text, most=400: readable(str(text), most),
-    "points": number,
-    "message": lambda said: Markup(pages.message(said)),
-    "capital": lambda text: text[:1].upper() + text[1:],
-}
 
 
 class _Page(web.RequestHandler):
