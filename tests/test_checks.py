@@ -14,7 +14,7 @@ from sympy.physics.mechanics import ReferenceFrame
 
 import coursework
 from coursework.authoring.author import AuthorError, question
-from coursework.authoring.forms import equivalent_forms, random_form
+from coursework.authoring.forms import equivalent_forms, flat, random_form
 from coursework.checking import questions, sealing
 from coursework.checking.kinds import Fault, Undecidable, fault, read
 from coursework.checking.plain import NotPlain, to_plain
@@ -96,17 +96,21 @@ def student(tmp_path, monkeypatch):
     return prepare
 
 
+def passes(one, answer):
+    return one.reply_to(one.to_plain(answer)).outcome == "correct"
+
+
 # --- any right form passes ----------------------------------------------------------------------
 
 
 def try_forms(one, number):
     """Draw forms of the right answer by this run's lot; there are few where algebra has nothing to change."""
-    right, chance = one.fingerprint_of(one.plain), random.Random(f"{SEED} {one.name}")
+    chance = random.Random(f"{SEED} {one.name}")
     if one.public["kind"] in ("sequence", "truth values", "words", "function"):
         number = min(number, 20)
     for _ in range(number):
         form = random_form(one.public, one.answer, chance)
-        assert one.fingerprint_of(one.to_plain(form)) == right, (f"BOOK_TEST_SEED={SEED}", form)
+        assert passes(one, form), (f"BOOK_TEST_SEED={SEED}", form)
 
 
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
@@ -122,15 +126,13 @@ def test_a_thousand_forms_of_the_right_answer_pass(one):
 
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_named_forms_pass(one):
-    right = one.fingerprint_of(one.plain)
     for form, answer in equivalent_forms(one.public, one.answer):
-        assert one.fingerprint_of(one.to_plain(answer)) == right, form
+        assert passes(one, answer), form
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_euler_angles_pass_if_their_orientation_is_right(sequence):
     one = make("trial/a", "Euler angles", [0.4, 0.9, -1.1], sequence=sequence)
-    right = one.fingerprint_of(one.plain)
     psi, middle, last = 0.4, 0.9, -1.1
     proper = sequence[0] == sequence[2]
     twin = [psi - sm.pi, -middle if proper else sm.pi - middle, last + sm.pi]
@@ -139,7 +141,7 @@ def test_euler_angles_pass_if_their_orientation_is_right(sequence):
         [psi + 2 * sm.pi, middle, last],
         body_fixed_from_dcm(dcm_from_body_fixed((psi, middle, last), sequence), sequence),
     ):
-        assert one.fingerprint_of(one.to_plain(answer)) == right
+        assert passes(one, answer)
 
 
 # --- each mistake has its message, and no answer a wrong one -------------------------------------
@@ -170,7 +172,7 @@ def reply_to(one, answer):
         (dcm_from_body_fixed((theta, alpha, phi), "xyz"), "another sequence", "xyz"),
         (simple_dcm("y", phi) * simple_dcm("z", theta), "turn missing", "second turn is missing"),
         (GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}), "sign of every turn", "wrong sign"),
-        (2 * GIMBAL, "not orthogonal", "row should be a unit vector and has length 2.0"),
+        (2 * GIMBAL, "not orthogonal", "row should be a unit vector and has length 2 at"),
         (GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)), "not orthogonal", "row"),
         (sm.diag(1, -1, 1) * GIMBAL, "left-handed", "determinant is −1"),
         (
@@ -244,8 +246,7 @@ def test_every_mistake_of_the_catalogue_is_named_in_all_twelve_sequences(sequenc
     )
     for mistake in one.mistakes:
         text = one.fingerprint_of(one.to_plain(mistake.answer))
-        entry = one.entries[text]
-        assert entry.outcome == "correct" or [mistake.note, mistake.details] in entry.notes
+        assert [mistake.note, mistake.details] in one.entries[text].notes or passes(one, mistake.answer)
 
 
 def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
@@ -271,21 +272,37 @@ def test_what_cannot_be_decided_is_said_to_be_undecided():
         read(KINDS["an expression"].public, to_plain(sm.gamma(theta)))
 
 
-def test_an_answer_within_the_tolerance_passes_and_one_beyond_three_tolerances_does_not():
-    one = KINDS["a number"]
-    tolerance, right = one.public["tolerance"], one.fingerprint_of(one.plain)
-    exact = float(sm.pi / 7)
-    for share in (-1, -0.5, 0.5, 1):
-        assert one.fingerprint_of(one.to_plain(exact + share * tolerance)) == right
-    for share in (-3.01, 3.01, 10):
-        assert one.fingerprint_of(one.to_plain(exact + share * tolerance)) != right
+TOLERANT = {
+    "one number": make("trial/t1", "expression", sm.pi / 7),
+    "a larger tolerance": make("trial/t2", "vector", [1, -2, 30], tolerance=0.05),
+    "relative": make("trial/t3", "vector", [0.002, -2000, 31], tolerance=1e-6, relative=0.01),
+    "a matrix": make("trial/t4", "matrix", sm.Matrix([[1, 2], [3, 4]]) / 7, shape=(2, 2)),
+}
+
+
+@pytest.mark.parametrize("one", TOLERANT.values(), ids=TOLERANT)
+def test_the_tolerance_is_exact_on_both_sides(one):
+    """An answer within `tolerance + relative * |right|` passes, one just beyond does not: whatever cell it is in."""
+    entries, put = flat(one.answer)
+    absolute, relative = one.public["tolerance"], one.public.get("relative", 0)
+    sealed, chance = one.sealed(), random.Random(2)
+    for place in range(len(entries)):
+        for share, right in ((-0.9999, True), (0.9999, True), (-1.0001, False), (1.0001, False)):
+            answer = [float(entry) for entry in entries]
+            answer = [x + chance.uniform(-1, 1) * 0.99 * (absolute + relative * abs(x)) for x in answer]
+            exact = float(entries[place])
+            answer[place] = exact + share * (absolute + relative * abs(exact))
+            reply = questions.judge(one.name, sealed, one.to_plain(put(answer)))[0]
+            assert (reply.outcome == "correct") == right, (place, share)
+            if not right:
+                assert reply.note == "rounded too far" and "close" in repr(reply)
 
 
 def test_the_other_sign_of_a_quaternion_passes_unless_it_is_asked_for():
     free = KINDS["numbers in a quaternion"]
-    assert free.fingerprint_of(free.to_plain(-free.answer)) == free.fingerprint_of(free.plain)
+    assert passes(free, -free.answer)
     signed = make("trial/qs", "quaternion", free.answer, either_sign=False)
-    assert signed.fingerprint_of(signed.to_plain(-free.answer)) != signed.fingerprint_of(signed.plain)
+    assert not passes(signed, -free.answer)
 
 
 # --- the check itself ---------------------------------------------------------------------------
@@ -309,18 +326,42 @@ def test_what_a_student_wrote_is_shown_and_not_obeyed(student):
     assert "<script" not in page
 
 
-def test_a_mistake_made_again_earns_one_more_hint_each_time(student):
-    check = student(make(hints={"transposed": ["Look at the rows.", "Whose unit vectors are they?"]}))
-    said = [len(check("trial/gimbal", GIMBAL.T).messages) for _ in range(4)]
-    assert said == [1, 2, 3, 3]
-    assert "Whose" in repr(check_module.hint("trial/gimbal"))
+def test_each_different_answer_earns_one_more_hint_and_pressing_run_again_does_not(student):
+    check = student(
+        make(
+            hints={"transposed": ["Look at the rows.", "Whose unit vectors are they?"]}, ladder=["Begin with one turn."]
+        )
+    )
+
+    def shown(answer):
+        return [line for line in check("trial/gimbal", answer).messages if line.startswith("Hint")]
+
+    assert [shown(GIMBAL.T) for _ in range(3)] == [[], [], []]
+    # Another mistake has no hints of its own: the ladder of the question goes on.
+    assert shown(GIMBAL.subs(theta, -theta)) == ["Hint: Begin with one turn."]
+    assert len(shown(GIMBAL.T)) == 1 and len(shown(GIMBAL.subs(phi, -phi))) == 1
+    assert shown(GIMBAL.T) == ["Hint: Look at the rows.", "Hint: Whose unit vectors are they?"]
+    said = repr(check_module.hint("trial/gimbal"))
+    assert "Whose" in said and "Begin" not in said and "1 more can be earned" in said
+    assert not said.startswith("Not attempted")
 
 
-def test_another_mistake_starts_its_hints_anew(student):
-    check = student(make(hints={"transposed": ["Look at the rows."]}))
+def test_no_hint_that_is_not_yet_earned_stands_in_clear_on_the_disk(student, tmp_path):
+    one = make(hints={"transposed": ["Look at the rows."]}, ladder=["Begin with one turn."], solution="By hand.")
+    check = student(one)
     check("trial/gimbal", GIMBAL.T)
-    check("trial/gimbal", GIMBAL.subs(theta, -theta))
-    assert len(check("trial/gimbal", GIMBAL.T).messages) == 1
+    text = json.dumps(one.sealed("CODE")) + "".join(path.read_text() for path in tmp_path.rglob("*") if path.is_file())
+    assert not any(words in text for words in ("Look at", "Begin with", "By hand"))
+
+
+def test_who_gives_up_sees_the_worked_solution_with_the_code_of_the_instructor(student):
+    one = make(solution="Take $x$ **first**.")
+    student(one)
+    assert "opens no solution" in repr(check_module.worked_solution("trial/gimbal", "ABCD"))
+    sealed = one.sealed("PYGG-ZGV7-G94A")
+    check_module.find_question = lambda name: sealed
+    assert "first" in check_module.worked_solution("trial/gimbal", "pygg zgv7 g94a").solution
+    assert check_module.worked_solution("trial/gimbal", "PYGG-ZGV7-G94B").solution == ""
 
 
 def test_a_right_answer_opens_the_hints_of_a_later_question(student):
@@ -386,23 +427,49 @@ def test_a_lock_opens_with_its_key_only_and_notices_a_change():
     assert sealing.unseal(sealed, key) == {"a": "ü"}
     data = bytearray(base64.b64decode(sealed))
     data[3] ^= 1
-    for wrong in ((sealed, other, "reply"), (sealed, key, "solution"), (base64.b64encode(data), key, "reply")):
+    for wrong in ((sealed, other), (base64.b64encode(data), key)):
         with pytest.raises(ValueError):
             sealing.unseal(*wrong)
+
+
+def test_a_locker_opens_with_its_key_only_and_notices_a_change():
+    keys = [sealing.slow_key("00", str(number)) for number in range(3)]
+    lockers = sealing.pack([sealing.locker(keys[0], 0, [7]), sealing.locker(keys[1], 1, [3, 500], 4, b"12345678")])
+    assert sealing.open_locker(lockers, keys[0]) == (0, [7], None, bytes(8))
+    assert sealing.open_locker(lockers, keys[1]) == (1, [3, 500], 4, b"12345678")
+    assert sealing.open_locker(lockers, keys[2]) is None
+    data = base64.b64decode(lockers)
+    for place in range(len(data)):
+        changed = base64.b64encode(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
+        for key in keys[:2]:
+            try:
+                assert sealing.open_locker(changed, key) in (None, sealing.open_locker(lockers, key))
+            except ValueError as error:
+                assert "changed" in str(error)
 
 
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
     sealed = one.sealed()
-    assert len({len(locker) for locker in sealed["lockers"].values()}) == 1
-    assert list(sealed["lockers"]) == sorted(sealed["lockers"])
+    data = base64.b64decode(sealed["lockers"])
+    lockers = [data[start : start + sealing.LOCKER] for start in range(0, len(data), sealing.LOCKER)]
+    assert lockers == sorted(lockers) and len(lockers) == len(one.entries) + len(one.near)
+    assert len(sealed["lockers"]) == 32 * len(lockers)
     assert one.sealed() == sealed
-    opened = [
-        name
-        for name in sealed["lockers"]
-        if name == sealing.locker(sealing.slow_key(one.public["salt"], one.fingerprint_of(one.plain)))
-    ]
-    assert len(opened) == 1
+    assert questions.judge(one.name, sealed, one.plain)[0].outcome == "correct"
+
+
+def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():
+    """Nothing public but the seed of the points follows from the answer: no bit of a number, no order of lockers."""
+    for one in KINDS.values():
+        assert set(one.sealed()) <= {
+            "kind", "frames", "symbols", "unit", "shape", "length", "sequence", "options", "tolerance", "relative",
+            "calls", "takes", "result", "quantity", "either sign", "unit vector", "every symbol",
+            "salt", "lockers", "pages", "ladder", "worth",
+        }  # fmt: skip
+        assert one.public["salt"] in [
+            hashlib.sha256(f"{one.name} {attempt}".encode()).hexdigest()[:16] for attempt in range(50)
+        ]
 
 
 def test_the_order_in_which_symbols_are_listed_does_not_matter():

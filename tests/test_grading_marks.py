@@ -294,7 +294,10 @@ def test_damaged_data_is_no_answer(data):
 
 def test_every_mistake_has_words_for_the_report():
     assert set(MESSAGES) - {"authored"} <= set(reports.DEEDS)
-    details = {"turn": 0, "first": 0, "second": 1, "sequence": "xyz", "axis": "x", "symbol": "m"}
+    details = {"turn": 0, "first": 0, "second": 1, "sequence": "xyz", "axis": "x", "symbol": "m"} | {
+        "factor": "2",
+        "number": 8,
+    }
     for note in reports.DEEDS:
         said = reports.deed({"note": note, "details": details, "messages": []})
         assert said and "{" not in said

@@ -6,4 +6,7 @@ from .mistakes import DEEDS
 #: What the notebooks import.
 PACKAGES = ("orientation", "orientation_figures", "orientation_recordings")
 
-__all__ = ["DEEDS", "KINDS", "PACKAGES"]
+#: How many numbers an answer of each kind is compared by.
+SIZES = {"direction cosine matrix": 9, "quaternion": 4, "Euler angles": 9, "axis and angle": 9}
+
+__all__ = ["DEEDS", "KINDS", "PACKAGES", "SIZES"]

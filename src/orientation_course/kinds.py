@@ -7,9 +7,11 @@ there is one of.
 from coursework.checking.evaluate import MP
 from coursework.checking.kinds import (
     FUNCTIONS,
+    TRANSPOSED,
     Fault,
     components,
     leaf,
+    length_in_words,
     listed,
     one_sign,
     row_entries,
@@ -26,6 +28,15 @@ from . import forms, mistakes
 
 
 def _dcm(question, value):
+    if value[0] == "frames":
+        target, source = question["frames"]
+        if target not in value[1] or source not in value[1][target]:
+            raise Fault(
+                "frame",
+                f"These are the frames {listed(value[1])}; the question asks for the orientation of `{target}` with "
+                f"respect to `{source}`, and there is no path between two of these names.",
+            )
+        value = value[1][target][source]
     if value[0] == "frame":
         target, source = question["frames"]
         name, others = value[1], value[2]
@@ -95,7 +106,7 @@ def _dcm_fault(question, numbers):
         names = ("first", "second", "third")
         if i == j:
             length = MP.sqrt(_dot(rows[i], rows[i]))
-            said = f"the {names[i]} row should be a unit vector and has length {short(length)}{where}"
+            said = f"the {names[i]} row should be a unit vector and has length {length_in_words(length)}{where}"
         else:
             said = (
                 f"the {names[i]} and the {names[j]} row should be perpendicular, and their dot product is "
@@ -117,7 +128,7 @@ def _quaternion_fault(question, numbers):
         where = " at the values tried" if question.get("symbols") else ""
         return Fault(
             "not unit length",
-            f"The quaternion of an orientation has length 1; this one has length {short(length)}{where}.",
+            f"The quaternion of an orientation has length 1; this one has length {length_in_words(length)}{where}.",
         )
     return None
 
@@ -135,9 +146,16 @@ def _angles_fault(question, numbers):
 
 def _axis_fault(question, numbers):
     length = FUNCTIONS.norm(*numbers[:3])
-    if abs(length - 1) > slack(question) and question.get("unit axis", True):
-        return Fault("not unit length", f"The axis should be a unit vector; this one has length {short(length)}.")
+    if abs(length - 1) > slack(question) / 3 and question.get("unit axis", True):
+        return Fault(
+            "not unit length", f"The axis should be a unit vector; this one has length {length_in_words(length)}."
+        )
     return _angles_fault(question, numbers[3:])
+
+
+def _conjugate(question, numbers):
+    scalar, *rest = numbers
+    return [scalar, *(-number for number in rest)]
 
 
 def _dot(first, second):
@@ -149,19 +167,33 @@ def _determinant(rows):
     return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
 
+#: Where to begin with each kind of question.
+BEGIN = {
+    "direction cosine matrix": "Write down what one row is: the components of one unit vector of the first "
+    "frame along those of the second. Draw the two triads for a small angle and read off one row.",
+    "quaternion": "What is the axis, as a unit vector, and what is the angle? Half of it goes into sine and cosine.",
+    "Euler angles": "Which turn comes first, and about which axis? Compare the matrix of the three turns with the one "
+    "that is given, and begin with its simplest entry.",
+    "axis and angle": "Which vector does the turn leave as it is? It is the axis; the trace gives the angle.",
+    "sequence": "Which axis do the first two frames share? And which one the next two?",
+}
 KINDS = {
     "direction cosine matrix": Kind(
+        begin=BEGIN["direction cosine matrix"],
         entries=_dcm,
         fault=_dcm_fault,
         wrong="This is a direction cosine matrix, but not the one that is asked for.",
         needs=("frames",),
         mistakes=mistakes.of_dcm,
         messages=mistakes.MESSAGES,
+        details=mistakes.DETAILS,
+        slips=TRANSPOSED,
         build=mistakes.dcm_of,
         forms=forms.of_dcm,
         another=forms.another_dcm,
     ),
     "quaternion": Kind(
+        begin=BEGIN["quaternion"],
         entries=_quaternion,
         unique=one_sign,
         fault=_quaternion_fault,
@@ -169,10 +201,13 @@ KINDS = {
         either_sign=True,
         mistakes=mistakes.of_quaternion,
         messages=mistakes.MESSAGES,
+        details=mistakes.DETAILS,
+        slips={"conjugate": ("it is the conjugate, and its conjugate has another mistake.", _conjugate)},
         build=mistakes.quaternion_of,
         another=forms.another_quaternion,
     ),
     "Euler angles": Kind(
+        begin=BEGIN["Euler angles"],
         entries=_angles,
         unique=_of_angles,
         fault=_angles_fault,
@@ -183,8 +218,10 @@ KINDS = {
         arguments=("sequence",),
         mistakes=mistakes.of_angles,
         messages=mistakes.MESSAGES,
+        details=mistakes.DETAILS,
     ),
     "axis and angle": Kind(
+        begin=BEGIN["axis and angle"],
         entries=_axis_and_angle,
         unique=_of_axis_and_angle,
         fault=_axis_fault,
@@ -192,11 +229,14 @@ KINDS = {
         wrong="This axis and angle give another orientation than the one that is asked for.",
         mistakes=mistakes.of_axis_and_angle,
         messages=mistakes.MESSAGES,
+        details=mistakes.DETAILS,
     ),
     "sequence": Kind(
+        begin=BEGIN["sequence"],
         text=_sequence,
         mistakes=mistakes.of_sequence,
         messages=mistakes.MESSAGES,
+        details=mistakes.DETAILS,
         forms=forms.of_sequence,
         another=forms.another_sequence,
     ),

@@ -83,6 +83,15 @@ MESSAGES = {
 }
 
 
+#: What the details of a mistake may be: the places that a locker can hold.
+DETAILS = {
+    "turn": (None, *range(len(ORDINALS))),
+    "first": tuple(range(len(ORDINALS))),
+    "second": tuple(range(len(ORDINALS))),
+    "sequence": ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy", "xyz", "yzx", "zxy", "xzy", "zyx", "yxz"),
+    "axis": "xyz",
+}
+
 #: What the class did, by the note of a mistake or of a fault of the form: for the instructor's report.
 DEEDS = {
     "sign of one turn": "gave the angle of the {turn} turn the wrong sign",

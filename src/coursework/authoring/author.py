@@ -19,22 +19,37 @@ import hashlib
 import html
 import itertools
 import json
-import math
+import re
 from typing import NamedTuple
 
 from ..checking import sealing
 from ..checking.evaluate import MP
-from ..checking.kinds import Blank, Fault, Undecidable, calls_for, canonical, cell_of, cells, fingerprint, read
-from ..checking.mistakes import Mistake
+from ..checking.kinds import (
+    Blank,
+    Fault,
+    Undecidable,
+    calls_for,
+    canonical,
+    edges_near,
+    fingerprint,
+    fingerprints,
+    read,
+    sign_limit,
+    within,
+)
+from ..checking.mistakes import GENERAL, Mistake, numbered
 from ..checking.mistakes import mistakes as catalogued_mistakes
 from ..checking.plain import NotPlain, to_plain
-from ..checking.plugins import kinds
+from ..checking.plugins import kind_of_values, kinds
 from ..checking.points import ANGLES
+from ..checking.questions import CODE_LETTERS, NEARLY, OUTCOMES, code_text, compare, rung_key
 
 #: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
 TOLERANCE = 5e-4
-#: Farther from the edge of a cell than this, a value rounded to four decimals stays in its cell.
-EDGE = 0.05
+#: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may cross.
+REACH = 0.5
+#: Edges of cells that an answer may be near: beyond each there is another locker, and one for every combination.
+MOST_EDGES = 6
 
 
 class AuthorError(ValueError):
@@ -42,11 +57,32 @@ class AuthorError(ValueError):
 
 
 class Entry(NamedTuple):
-    """What one fingerprint stands for: an outcome, the mistakes that lead to it, and one such answer."""
+    """What one fingerprint stands for: as a rule one case, and one such answer.
+
+    A case is a dictionary: its outcome; its notes, each with details; its hints; and, where the fingerprint is
+    shared by several or the answer is the right one, its numbers.
+    """
+
+    cases: list
+    plain: dict
+
+    @property
+    def outcome(self):
+        return self.cases[0]["outcome"]
+
+    @property
+    def notes(self):
+        return self.cases[0]["notes"]
+
+
+class _Known(NamedTuple):
+    """An answer that is known, with all mistakes that lead to it."""
 
     outcome: str
     notes: list
     plain: dict
+    reading: object
+    numbers: list
 
 
 class Question:
@@ -64,6 +100,8 @@ class Question:
         Share of the worth for a mistake, by its note.
     entries : dict
         :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
+    near : list
+        Fingerprints of answers that agree with an exact one to about three digits.
     """
 
     def __init__(
@@ -76,6 +114,7 @@ class Question:
         worth=1,
         credit=None,
         hints=None,
+        ladder=None,
         after=None,
         solution="",
         title="",
@@ -90,6 +129,7 @@ class Question:
             title or name.partition("/")[2].replace("-", " "),
         )
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
+        self.ladder = ladder_of(public, ladder, turns, solution)
         self.turns, self.turned = list(turns), turned
         self.plain = self.to_plain(answer)
         self.public.setdefault("salt", None)
@@ -111,27 +151,51 @@ class Question:
     def fingerprint_of(self, plain):
         return fingerprint(self.public, read(self.public, plain))
 
+    def find(self, text):
+        """What is known of a fingerprint, as a locker holds it; or ``None``."""
+        if text in self.entries:
+            return {"cases": self.entries[text].cases}
+        return {"cases": []} if text in self.near else None
+
+    def reply_to(self, plain):
+        """The reply to an answer, as plain data: the one that a student gets, found without the slow hash."""
+        return compare(self.name, self.public, plain, self.find)
+
     def _settle_points(self):
-        """Choose the salt, and with it the points, so that the answer lies well inside its cells."""
+        """Choose the salt, and with it the points: at them each entry takes every sign that it can take.
+
+        What is asked of a salt is so weak that nearly every answer would be content with nearly every salt: the
+        choice tells nothing of the answer.
+        """
         # Each variant has a salt of its own, so that a guess is worth nothing for the others.
         number = self.public.get("variant", 0)
         seed = f"{self.name} variant {number}" if number else self.name
+        varying = None
         for attempt in range(50):
             self.public["salt"] = hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16]
-            self.public.pop("shift", None)
             try:
                 reading = read(self.public, self.plain)
                 numbers = canonical(self.public, reading) if reading.text is None else []
+                if varying is None:
+                    varying = self._varying()
             except (Blank, Fault, Undecidable) as error:
                 raise AuthorError(f"{self.name}: the right answer cannot be read. {error}") from None
-            shares = [number / cell_of(self.public) for number in numbers]
-            if self.public.get("tolerance") is not None:
-                # One bit for each number: whether its cells are moved by half a cell.
-                self.public["shift"] = "".join("01"[abs(share - MP.nint(share)) > 0.25] for share in shares)
+            if not varying <= _varying_in(reading.numbers):
+                continue
+            if self.public.get("either sign") and any(
+                sign_limit(self.public) * 0.4 < abs(number) < sign_limit(self.public) * 1.6 for number in numbers
+            ):
+                continue
+            if len(edges_near(self.public, numbers)) <= MOST_EDGES:
                 return
-            if all(abs(abs(share - MP.nint(share)) - 0.5) > 1e-3 for share in shares):
-                return
-        raise AuthorError(f"{self.name}: no points were found at which the answer is not on the edge of a cell.")
+        raise AuthorError(f"{self.name}: no points were found at which the answer is well placed.")
+
+    def _varying(self):
+        """Which entries of the answer take both signs at some values of the symbols."""
+        if not self.public.get("symbols"):
+            return set()
+        readings = (read({**self.public, "salt": f"{self.name} {number}"}, self.plain).numbers for number in range(8))
+        return _varying_in([numbers for reading in readings for numbers in reading])
 
     def _demand_turns(self):
         if not self.turns:
@@ -159,94 +223,160 @@ class Question:
         ]
 
     def _entries(self):
-        right = self.fingerprint_of(self.plain)
-        entries = {right: Entry("correct", [], self.plain)}
+        known = self._known()
+        right = known[0]
+        by_text = {}
+        for one in known:
+            exact = self.public.get("tolerance") is None
+            reach = REACH if one is not right else 1 if exact else NEARLY
+            for text in fingerprints(self.public, one.reading, reach, most=MOST_EDGES if one is right else 3):
+                by_text.setdefault(text, []).append(one)
+        self.near = []
+        if right.numbers and self.public.get("tolerance") is None:
+            self.near = fingerprints(self.public, right.reading, near=True)
+        return {
+            text: Entry([self._case(one, alone=len(ones) == 1) for one in ones], ones[0].plain)
+            for text, ones in by_text.items()
+        }
+
+    def _known(self):
+        """The right answer, and then every other answer that a mistake leads to."""
+        known = [self._one("correct", [], self.plain)]
         for mistake in self.mistakes:
             try:
-                plain = self.to_plain(mistake.answer)
-                fingerprints = self._fingerprints(plain)
+                one = self._one("mistake", [[mistake.note, mistake.details]], self.to_plain(mistake.answer))
             except (Fault, Undecidable, NotPlain):
                 continue  # such an answer is refused for its form, which is a message of its own
-            if right in fingerprints:
-                continue  # on this question the mistake makes no difference
-            for text in fingerprints:
-                known = entries.setdefault(text, Entry("mistake", [], plain))
-                if [mistake.note, mistake.details] not in known.notes:
-                    known.notes.append([mistake.note, mistake.details])
-        return entries
+            same = next((other for other in known if self._same(one, other)), None)
+            if same is None:
+                known.append(one)
+            elif same is not known[0] and one.notes[0] not in same.notes and mistake.note not in GENERAL:
+                same.notes.append(one.notes[0])
+        return known
 
-    def _fingerprints(self, plain):
-        """The fingerprint of a mistake, and its neighbours where rounding might cross the edge of a cell."""
+    def _one(self, outcome, notes, plain):
         reading = read(self.public, plain)
-        if reading.text is not None or self.public.get("tolerance") is None:
-            return [fingerprint(self.public, reading)]
-        numbers, cell = canonical(self.public, reading), cell_of(self.public)
-        choices, spare = [], 3
-        for number, middle in zip(numbers, cells(self.public, numbers)):
-            options = {middle}
-            if spare:
-                options |= set(cells_near(self.public, number, len(choices), EDGE * cell))
-                spare -= len(options) > 1
-            choices.append(sorted(options))
-        return [" ".join(map(str, chosen)) for chosen in itertools.product(*choices)]
+        numbers = canonical(self.public, reading) if reading.text is None else []
+        return _Known(outcome, notes, plain, reading, numbers)
 
-    def sealed(self):
-        """What a student receives of the question: its public part and its lockers."""
-        contents = {text: {"outcome": entry.outcome, "notes": entry.notes} for text, entry in self.entries.items()}
-        keys = {text: sealing.slow_key(self.public["salt"], text) for text in contents}
-        length = max(
-            len(sealing.base64.b64decode(sealing.seal(content, keys[text]))) - 16 for text, content in contents.items()
-        )
-        lockers = {
-            sealing.locker(keys[text]): sealing.seal(content, keys[text], length=length)
-            for text, content in contents.items()
-        }
-        beside = {}
+    def _same(self, one, other):
+        if one.reading.text is not None or other.reading.text is not None:
+            return one.reading.text == other.reading.text
+        # What differs from the right answer by no more than its tolerance is the right answer.
+        return within(self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1)
+
+    def _case(self, one, alone):
+        case = {"outcome": one.outcome, "notes": one.notes}
+        steps = [step for note, _ in one.notes for step in self.hints.get(note, [])]
+        if steps:
+            case["hints"] = steps
+        if self.public.get("tolerance") is not None and one.numbers and (one.outcome == "correct" or not alone):
+            case["numbers"] = [MP.nstr(number, 17) for number in one.numbers]
+        return case
+
+    def sealed(self, code=None):
+        """What a student receives of the question: its public part, its lockers and its pages.
+
+        Parameters
+        ----------
+        code : str, optional
+            What opens the worked solution for those who give up.
+        """
+        pages = _Pages(self.fingerprint_of(self.plain))
+        numbers = {json.dumps(found): place for place, found in enumerate(numbered(self.public))}
+        solution = pages.add({"solution": to_page(self.solution)}) if self.solution else None
+        wanted = []
         for text, entry in self.entries.items():
-            for purpose, content in self._beside(entry).items():
-                beside[sealing.locker(keys[text], purpose)] = sealing.seal(content, keys[text], purpose)
-        sealed = {**self.public, "lockers": dict(sorted(lockers.items()))}
-        if beside:
-            sealed["beside"] = dict(sorted(beside.items()))
+            notes = [numbers.get(json.dumps(found)) for found in entry.notes[:2]]
+            plain = len(entry.cases) == 1 and set(entry.cases[0]) == {"outcome", "notes"} and None not in notes
+            about = {"cases": [{**case, "notes": case["notes"][:2]} for case in entry.cases]}
+            if entry.outcome == "correct":
+                plain = plain and not solution and not self.after
+                about |= {"after": self.after} if self.after else {}
+            wanted.append((text, entry.outcome, notes if plain else [], None if plain else about))
+        chosen = [
+            (text, outcome, notes, about and pages.add(about, solution if outcome == "correct" else None))
+            for text, outcome, notes, about in wanted
+        ]
+        chosen += [(text, "mistake", [], None) for text in self.near]
+        if solution and code:
+            chosen.append((code_text(code), "mistake", [], solution))
+        sealed = {**self.public}
+        places = pages.seal()
+        if places:
+            sealed["pages"] = pages.sealed
+        lockers = []
+        for text, outcome, notes, page in chosen:
+            place = (places[page], page) if page else ()
+            key = sealing.slow_key(self.public["salt"], text)
+            lockers.append(sealing.locker(key, OUTCOMES.index(outcome), notes, *place))
+        sealed["lockers"] = sealing.pack(lockers)
+        sealed["worth"] = self.worth
+        if self.ladder:
+            sealed["ladder"] = [
+                sealing.seal(step, rung_key(self.public, number)) for number, step in enumerate(self.ladder)
+            ]
         return sealed
 
-    def _beside(self, entry):
-        if entry.outcome == "correct":
-            found = {"solution": to_page(self.solution)} if self.solution else {}
-            if self.after:
-                found["hints"] = self.after
-            return found
-        steps = [step for note, _ in entry.notes for step in self.hints.get(note, [])]
-        return {"hints": {self.name: steps}} if steps else {}
 
-    def guessing_bits(self):
-        """About how many bits a student must guess who tries answers instead of finding one."""
-        public, kind = self.public, self.public["kind"]
-        symbols = max(1, len(public.get("symbols", {})))
-        if kind == "choice":
-            return math.log2(len(public["options"]))
-        if kind == "words":
-            return public["length"] * math.log2(len(public["options"]))
-        if kind == "truth values":
-            return public["length"]
-        if kind == "sequence":
-            return math.log2(12)
-        if self.turns:
-            # Each turn about one of three axes, either way round, through any of the angles.
-            return len(self.turns) * math.log2(6 * max(symbols, len(self.turns)))
-        if public.get("tolerance") is not None and kind != "function":
-            freedom = {"direction cosine matrix": 3, "quaternion": 3, "Euler angles": 3, "axis and angle": 3}.get(
-                kind, len(self.public.get("shift", "1"))
-            )
-            return freedom * math.log2(2 / float(cell_of(public)))
-        # As many as it takes to write the answer down, from eight operations and the symbols.
-        plain = self.plain if kind != "function" else None
-        return min(256, 3 * len(plain["nodes"])) if plain else 64
+def ladder_of(public, authored, turns, solution):
+    """The steps of a ladder: its author's, or where to begin, what the answer is built of, how the solution begins."""
+    if authored is not None:
+        return list(authored)
+    begin = (kinds()[public["kind"]].begin, kind_of_values(public).begin)
+    steps = [step for step in dict.fromkeys(begin) if step]
+    if len(turns) > 1:
+        steps.append(f"It is built of {len(turns)} turns, one after another. Check each of them alone.")
+    first = re.match(r"(.+?[.:;])(\s|$)", " ".join(solution.split()))
+    if first and len(solution) > 2 * len(first[1]):
+        steps.append(f"The worked solution begins: {first[1]}")
+    return steps
 
 
-def cells_near(public, number, order, distance):
-    near = {**public, "shift": public.get("shift", "")[order : order + 1]} if public.get("shift") else public
-    return [cells(near, [number + side * distance])[0] for side in (-1, 1)]
+class _Pages:
+    """The pages of a question; each has a key of its own, which nobody can make who does not know the answer."""
+
+    def __init__(self, secret):
+        self.secret, self.contents, self.sealed = hashlib.sha256(secret.encode("utf8")).digest(), {}, []
+
+    def add(self, content, solution=None):
+        """Add a page, once; gives its key. The page of the right answer tells where the worked solution stands."""
+        text = json.dumps(content, ensure_ascii=False, sort_keys=True)
+        key = hashlib.blake2b(text.encode("utf8"), key=self.secret, digest_size=sealing.PAGE_KEY).digest()
+        self.contents[key] = (content, solution)
+        return key
+
+    def seal(self):
+        """Seal all pages in an order that tells nothing; gives the place of each by its key."""
+        places = {key: place for place, key in enumerate(sorted(self.contents))}
+        if len(places) >= sealing.NO_PAGE:
+            raise AuthorError("A question has more mistakes and hints of its own than there is room for.")
+        for key in places:
+            content, solution = self.contents[key]
+            if solution:
+                content = {**content, "solution": [places[solution], solution.hex()]}
+            self.sealed.append(sealing.seal(content, key))
+        return places
+
+
+def solution_code(notebook):
+    """The code that opens the worked solutions of a notebook: it follows from its source, so only who has that has it.
+
+    The variants of its questions have the same code.
+    """
+    texts = json.dumps([cell["source"] for cell in notebook["cells"]], ensure_ascii=False)
+    digest = hashlib.sha256(f"code {texts}".encode()).digest()
+    letters = "".join(CODE_LETTERS[byte % len(CODE_LETTERS)] for byte in digest[:12])
+    return "-".join(letters[start : start + 4] for start in (0, 4, 8))
+
+
+def _varying_in(rows):
+    """Places of the entries that are above zero in one row and below it in another."""
+    return {
+        place
+        for place in range(len(rows[0]) if rows else 0)
+        if min(row[place] for row in rows) < -1e-6 and max(row[place] for row in rows) > 1e-6
+    }
 
 
 def _replay(results):
@@ -279,6 +409,7 @@ def question(
     length=None,
     options=None,
     tolerance=None,
+    relative=None,
     calls=None,
     takes="lists",
     result=None,
@@ -314,6 +445,7 @@ def question(
         **{argument: rest.pop(argument, None) for argument in values.arguments},
         "options": options and list(options),
         "tolerance": tolerance,
+        "relative": relative,
         "calls": calls,
         "takes": takes if kind == "function" else None,
         "result": result,

@@ -27,6 +27,9 @@ def add_commands(commands):
     selftest.add_argument(
         "--sources", type=Path, help="folder of the notebooks with solutions, if not as course.toml says"
     )
+    selftest.add_argument(
+        "--budget", type=int, default=2**16, help="slow hashes that the attack on one question may need"
+    )
     for parser, page in ((trial, "try"), (selftest, "selftest")):
         parser.add_argument("--page", help=f"where the page goes; {page}.html beside the archive")
 
@@ -68,12 +71,12 @@ def trial(name, page):
     print(f"The page: {show(course, name, page or course.archive.with_name('try.html'))}")
 
 
-def selftest(page, **folders):
+def selftest(page, budget, **folders):
     from .selftest import selftest as try_all
 
     course = _course(**folders)
     page = page or course.archive.with_name("selftest.html")
-    faults = try_all(course, page)
+    faults = try_all(course, page, budget)
     print(f"The page: {page}")
     if faults:
         sys.exit("\n".join(faults))

@@ -269,3 +269,47 @@ def another_answer(public, answer, chance=None):
         return answer * Rational(17, 13)
     entries, put = flat(answer)
     return put([entry * Rational(17, 13) + Rational(11, 37) for entry in map(sympy.sympify, entries)])
+
+
+def roots_for_cosines(answer):
+    """Answers in which one function of one symbol is a root that agrees with it in some quadrants only.
+
+    Pairs of a name and an answer: ``sqrt(1 - sin(x)**2)`` for ``cos(x)``, for every symbol and function that occurs.
+    """
+    entries, put = flat(answer)
+    entries = [sympy.sympify(entry) for entry in entries]
+    found = []
+    for function, other in ((cos, sin), (sin, cos)):
+        for part in sorted(set().union(*(entry.atoms(function) for entry in entries)), key=str):
+            root = sqrt(1 - other(part.args[0]) ** 2)
+            found.append((f"{root} for {part}", put([entry.xreplace({part: root}) for entry in entries])))
+    return found
+
+
+def mutant(answer, chance):
+    """The answer with one small thing changed by chance; it may still be right, and whoever asks must look."""
+    entries, put = flat(answer)
+    entries = [sympy.sympify(entry) for entry in entries]
+    place = chance.randrange(len(entries))
+    entries[place] = _mutated(entries[place], chance)
+    return put(entries)
+
+
+def _mutated(expression, chance):
+    parts = [part for part in sympy.preorder_traversal(expression) if not isinstance(part, AppliedUndef)]
+    part = chance.choice(parts)
+    changes = [lambda: -part, lambda: 2 * part, lambda: part / 2, lambda: part + Rational(1, 1000)]
+    if isinstance(part, (sin, cos)):
+        changes += [lambda: (cos if isinstance(part, sin) else sin)(part.args[0])] * 3
+        changes += [lambda: part.func(2 * part.args[0]), lambda: tan(part.args[0]), lambda: sympy.Abs(part)]
+        changes += [lambda: sqrt(1 - (cos if isinstance(part, sin) else sin)(part.args[0]) ** 2)] * 3
+    if isinstance(part, (sympy.Add, sympy.Mul)) and len(part.args) > 1:
+        changes += [lambda: part.func(*part.args[1:]), lambda: part.func(-part.args[0], *part.args[1:])] * 2
+    if isinstance(part, sympy.Symbol):
+        changes += [lambda: sympy.Abs(part), lambda: chance.choice(sorted(expression.free_symbols, key=str))] * 2
+    if not expression.has(part):
+        return expression
+    try:
+        return expression.xreplace({part: chance.choice(changes)()})
+    except (TypeError, ValueError, ZeroDivisionError):
+        return expression

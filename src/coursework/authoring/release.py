@@ -19,7 +19,7 @@ from pathlib import Path
 
 from ..checking.plugins import folders_of, packages
 from ..checking.questions import FORMAT
-from .author import AuthorError
+from .author import AuthorError, solution_code
 from .selftest import try_question
 from .source import CHAPTERS, answered_in, checked_names, notebooks_in, posed, read_source
 from .variation import drawn_in
@@ -128,8 +128,9 @@ def run_notebook(notebook, folder):
 
 def sealed_file(source):
     """The text of the file with the sealed questions of a notebook."""
+    code = solution_code(source.notebook)
     questions = {
-        name: {"answer": question.variable, **question.sealed()} for name, question in source.questions.items()
+        name: {"answer": question.variable, **question.sealed(code)} for name, question in source.questions.items()
     }
     return json.dumps({"format": FORMAT, "questions": questions}, indent=0, sort_keys=True, ensure_ascii=False) + "\n"
 
@@ -158,7 +159,7 @@ def _release_variant(path, number, course):
     if not kept.exists():
         source = read_source(path, number, course.edition)
         for name, question in source.questions.items():
-            faults = try_question(question, against_sealed=False).faults
+            faults = try_question(question, budget=0, against_sealed=False).faults
             if faults:
                 raise AuthorError(f"{name}, variant {number}, {question.public['given']}: {faults[0]}")
         kept.parent.mkdir(parents=True, exist_ok=True)

@@ -15,17 +15,20 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..checking.kinds import Fault, Undecidable
-from ..checking.mistakes import message
+from ..checking.mistakes import GENERAL, message
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
-from ..checking.questions import compare, judge, notebook_questions
+from ..checking.questions import judge, notebook_questions
 from ..checking.reply import Reply, to_html
+from .attack import BUDGET, Found, attack
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
 from .source import CHAPTERS, HIDDEN, SOLUTION, blank, notebooks_in, read_source
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
-SECONDS_PER_TRY = 0.015
+SECONDS_PER_TRY = 0.012
+#: The file beside the sources in which an author declares what may be guessed.
+DECLARED = "guessable.json"
 #: Forms that a right answer is tried in, where algebra gives that many.
 FORMS = 6
 NO_LEAK = "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"
@@ -39,12 +42,25 @@ class Finding(NamedTuple):
     forms: list
     mistakes: list
     unmoved: list
-    bits: float
+    attack: Found
+    worth: int
     faults: list
 
 
-def try_question(question, against_sealed=True):
-    """Try one question as students will, right and wrong; ``against_sealed``: also with what was released of it.
+def try_question(question, text="", declared=None, budget=BUDGET, against_sealed=True):
+    """Try one question as students will, right and wrong, and as somebody does who guesses.
+
+    Parameters
+    ----------
+    question : Question
+    text : str
+        What is asked, in words.
+    declared : int, optional
+        How many slow hashes the question withstands, where its author knows that it can be guessed.
+    budget : int
+        How many slow hashes the attack may need.
+    against_sealed : bool
+        Whether to try what was released of it too.
 
     Answers are compared with what is sealed before the slow hash locks it up: that the locks hold the same is
     shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
@@ -70,54 +86,56 @@ def try_question(question, against_sealed=True):
         question.to_plain(another_answer(question.public, question.answer, random.Random(seed))) for seed in range(9)
     )
     other = next((plain for plain in others if question.fingerprint_of(plain) not in question.entries), None)
-    other = Reply(question.name, "wrong") if other is None else _compare(question, other)
+    other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
     if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
+    found = attack(question, text, budget)
+    if found.way and found.tries < min(declared or BUDGET, budget):
+        faults.append(
+            f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED} and give it little "
+            "weight."
+        )
     return Finding(
         question.name,
         question.public["kind"],
         [form for form, _ in forms],
         named,
         unmoved,
-        question.guessing_bits(),
+        found,
+        question.worth,
         faults,
-    )
-
-
-def _compare(question, plain):
-    return compare(
-        question.name,
-        question.public,
-        plain,
-        lambda text: question.entries[text]._asdict() if text in question.entries else None,
     )
 
 
 def _judge(question, answer):
     try:
-        return _compare(question, question.to_plain(answer))
+        return question.reply_to(question.to_plain(answer))
     except NotPlain as error:
         return Reply(question.name, "invalid", "unreadable", [str(error)])
 
 
 def _try_mistakes(question, faults):
     named, unmoved = [], []
-    right = question.fingerprint_of(question.plain)
     for mistake in question.mistakes:
         said = message(question.public, mistake.note, mistake.details)
         try:
             plain = question.to_plain(mistake.answer)
-            if question.fingerprint_of(plain) == right:
+            reply = question.reply_to(plain)
+            if reply.outcome == "correct":
                 unmoved.append(mistake.note)
                 if mistake.note == "authored":
                     faults.append(f"This authored mistake gives the right answer: {said}")
                 continue
-            reply = _compare(question, plain)
+            entry = question.entries[question.fingerprint_of(plain)]
         except (Fault, Undecidable, NotPlain) as refused:
             named.append((mistake.note, f"(refused for its form) {refused}"))
             continue
-        entry = question.entries[question.fingerprint_of(plain)]
-        if reply.outcome != "wrong" or [mistake.note, mistake.details] not in entry.notes:
+        except KeyError:
+            faults.append(f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not known: {reply.messages}')
+            continue
+        known = [note for case in entry.cases for note in case["notes"]]
+        covered = mistake.note in GENERAL and known
+        if reply.outcome != "wrong" or not covered and [mistake.note, mistake.details] not in known:
             faults.append(
                 f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its own message.'
             )
@@ -251,7 +269,7 @@ def leaks(sources, texts):
 # --- the page -----------------------------------------------------------------------------------
 
 
-def selftest(course, page=None):
+def selftest(course, page=None, budget=BUDGET):
     """Try all questions of a course, look for leaks, and write the page.
 
     Returns
@@ -265,7 +283,12 @@ def selftest(course, page=None):
         There is nothing to try, or a notebook cannot be read.
     """
     read = [read_source(path) for path in notebooks_in(course.sources)]
-    findings = [try_question(question) for source in read for question in source.questions.values()]
+    declared = declared_strengths(course.sources)
+    findings = [
+        try_question(question, text_of(source, question), declared.get(name), budget)
+        for source in read
+        for name, question in source.questions.items()
+    ]
     if not findings:
         raise AuthorError(f"The notebooks in {course.sources} ask no question.")
     found = leaks(read, released_texts(course.exercises, course.sealed, course.archive))
@@ -277,18 +300,29 @@ def selftest(course, page=None):
     ]
 
 
-def guessing(bits):
-    """How long trying all answers takes, in words."""
-    seconds = 2.0 ** min(bits, 200) * SECONDS_PER_TRY / 2
-    for limit, size, unit in (
-        (90, 1, "seconds"),
-        (5400, 60, "minutes"),
-        (130_000, 3600, "hours"),
-        (60_000_000, 86_400, "days"),
-    ):
-        if seconds < limit:
-            return f"{seconds / size:.0f} {unit}"
-    return "years"
+def declared_strengths(sources):
+    """How many slow hashes each guessable question withstands, as its author declared in ``guessable.json``.
+
+    A question that is not named there is to withstand the whole attack.
+    """
+    file = Path(sources, DECLARED)
+    return json.loads(file.read_text("utf8")) if file.is_file() else {}
+
+
+def text_of(source, question):
+    """The text of a question: the Markdown above the cell that its answer stands in."""
+    above = ""
+    for cell in source.notebook.cells:
+        if cell.cell_type == "markdown":
+            above = cell.source
+        elif f"check({question.name!r}" in cell.source.replace('"', "'"):
+            return above
+    return above
+
+
+def _share_of_guessable(findings):
+    worth = sum(finding.worth for finding in findings)
+    return f"{sum(finding.worth for finding in findings if finding.attack.way) / max(1, worth):.0%}"
 
 
 def write_page(findings, found, before=""):
@@ -302,7 +336,7 @@ def write_page(findings, found, before=""):
             "</td>"
             f"<td><details><summary>{len(finding.mistakes)}</summary><ul>{mistakes}</ul></details></td>"
             f"<td>{html.escape(', '.join(dict.fromkeys(finding.unmoved))) or 'none'}</td>"
-            f"<td>{finding.bits:.0f} bits: {guessing(finding.bits)}</td>"
+            f"<td>{html.escape(str(finding.attack))}</td>"
             f"<td>{f'<ul>{faults}</ul>' if faults else 'ready'}</td></tr>"
         )
     listed = "".join(f"<li>{html.escape(what)} stands in {html.escape(place)}</li>" for what, place in found or [])
@@ -316,9 +350,9 @@ def write_page(findings, found, before=""):
         f"<h1>Exercises, tried</h1><p>{len(findings)} questions; {sum(bool(f.faults) for f in findings)} with faults. "
         f"{sum(len(f.mistakes) for f in findings)} mistakes are recognised.</p>"
         "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
-        "bits a guess needs, and how long one core takes to try half of all such answers at "
-        f"{SECONDS_PER_TRY * 1000:.0f} "
-        "ms each. An answer with few bits should not count much.</p>"
+        f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has needed to find the "
+        "answer. Not found means not found by this attack: somebody may have a better idea. An answer that can be "
+        f"guessed should not count much: here such answers carry {_share_of_guessable(findings)} of the points.</p>"
         f"{before}{leaked}"
         "<h2>Questions</h2><table><thead><tr><th>Question</th><th>Kind</th><th>Forms that pass</th>"
         "<th>Mistakes named</th><th>Mistakes that change nothing here</th><th>To guess "

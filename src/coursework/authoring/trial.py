@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..checking.reply import to_html
 from .author import AuthorError, to_page
-from .selftest import try_question, write_page
+from .selftest import declared_strengths, text_of, try_question, write_page
 from .source import read_source
 
 
@@ -39,21 +39,11 @@ def trial(course, name, page):
         f"{_hints(question)}</section>"
         for question in chosen
     )
-    findings = [try_question(question) for question in chosen]
+    declared = declared_strengths(course.sources)
+    findings = [try_question(one, text_of(source, one), declared.get(one.name)) for one in chosen]
     Path(page).parent.mkdir(parents=True, exist_ok=True)
     Path(page).write_text(_with_mathematics(write_page(findings, None, texts)), "utf8")
     return page
-
-
-def text_of(source, question):
-    """The text of a question: the Markdown above the cell that its answer stands in."""
-    above = ""
-    for cell in source.notebook.cells:
-        if cell.cell_type == "markdown":
-            above = cell.source
-        elif f"check({question.name!r}" in cell.source.replace('"', "'"):
-            return above
-    return above
 
 
 def _with_mathematics(page):

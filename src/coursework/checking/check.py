@@ -3,15 +3,22 @@
 import json
 import os
 import random
+import time
 from pathlib import Path
 
 from .kinds import calls_for
 from .plain import NotPlain, to_plain
-from .questions import find_question, judge, opened
+from .questions import code_text, find_question, judge, notebook_questions, open_page, opened, rung_key
 from .reply import Reply
+from .sealing import unseal
 
 #: Where progress is kept: beside the notebook, and nowhere else.
 PROGRESS = Path(".coursework", "progress.json")
+#: After so many days an earlier mistake is worth another look.
+REVIEW_AFTER = 3
+DAY = 86_400
+#: Different answers of one question that are remembered.
+MOST_ANSWERS = 100
 
 
 class NotCorrect(AssertionError):
@@ -42,54 +49,119 @@ def check(name: str, answer: object) -> Reply:
     """
     question = find_question(name)
     try:
-        reply, key = judge(name, question, to_plain(answer, calls_for(question)))
+        reply, content = judge(name, question, to_plain(answer, calls_for(question)))
     except NotPlain as error:
-        reply, key = Reply(name, "invalid", "unreadable", [str(error)]), None
-    if key is not None and reply.outcome == "correct":
-        reply.solution = opened(question, key, "solution") or ""
-    record = _remember(name, reply, opened(question, key, "hints") if key is not None else None)
-    _show_next_hint(name, reply, record)
+        reply, content = Reply(name, "invalid", "unreadable", [str(error)]), {}
+    if reply.outcome == "correct" and "solution" in content:
+        reply.solution = open_page(question, *content["solution"])["solution"]
+    entry = _remember(name, reply, content)
+    if reply.outcome == "wrong" and entry:
+        _show_next_hint(question, reply, entry)
+    reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome != "correct":
         raise NotCorrect(repr(reply))
     return reply
 
 
+# --- help ---------------------------------------------------------------------------------------
+
+
 def hint(name: str) -> Reply:
-    """Show the hints that you have earned for a question: by a mistake that has one, or by an earlier answer."""
-    find_question(name)
-    earned = _read_progress().get(name, {}).get("hints", [])
-    if not earned:
-        return Reply(
-            name,
-            "not attempted",
-            "",
-            [
-                "There is no hint yet. A hint is earned by an answer: hand in what "
-                "you have to `check`, even if you are not sure of it."
-            ],
+    """Show the hints that you have earned for a question: each different answer that is wrong earns one more."""
+    question = find_question(name)
+    entry = _read_progress().get(name, {})
+    steps, earned = _steps(question, entry), _earned(entry)
+    lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
+    for other, page, key in entry.get("after", []):
+        lines += [f"Hint: {step}" for step in open_page(find_question(other), page, key)["after"].get(name, [])]
+    left = len(steps) - min(earned, len(steps))
+    if not lines:
+        lines = ["There is no hint yet."]
+    if left:
+        lines.append(
+            f"{left} more can be earned: hand in what you have to `check`, even if you are not sure of it. "
+            "Each different answer counts, pressing Run again does not."
         )
-    return Reply(name, "not attempted", "", [f"Hint {order + 1}: {text}" for order, text in enumerate(earned)])
+    return Reply(name, "hints", "", lines)
+
+
+def worked_solution(name: str, code: str) -> Reply:
+    """Show the worked solution of a question to one who gives up, with the code that the instructor gave out."""
+    question = find_question(name)
+    content = opened(question, code_text(str(code)))
+    if content is None or "solution" not in content:
+        return Reply(name, "hints", "", ["This code opens no solution. Your instructor gives it out on a date."])
+    progress_now = _read_progress()
+    entry = progress_now.setdefault(name, {})
+    if isinstance(entry, dict):
+        entry["given up"] = entry.get("outcome") != "correct"
+        _write_progress(progress_now)
+    return Reply(name, "hints", "", ["Read it, close it, and write it down by yourself."], content["solution"])
+
+
+def _steps(question, entry):
+    """All hints of a question: those of the last mistake, and then the ladder."""
+    steps = []
+    if entry.get("page"):
+        try:
+            cases = open_page(question, *entry["page"])["cases"]
+        except (ValueError, LookupError, TypeError):
+            cases = []  # the page is of an earlier release of the question
+        steps = next((case["hints"] for case in cases if "hints" in case), [])
+    return steps + [unseal(step, rung_key(question, number)) for number, step in enumerate(question.get("ladder", ()))]
+
+
+def _earned(entry):
+    """A first wrong answer gets its message; each other one earns a hint."""
+    return max(0, len(entry.get("answers", [])) - 1)
+
+
+def _show_next_hint(question, reply, entry):
+    steps, earned = _steps(question, entry), _earned(entry)
+    reply.messages += [f"Hint: {step}" for step in steps[:earned]]
+    if len(steps) > earned:
+        reply.messages.append(f"`hint('{reply.question}')` tells how to come by a hint." if earned == 0 else "")
+    reply.messages = [line for line in reply.messages if line]
+
+
+# --- progress -----------------------------------------------------------------------------------
 
 
 def progress() -> Reply:
-    """Show how far you are, from the record beside this notebook."""
-    record = _read_progress()
+    """Show how far you are, by chapter, and what is worth another look; from the record beside this notebook."""
+    record = {name: entry for name, entry in _read_progress().items() if isinstance(entry, dict) and "outcome" in entry}
     if not record:
-        return Reply("progress", "not attempted", "", ["Nothing has been checked in this folder yet."])
-    right = sorted(name for name, entry in record.items() if entry.get("outcome") == "correct")
-    open_ = sorted(name for name, entry in record.items() if entry.get("outcome") != "correct")
+        return Reply("progress", "hints", "", ["Nothing has been checked in this folder yet."])
+    right = {name for name, entry in record.items() if entry["outcome"] == "correct"}
     lines = [f"{len(right)} of the {len(record)} questions that you have tried are right."]
-    if open_:
-        lines.append("Still open: " + ", ".join(f"`{name}`" for name in open_) + ".")
-    return Reply("progress", "correct" if not open_ else "not attempted", "", lines)
+    for notebook in sorted({name.partition("/")[0] for name in record}):
+        lines.append(_of_notebook(notebook, record, right))
+    lines += _worth_another_look(record)
+    return Reply("progress", "correct" if len(right) == len(record) else "hints", "", lines)
 
 
-def _show_next_hint(name, reply, record):
-    steps = record.get("steps", [])
-    if reply.outcome == "wrong" and steps:
-        # A first mistake gets its message; made again, it gets one more hint each time.
-        shown = steps[: max(0, record["repeats"] - 1)]
-        reply.messages += [f"Hint: {step}" for step in shown]
+def _of_notebook(notebook, record, right):
+    try:
+        questions = notebook_questions(notebook)
+    except RuntimeError:
+        questions = {}
+    questions = questions or {name: {} for name in record if name.startswith(f"{notebook}/")}
+    points = sum(about.get("worth", 1) for about in questions.values())
+    earned = sum(about.get("worth", 1) for name, about in questions.items() if name in right)
+    open_ = [name for name in questions if name not in right]
+    # What was begun comes before what is new.
+    open_.sort(key=lambda name: name not in record)
+    line = f"*{notebook}*: {len(questions) - len(open_)} of {len(questions)} right, {earned} of {points} points."
+    return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
+
+
+def _worth_another_look(record):
+    today, found = time.time(), []
+    for name, entry in sorted(record.items()):
+        days = int((today - entry.get("mistake at", today)) // DAY)
+        if days >= REVIEW_AFTER and entry.get("mistake"):
+            found.append(f"`{name}` ({days} days ago: {entry['mistake']})")
+    return [f"Worth another look, since you made a mistake there: {', '.join(found)}."] if found else []
 
 
 def _read_progress():
@@ -100,32 +172,40 @@ def _read_progress():
         return {}
 
 
-def _remember(name, reply, hints):
-    """Write down the outcome; a folder that cannot be written to costs the record and nothing else."""
-    progress_now = _read_progress()
-    entry = progress_now.get(name)
+def _write_progress(record):
+    """Write the record; a folder that cannot be written to costs the record and nothing else."""
+    try:
+        PROGRESS.parent.mkdir(exist_ok=True)
+        draft = PROGRESS.with_name(f"progress-{os.getpid()}-{random.randrange(10**9)}.json")
+        draft.write_text(json.dumps(record, indent=1, sort_keys=True), "utf8")
+        draft.replace(PROGRESS)
+    except OSError:
+        pass
+
+
+def _remember(name, reply, content):
+    """Write down the outcome, and where hints can be read again: never the hints themselves."""
+    record = _read_progress()
+    entry = record.get(name)
     entry = entry if isinstance(entry, dict) else {}
     if reply.outcome == "not attempted":
         return entry
-    same = entry.get("note") == reply.note and entry.get("outcome") == reply.outcome == "wrong"
-    entry["repeats"] = entry.get("repeats", 0) + 1 if same else 1
     # What was right once stays right: another try in the same cell takes nothing away.
     if entry.get("outcome") != "correct":
         entry["outcome"] = reply.outcome
     entry["note"] = reply.note
-    hints = hints or {}
-    entry["steps"] = hints.get(name, [])
-    if entry["steps"] and reply.outcome == "wrong":
-        entry["hints"] = entry["steps"][: max(1, entry["repeats"] - 1)]
-    progress_now[name] = entry
-    for other, steps in hints.items():
-        if other != name:
-            progress_now.setdefault(other, {})["hints"] = steps
-    try:
-        PROGRESS.parent.mkdir(exist_ok=True)
-        draft = PROGRESS.with_name(f"progress-{os.getpid()}-{random.randrange(10**9)}.json")
-        draft.write_text(json.dumps(progress_now, indent=1, sort_keys=True), "utf8")
-        draft.replace(PROGRESS)
-    except OSError:
-        pass
+    if reply.outcome == "wrong":
+        answers = entry.setdefault("answers", [])
+        if isinstance(answers, list) and reply.answer not in answers and len(answers) < MOST_ANSWERS:
+            answers.append(reply.answer)
+        entry["page"] = content.get("page") if content.get("hints") else None
+        entry["mistake"], entry["mistake at"] = reply.note or "another value", int(time.time())
+    elif reply.outcome == "correct" and entry.get("mistake at", 0) < time.time() - REVIEW_AFTER * DAY:
+        entry.pop("mistake", None)  # looked at again, and right
+    record[name] = entry
+    for other in content.get("after", {}) if reply.outcome == "correct" else ():
+        known = record.setdefault(other, {}).setdefault("after", [])
+        if [name, *content["page"]] not in known:
+            known.append([name, *content["page"]])
+    _write_progress(record)
     return entry

@@ -74,11 +74,11 @@ def number(result):
     return result
 
 
-def real(result):
-    """The real number that a result is; raises ``ValueError`` where its imaginary part is no rounding."""
+def real(result, rest=0):
+    """The real number that a result is; raises ``ValueError`` where its imaginary part is more than ``rest``."""
     result = number(result)
     if isinstance(result, MP.mpc):
-        if abs(result.imag) > ROUNDING * (1 + abs(result.real)):
+        if abs(result.imag) > max(rest, ROUNDING * (1 + abs(result.real))):
             raise ValueError("complex")
         return result.real
     return result

@@ -5,10 +5,17 @@ whole cells, are its fingerprint; all ways of writing one answer share it. What 
 values is first turned into something that has one: a quaternion and its negative, the many Euler angles of
 one orientation.
 
+Where the cells begin follows from the salt and from nothing else, so it tells nothing of the answer. An answer
+near the edge of a cell has a locker for the cell beyond it too. Cells are several tolerances wide: what the
+fingerprint opens holds the right numbers, and with those an answer is compared to the digit.
+
 The same reading serves the student's check, which compares fingerprints through a slow hash, and the
 grading, which compares them as they are. It sees only the plain data of :mod:`coursework.checking.plain`.
 """
 
+import functools
+import hashlib
+import itertools
 import json
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -18,8 +25,12 @@ from .evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol, real
 from .plugins import Kind, kind_of_values, kinds
 from .points import points
 
-#: Size of a cell where answers are exact: above all rounding of doubles, below every real difference.
-EXACT_CELL = MP.mpf(10) ** -9
+#: What an exact answer may be off by, absolutely and relatively: above all rounding of doubles.
+EXACT = MP.mpf(10) ** -12
+#: Width of its cells in that unit: far below every real difference.
+EXACT_WIDTH = 1000
+#: What an answer may be off by that is said to be nearly right where an exact one is asked for: three digits.
+NEAR = MP.mpf("2e-3")
 FUNCTIONS = SimpleNamespace(sin=MP.sin, cos=MP.cos, norm=lambda *parts: MP.sqrt(sum(x * x for x in parts)))
 
 
@@ -91,27 +102,96 @@ def read(question, plain):
     return Reading(numbers)
 
 
-def fingerprint(question, reading):
-    """Give the text that is the same for all forms of one answer, and for no other answer."""
+def fingerprint(question, reading, near=False):
+    """Give the text that is the same for all forms of one answer, and for no other answer.
+
+    With ``near``, the text that answers share which agree to about three digits.
+    """
     if reading.text is not None:
         return reading.text
-    return " ".join(str(cell) for cell in cells(question, canonical(question, reading)))
+    places = _places(question, canonical(question, reading), near)
+    return _text_of([int(MP.floor(place)) for place in places], near)
 
 
-def cells(question, numbers):
-    cell = cell_of(question)
-    shift = question.get("shift", "")
+def fingerprints(question, reading, reach=1, near=False, most=6):
+    """The fingerprints of all answers that are within ``reach`` tolerances of one: its cell and those beside it.
+
+    Of more than ``most`` edges that are as near as that, the nearest are taken.
+    """
+    if reading.text is not None:
+        return [reading.text]
+    numbers = canonical(question, reading)
+    choices = [[int(MP.floor(place))] for place in _places(question, numbers, near)]
+    for _, order, beside in edges_near(question, numbers, reach, near)[:most]:
+        choices[order].append(beside)
+    return [_text_of(chosen, near) for chosen in itertools.product(*choices)]
+
+
+def edges_near(question, numbers, reach=1, near=False):
+    """The edges within ``reach`` tolerances, nearest first: how far, of which number, and the cell beyond."""
+    margin = MP.mpf(reach) / _width(question, len(numbers), near)
+    edges = []
+    for order, place in enumerate(_places(question, numbers, near)):
+        cell = int(MP.floor(place))
+        for far, beside in ((place - cell, cell - 1), (cell + 1 - place, cell + 1)):
+            if far < margin:
+                edges.append((far, order, beside))
+    return sorted(edges)
+
+
+def _text_of(cells, near):
+    return ("near " if near else "") + " ".join(map(str, cells))
+
+
+def tolerances(question):
+    """What each number of an answer may be off by: an absolute part, and a share of the right number."""
+    if question.get("tolerance") is None:
+        return EXACT, EXACT
+    return kind_of_values(question).parts * MP.mpf(str(question["tolerance"])), MP.mpf(str(question.get("relative", 0)))
+
+
+def distance(question, numbers, right):
+    """How far an answer is from the right one, in tolerances: up to 1 it is right."""
+    absolute, relative = tolerances(question)
+    return max(abs(number - other) / (absolute + relative * abs(other)) for number, other in zip(numbers, right))
+
+
+def within(question, numbers, right, share=1):
+    """Whether an answer is within some share of the tolerance; quicker than :func:`distance` where it is not."""
+    absolute, relative = tolerances(question)
+    return all(
+        abs(number - other) <= share * (absolute + relative * abs(other)) for number, other in zip(numbers, right)
+    )
+
+
+def _width(question, count, near):
+    """Width of a cell in tolerances. The more numbers, the wider: so the cells that an answer is near stay few."""
+    if near:
+        return 4 * count
+    return EXACT_WIDTH if question.get("tolerance") is None else 3 * count
+
+
+def _places(question, numbers, near):
+    absolute, relative = (NEAR, NEAR) if near else tolerances(question)
+    width = _width(question, len(numbers), near)
     return [
-        int(MP.nint(number / cell + (MP.mpf(shift[order]) / 2 if shift else 0))) for order, number in enumerate(numbers)
+        _in_tolerances(number, absolute, relative) / width + offset
+        for number, offset in zip(numbers, _offsets(question["salt"], len(numbers)))
     ]
 
 
-def cell_of(question):
-    """Size of a cell: an answer that is off by no more than the tolerance stays in its cell."""
-    tolerance = question.get("tolerance")
-    if tolerance is None:
-        return EXACT_CELL
-    return 4 * kind_of_values(question).parts * MP.mpf(str(tolerance))
+def _in_tolerances(number, absolute, relative):
+    """A number on a scale on which each step of 1 is one tolerance, however large the number."""
+    if not relative:
+        return number / absolute
+    size = MP.log(1 + relative * abs(number) / absolute) / relative
+    return size if number >= 0 else -size
+
+
+@functools.lru_cache(256)
+def _offsets(salt, count):
+    data = hashlib.shake_256(f"{salt} edges of the cells".encode()).digest(8 * count)
+    return [int.from_bytes(data[8 * k : 8 * k + 8], "big") / MP.mpf(2) ** 64 for k in range(count)]
 
 
 def canonical(question, reading):
@@ -144,7 +224,7 @@ def _blank(value):
 
 def _number(question, result):
     try:
-        return real(result)
+        return real(result, _imaginary_rest(question, result))
     except UnknownSymbol as error:
         name = error.args[0][:40]
         given = list(question.get("symbols", ()))
@@ -158,6 +238,14 @@ def _number(question, result):
         raise Undecidable(f"The answer holds {error}, whose value is not worked out here.") from None
     except ValueError:
         raise Fault("not real", "The answer has an imaginary part; what is asked for is real.") from None
+
+
+def _imaginary_rest(question, result):
+    """What may remain of exponentials that should cancel: as much as the answer may be off by."""
+    if not isinstance(result, MP.mpc):
+        return 0
+    absolute, relative = tolerances(question)
+    return max(absolute, EXACT) + max(relative, EXACT) * abs(result.real)
 
 
 def listed(names):
@@ -184,6 +272,8 @@ def _describe(value):
         "frame": "a reference frame",
         "vector": "a vector",
         "function": "a function",
+        "frames": "a set of reference frames",
+        "printed": "something printed",
         "blank": "still blank in part",
         "raised": "an error",
     }[kind]
@@ -246,7 +336,18 @@ def _read_function(question, plain):
         raise Fault("shape", "A function is asked for: give its name, without calling it.")
     inner = {**question, "kind": question["result"], "symbols": {}}
     if all(map(_blank, value[1])):
-        raise Blank  # the body of the function is still empty
+        if not value[2]:
+            raise Blank  # the body of the function is still empty
+        raise Fault(
+            "returned nothing",
+            "The function works something out and returns nothing. End it with a line that begins with `return`.",
+        )
+    if any(result[0] == "printed" for result in value[1]):
+        raise Fault(
+            "printed",
+            "The function prints its result and returns nothing, so nothing else can work with it. "
+            "Write `return` in place of `print`.",
+        )
     results = values(plain["nodes"], {})
     numbers = []
     for order, result in enumerate(value[1]):
@@ -278,7 +379,8 @@ def word(plain, wanted):
 
 def _choice(question, plain):
     given = " ".join(word(plain, f"One of {listed(question['options'])}").split())
-    text = given.lower()
+    # A minus of typography is no mistake.
+    text = given.lower().translate(MINUS)
     options = {option.lower(): option for option in question["options"]}
     if text not in options:
         raise Fault("shape", f"The answer is one of {listed(question['options'])}; this is `{given[:40]}`.")
@@ -290,10 +392,15 @@ def _truths(question, plain):
     wanted = f"A list of {length} truth values, `True` or `False`,"
     if value[0] != "list" or len(value[1]) != length:
         raise shape_fault(wanted, value)
+    given = []
     for part in value[1]:
+        number = plain["nodes"][part[1]] if part[0] == "expression" else None
+        if number in (["integer", "0"], ["integer", "1"]):
+            part = ["truth", number[1] == "1"]
         if part[0] != "truth":
             raise shape_fault(wanted, part, f"a list that holds {_describe(part)}")
-    return "".join("T" if part[1] else "F" for part in value[1])
+        given.append(part[1])
+    return "".join("T" if part else "F" for part in given)
 
 
 def _words(question, plain):
@@ -304,14 +411,23 @@ def _words(question, plain):
     return " | ".join(_choice(question, {"value": part}) for part in value[1])
 
 
+#: What a keyboard or a text program may make of a minus.
+MINUS = str.maketrans("\u2212\u2010\u2011\u2013", "----")
+
+
 # --- one value for what can be written in several ways ------------------------------------------
 
 
 def one_sign(question, numbers):
     # Of two opposites the one whose first component that is not zero is positive.
-    limit = 2 * cell_of(question)
+    limit = sign_limit(question)
     leading = next((number for number in numbers if abs(number) > limit), MP.one)
     return numbers if leading > 0 or not question.get("either sign") else [-number for number in numbers]
+
+
+def sign_limit(question):
+    """Below this a component counts as zero, so that rounding does not decide which sign is taken."""
+    return MP.mpf("2e-9") if question.get("tolerance") is None else 8 * tolerances(question)[0]
 
 
 # --- what is wrong with the form ----------------------------------------------------------------
@@ -326,20 +442,59 @@ def short(number):
     return MP.nstr(number, 3)
 
 
+def length_in_words(length):
+    """A length that should be 1, with as many digits as show that it is not."""
+    for digits in range(3, 16):
+        text = MP.nstr(length, digits, strip_zeros=True)
+        if MP.mpf(text) != 1:
+            return text.removesuffix(".0")
+    return MP.nstr(length, 20)
+
+
 def _unit_vector_fault(question, numbers):
     if question.get("unit vector"):
         length = FUNCTIONS.norm(*numbers)
         if abs(length - 1) > slack(question):
-            return Fault("not unit length", f"A unit vector is asked for; this one has length {short(length)}.")
+            return Fault(
+                "not unit length", f"A unit vector is asked for; this one has length {length_in_words(length)}."
+            )
     return None
 
 
+def transposed(question, numbers):
+    """The entries of the transpose; ``None`` where it is of another shape."""
+    rows, columns = question.get("shape", (3, 3))
+    if rows != columns:
+        return None
+    return [numbers[row * columns + column] for column in range(columns) for row in range(rows)]
+
+
+TRANSPOSED = {"transposed": ("the matrix is transposed, and its transpose has another mistake.", transposed)}
+SEVERAL = "More than one of these is not right."
+#: Where to begin with each kind of question.
+BEGIN = {
+    "expression": "Name what is known and what is asked for, and write down one equation that connects them.",
+    "vector": "Along which frame are the components asked for? Write the vector down where it is simplest.",
+    "matrix": "Take one entry and work it out alone; then ask which rule gives all the others.",
+    "choice": "Put each of the possibilities to the test on the simplest case that tells them apart.",
+    "words": "Take them one by one, and begin with those that you are sure of; find a test for the others.",
+    "truth values": "Look for an example that breaks a claim; where there is none, look for the proof.",
+    "function": "Work out by hand what it should return for the simplest arguments, and compare.",
+}
 KINDS = {
-    "expression": Kind(entries=_expression, mistakes=mistakes.of_expression),
-    "vector": Kind(entries=_vector, unique=one_sign, fault=_unit_vector_fault, mistakes=mistakes.of_vector),
-    "matrix": Kind(entries=_matrix, needs=("shape",), mistakes=mistakes.of_matrix),
-    "choice": Kind(text=_choice, needs=("options",)),
-    "words": Kind(text=_words, needs=("options", "length")),
-    "truth values": Kind(text=_truths, needs=("length",)),
-    "function": Kind(needs=("calls", "result")),
+    "expression": Kind(begin=BEGIN["expression"], entries=_expression, mistakes=mistakes.of_expression),
+    "vector": Kind(
+        begin=BEGIN["vector"], entries=_vector, unique=one_sign, fault=_unit_vector_fault, mistakes=mistakes.of_vector
+    ),
+    "matrix": Kind(
+        begin=BEGIN["matrix"], entries=_matrix, needs=("shape",), mistakes=mistakes.of_matrix, slips=TRANSPOSED
+    ),
+    "choice": Kind(begin=BEGIN["choice"], text=_choice, needs=("options",)),
+    "words": Kind(
+        begin=BEGIN["words"], text=_words, needs=("options", "length"), wrong=SEVERAL, mistakes=mistakes.of_parts
+    ),
+    "truth values": Kind(
+        begin=BEGIN["truth values"], text=_truths, needs=("length",), wrong=SEVERAL, mistakes=mistakes.of_parts
+    ),
+    "function": Kind(begin=BEGIN["function"], needs=("calls", "result")),
 }

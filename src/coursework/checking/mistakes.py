@@ -7,10 +7,21 @@ right answer is needed where the student works. Mistakes that lead to the same a
 The messages are no secret; which of them a question knows, and for what answers, is.
 """
 
+import functools
+import inspect
 import itertools
 from typing import NamedTuple
 
 from .plugins import kind_of_values, kinds
+
+#: Factors that are forgotten or put in twice, as they are said.
+FACTORS = (("2", "2"), ("one half", "1/2"), ("3", "3"), ("one third", "1/3"), ("4", "4"), ("one quarter", "1/4"))
+NUMBERS = (
+    "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
+    "seventeen eighteen nineteen twenty"
+).split()
+#: Mistakes that say little: where a more telling one leads to the same answer, they are left out.
+GENERAL = ("one wrong", "factor", "half", "double", "opposite")
 
 
 class Mistake(NamedTuple):
@@ -39,6 +50,8 @@ MESSAGES = {
     "symbols interchanged": lambda question, first, second: f"`{first}` and `{second}` are interchanged.",
     "opposite": lambda question: "Every sign is wrong: this is the opposite of what is asked for.",
     "reciprocal": lambda question: "This is the reciprocal of what is asked for.",
+    "factor": lambda question, factor: f"This is {factor} times what is asked for: the rest is right.",
+    "one wrong": lambda question, number: f"One of the {NUMBERS[number]} is not right; all the others are.",
     "half": lambda question: "This is half of what is asked for.",
     "double": lambda question: "This is twice what is asked for.",
     "supplement": lambda question: "This angle and the one asked for add up to half a turn.",
@@ -51,6 +64,35 @@ MESSAGES = {
     ),
     "authored": lambda question, text: text,
 }
+
+
+def numbered(question):
+    """Every mistake that the messages can name for a question, with its details, in a fixed order.
+
+    A locker holds places in this list, which is the same for all questions of a kind, and so tells nothing.
+    """
+    values = question["result"] if question["kind"] == "function" else question["kind"]
+    return list(_numbered(values, tuple(sorted(question.get("symbols", ())))))
+
+
+@functools.lru_cache(64)
+def _numbered(kind, symbols):
+    kind = kinds()[kind]
+    details = {
+        "symbol": symbols,
+        "first": symbols,
+        "second": symbols,
+        "factor": [name for name, _ in FACTORS],
+        "number": range(len(NUMBERS)),
+    }
+    found = []
+    for messages, own in ((MESSAGES, {}), (kind.messages, kind.details)):
+        for note, words in messages.items():
+            needed = list(inspect.signature(words).parameters)[1:]
+            if note != "authored":
+                choices = ((own or details).get(name, ()) for name in needed)
+                found += [[note, dict(zip(needed, values))] for values in itertools.product(*choices)]
+    return found
 
 
 # --- what each mistake does to an answer --------------------------------------------------------
@@ -125,7 +167,27 @@ def of_matrix(question, answer, turns, turned):
     if answer.rows == answer.cols:
         yield Mistake("transposed", {}, answer.T)
     yield Mistake("opposite", {}, -answer)
+    yield from of_factors(answer)
     yield from of_symbols(question, answer)
+
+
+def of_parts(question, answer, turns, turned):
+    """One part of a list of words or truth values that is another than the right one."""
+    answer = list(answer)
+    if not 3 <= len(answer) < len(NUMBERS):
+        return
+    for place, right in enumerate(answer):
+        for option in question.get("options") or [True, False]:
+            if option != right:
+                yield Mistake("one wrong", {"number": len(answer)}, answer[:place] + [option] + answer[place + 1 :])
+
+
+def of_factors(answer):
+    """The answer times a small factor."""
+    import sympy
+
+    for name, factor in FACTORS:
+        yield Mistake("factor", {"factor": name}, sympy.Rational(factor) * answer)
 
 
 def of_vector(question, answer, turns, turned):
@@ -139,6 +201,8 @@ def of_vector(question, answer, turns, turned):
         matrix, components = (sympy.Matrix(part) for part in turned)
         yield Mistake("turned the wrong way", {}, matrix.T * components)
         yield Mistake("not turned", {}, components)
+    if not question.get("unit vector"):
+        yield from of_factors(answer)
     yield from of_symbols(question, answer)
 
 
@@ -159,4 +223,6 @@ def of_expression(question, answer, turns, turned):
         yield Mistake("reciprocal", {}, 1 / answer)
     yield Mistake("half", {}, answer / 2)
     yield Mistake("double", {}, 2 * answer)
+    if "quantity" not in question:
+        yield from of_factors(answer)
     yield from of_symbols(question, answer)

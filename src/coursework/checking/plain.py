@@ -8,8 +8,9 @@ text. Here it becomes a table of numbers, names and operations that JSON can hol
 ``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``,
 ``['matrix', rows, columns, [k, ...]]``, ``['list', [value, ...]]``,
 ``['frame', name, {other: value, ...}]`` (its direction cosine matrix with respect to each frame it is
-connected to), ``['vector', {frame: value, ...}]`` (its components in each frame) or
-``['function', [value or ['raised', t], ...]]``. Each ``k`` counts into ``nodes``; a node is
+connected to), ``['frames', {target: {source: value, ...}, ...}]``, ``['vector', {frame: value, ...}]`` (its
+components in each frame) or ``['function', [value or ['raised', t] or ['printed', t], ...], b]``, where ``b`` says
+whether its body works anything out. Each ``k`` counts into ``nodes``; a node is
 ``['integer', digits]``, ``['rational', p, q]``, ``['float', digits]``, ``['symbol', name]``,
 ``['constant', name]`` or ``[operation, k, ...]``, and refers only to nodes before itself.
 
@@ -18,9 +19,14 @@ answer and not as the tree that would be printed. Nothing is simplified. Reading
 unpickling or ``sympify``, runs no code that a student wrote.
 """
 
+import contextlib
+import dis
+import functools
+import io
 import numbers
 import re
 import sys
+import unicodedata
 
 import sympy
 from mpmath import libmp
@@ -34,11 +40,56 @@ LONGEST_TEXT = 2_000
 LONGEST_INTEGER = 400
 DEEPEST = 6
 
-VALUES = ("blank", "text", "truth", "expression", "matrix", "list", "frame", "vector", "function", "raised")
+#: Calls of functions that working out one part of an answer (a derivative, an integral) may take: about a second.
+#: Calls are counted, and no clock is read, so that every machine decides alike, the one in a browser too.
+MOST_CALLS = 400_000
+
+VALUES = (
+    "blank",
+    "text",
+    "truth",
+    "expression",
+    "matrix",
+    "list",
+    "frame",
+    "frames",
+    "vector",
+    "function",
+    "raised",
+    "printed",
+)
 
 
 class NotPlain(ValueError):
     """An answer cannot be read; the message says why, in the student's terms."""
+
+
+class TooMuchWork(BaseException):
+    """Working out a part took more calls than it may; no Exception, so that SymPy does not catch it."""
+
+
+@contextlib.contextmanager
+def limited_work(most=MOST_CALLS):
+    """Stop what takes too long by counting the calls it makes: it needs no signal and no thread.
+
+    Raises
+    ------
+    TooMuchWork
+    """
+    left = most
+
+    def count(frame, event, argument):
+        nonlocal left
+        left -= 1
+        if left < 0:
+            raise TooMuchWork
+
+    before = sys.gettrace()
+    sys.settrace(count)
+    try:
+        yield
+    finally:
+        sys.settrace(before)
 
 
 def to_plain(answer, calls=None):
@@ -59,8 +110,15 @@ def to_plain(answer, calls=None):
     """
     try:
         return _to_plain(answer, calls)
+    except NotPlain:
+        raise
     except RecursionError:
         raise NotPlain("The answer is nested too deeply to be read. Simplify it.") from None
+    except Exception as error:
+        raise NotPlain(
+            f"An answer of type `{type(answer).__name__[:40]}` could not be read ({type(error).__name__}). "
+            "Give a SymPy expression, a matrix, a list of numbers or a text."
+        ) from None
 
 
 def _to_plain(answer, calls):
@@ -70,8 +128,17 @@ def _to_plain(answer, calls):
     elif not callable(answer):
         raise NotPlain("A function is asked for: give its name, without calling it.")
     else:
-        value = ["function", [writer.result(answer, arguments) for arguments in calls]]
+        value = ["function", [writer.result(answer, arguments) for arguments in calls], _works_something_out(answer)]
     return {"value": value, "nodes": writer.nodes}
+
+
+#: What the body of a function that is still blank is compiled to.
+IDLE = {"RESUME", "NOP", "CACHE", "POP_TOP", "LOAD_CONST", "RETURN_CONST", "RETURN_VALUE", "COPY_FREE_VARS"}
+
+
+def _works_something_out(function):
+    code = getattr(function, "__code__", None)
+    return code is None or any(step.opname not in IDLE for step in dis.get_instructions(code))
 
 
 def _is_blank(answer):
@@ -84,6 +151,8 @@ class _Writer:
     def __init__(self):
         self.nodes = []
         self.written = {}
+        self.put_off = set()
+        self.gave_up = 0
 
     def value(self, answer, depth):
         if depth > DEEPEST:
@@ -96,8 +165,16 @@ class _Writer:
             return ["text", _text(answer)]
         if isinstance(answer, numbers.Number):
             return ["expression", self.number(answer)]
-        if _module(type(answer)).partition(".")[0] == "numpy":
+        origin = _module(type(answer)).partition(".")[0]
+        if origin == "numpy":
             return self.numpy(answer, depth)
+        if origin == "mpmath":
+            return self.mpmath(answer, depth)
+        if origin == "orientation" and hasattr(answer, "reference_frames"):
+            return self.frames(answer, depth)
+        if isinstance(answer, dict) and len(answer) == 1:
+            # What `solve` gives for one unknown: {theta: pi/4}.
+            return self.value(next(iter(answer.values())), depth)
         if isinstance(answer, (list, tuple, set, frozenset)):
             return self.parts(_in_order(answer), depth)
         return self.sympy(answer, depth)
@@ -112,6 +189,33 @@ class _Writer:
         if size > MOST_PARTS:
             raise NotPlain(f"The array has {size} entries; no question asks for that many.")
         return self.value(answer.tolist(), depth)
+
+    def mpmath(self, answer, depth):
+        if hasattr(answer, "tolist"):
+            if answer.rows * answer.cols > MOST_PARTS:
+                raise NotPlain(f"The matrix is {answer.rows} × {answer.cols}; no question asks for one that large.")
+            return [
+                "matrix",
+                answer.rows,
+                answer.cols,
+                [self.number(entry) for row in answer.tolist() for entry in row],
+            ]
+        return ["expression", self.number(answer)]
+
+    def frames(self, answer, depth):
+        """The frames of the book's own graph: the matrix of every pair that is connected."""
+        names = sorted({name for edge in answer._edges for name in (edge.frame, edge.reference)})
+        if len(names) > 12:
+            raise NotPlain("More than 12 frames are given: bind the matrix that is asked for.")
+        found = {}
+        for target in names:
+            for source in names:
+                with contextlib.suppress(ValueError, KeyError):
+                    if target != source:
+                        found.setdefault(_text(target), {})[_text(source)] = self.value(
+                            answer.dcm(target, source), depth + 1
+                        )
+        return ["frames", found]
 
     def sympy(self, answer, depth):
         if _module(type(answer)).startswith("scipy.spatial"):
@@ -147,16 +251,22 @@ class _Writer:
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
         if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(answer, sympy.MatrixBase):
-            if not all(sympy.sympify(size).is_Integer for size in answer.shape):
-                raise NotPlain("The matrix has no definite size.")
-            answer = answer.doit().as_explicit()
+            return ["matrix", *self.matrix(answer)]
         if isinstance(answer, sympy.MatrixBase):
             rows, columns = answer.shape
             if rows * columns > MOST_PARTS:
                 raise NotPlain(f"The matrix is {rows} × {columns}; no question asks for one that large.")
             return ["matrix", rows, columns, [self.expression(entry) for entry in answer.flat()]]
-        if isinstance(answer, sympy.Tuple):
+        if isinstance(answer, (sympy.Tuple, sympy.FiniteSet)):
             return self.parts(list(answer), depth)
+        if isinstance(answer, sympy.NDimArray):
+            return self.parts(answer.tolist(), depth) if answer.rank() else self.value(answer[()], depth)
+        if isinstance(answer, sympy.Eq):
+            # `Eq(theta, pi/4)`: what stands beside the one symbol that is solved for.
+            sides = [side for side in answer.args if not isinstance(side, (sympy.Symbol, AppliedUndef))]
+            if len(sides) == 1:
+                return self.value(sides[0], depth)
+            raise NotPlain("An equation is no value: give the side of it that is asked for.")
         if answer in (sympy.true, sympy.false):
             return ["truth", bool(answer)]
         if isinstance(answer, sympy.Expr):
@@ -164,8 +274,13 @@ class _Writer:
         raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
 
     def result(self, function, arguments):
+        printed = io.StringIO()
         try:
-            return self.value(function(*arguments), 0)
+            with contextlib.redirect_stdout(printed):
+                returned = function(*arguments)
+            if _is_blank(returned) and printed.getvalue().strip():
+                return ["printed", printed.getvalue()[:300]]
+            return self.value(returned, 0)
         except NotPlain:
             raise
         except Exception as error:
@@ -180,7 +295,103 @@ class _Writer:
         self.nodes.append(list(parts))
         return len(self.nodes) - 1
 
+    def matrix(self, answer):
+        """The rows, columns and entries of a matrix expression, whose products and inverses are worked out here.
+
+        SymPy's own inverse of a product of three turns takes half a minute; written as cofactors over a
+        determinant it is a few more nodes.
+        """
+        if not all(sympy.sympify(size).is_Integer for size in answer.shape):
+            raise NotPlain("The matrix has no definite size.")
+        rows, columns = map(int, answer.shape)
+        if rows * columns > MOST_PARTS:
+            raise NotPlain(f"The matrix is {rows} × {columns}; no question asks for one that large.")
+        if isinstance(answer, sympy.MatrixBase):
+            return rows, columns, [self.expression(entry) for entry in answer.flat()]
+        if isinstance(answer, sympy.MatMul):
+            factors = [
+                self.matrix(part) if getattr(part, "is_Matrix", False) else (0, 0, [self.expression(part)])
+                for part in answer.args
+            ]
+            return functools.reduce(self._product, factors)
+        if isinstance(answer, sympy.MatAdd):
+            terms = [self.matrix(part)[2] for part in answer.args]
+            return rows, columns, [self.node("Add", *entries) for entries in zip(*terms)]
+        if isinstance(answer, sympy.Transpose):
+            return self._transposed(self.matrix(answer.arg))
+        if isinstance(answer, sympy.matrices.expressions.matpow.MatPow) and answer.exp.is_Integer:
+            power = int(answer.exp)
+            if 0 < abs(power) <= 12:
+                base = self.matrix(answer.base)
+                base = self._inverse(base) if power < 0 else base
+                return functools.reduce(self._product, [base] * abs(power))
+        try:
+            with limited_work():
+                explicit = answer.doit().as_explicit()
+        except TooMuchWork:
+            raise NotPlain("The matrix takes too long to be worked out: call `.doit()` on it first.") from None
+        return rows, columns, [self.expression(entry) for entry in explicit.flat()]
+
+    def _product(self, first, second):
+        (rows, inner, left), (_, columns, right) = first, second
+        if not rows or not columns:  # one of the two is a number
+            (_, _, (factor,)), (rows, columns, entries) = (first, second) if not rows else (second, first)
+            return rows, columns, [self.node("Mul", factor, entry) for entry in entries]
+        entries = [
+            self.node(
+                "Add",
+                *(self.node("Mul", left[i * inner + k], right[k * columns + j]) for k in range(inner)),
+            )
+            for i in range(rows)
+            for j in range(columns)
+        ]
+        return rows, columns, entries
+
+    def _transposed(self, matrix):
+        rows, columns, entries = matrix
+        return columns, rows, [entries[i * columns + j] for j in range(columns) for i in range(rows)]
+
+    def _inverse(self, matrix):
+        size, _, entries = matrix
+        if size > 4:
+            raise NotPlain("The inverse of a matrix of this size is not worked out here: call `.doit()` on it first.")
+        minus = self.node("integer", "-1")
+        numbers_left = tuple(range(size))
+        cofactors = {
+            (i, j): self._minor(
+                entries,
+                size,
+                numbers_left[:i] + numbers_left[i + 1 :],
+                numbers_left[:j] + numbers_left[j + 1 :],
+                minus,
+            )
+            for i in range(size)
+            for j in range(size)
+        }
+        cofactors = {
+            (i, j): self.node("Mul", minus, found) if (i + j) % 2 else found for (i, j), found in cofactors.items()
+        }
+        terms = [self.node("Mul", entries[j], cofactors[0, j]) for j in range(size)]
+        reciprocal = self.node("Pow", self.node("Add", *terms), minus)
+        return size, size, [self.node("Mul", reciprocal, cofactors[j, i]) for i in range(size) for j in range(size)]
+
+    def _minor(self, entries, size, rows, columns, minus):
+        """The determinant of some rows and columns."""
+        if not rows:
+            return self.node("integer", "1")
+        terms = []
+        for place, column in enumerate(columns):
+            rest = self._minor(entries, size, rows[1:], columns[:place] + columns[place + 1 :], minus)
+            factors = [entries[rows[0] * size + column], rest] + [minus] * (place % 2)
+            terms.append(self.node("Mul", *factors))
+        return self.node("Add", *terms)
+
     def number(self, number):
+        if _module(type(number)).partition(".")[0] == "mpmath":
+            if hasattr(number, "_mpc_"):
+                real, imaginary = (self.number(part) for part in (number.real, number.imag))
+                return self.node("Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary))
+            return self.node("float", libmp.to_str(number._mpf_, 40))
         if isinstance(number, complex):
             real, imaginary = (self.number(part) for part in (number.real, number.imag))
             unit = self.node("constant", "ImaginaryUnit")
@@ -220,13 +431,30 @@ class _Writer:
             todo.pop()
         return self.written[root]
 
+    def worked_out(self, part):
+        """A part that SymPy has put off, worked out; or itself, which has no value, where that takes too long."""
+        if self.gave_up < 2:
+            try:
+                with limited_work():
+                    return part.doit()
+            except TooMuchWork:
+                self.gave_up += 1
+            except Exception:
+                pass  # what SymPy cannot work out has no value here
+        return part
+
     def children(self, part):
         if isinstance(part, (sympy.Number, sympy.NumberSymbol, sympy.Symbol, AppliedUndef)) or part is sympy.I:
             return ()
         if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
             return ()
-        if isinstance(part, sympy.Derivative):
-            return (part.doit(),)
+        if isinstance(part, PUT_OFF) and part not in self.put_off:
+            worked_out = self.worked_out(part)
+            if type(worked_out) is not type(part):
+                return (worked_out,)
+            self.put_off.add(part)
+        if part in self.put_off:
+            return ()
         return part.args
 
     def operation(self, part, children):
@@ -235,18 +463,37 @@ class _Writer:
         if isinstance(part, sympy.Float):
             return self.node("float", libmp.to_str(part._mpf_, 40))
         if isinstance(part, sympy.Symbol):
-            return self.node("symbol", _text(part.name))
+            return self.node("symbol", _name_of(part.name))
         if isinstance(part, AppliedUndef):
-            return self.node("symbol", _text(part.func.__name__))
+            return self.node("symbol", _name_of(part.func.__name__))
         if isinstance(part, sympy.Derivative):
             if isinstance(part.expr, AppliedUndef):
-                return self.node("symbol", _text(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9))
+                return self.node("symbol", _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9))
             return self.written[children[0]]
-        if isinstance(part, (sympy.UnevaluatedExpr,)):
+        if isinstance(part, sympy.UnevaluatedExpr) or children and isinstance(part, PUT_OFF):
             return self.written[children[0]]
         if not children:
             return self.node("constant", type(part).__name__[:60])
         return self.node(type(part).__name__[:60], *(self.written[child] for child in children))
+
+
+#: What SymPy may have put off and would work out by ``.doit()``.
+PUT_OFF = (sympy.Derivative, sympy.Integral, sympy.Subs)
+
+
+def _name_of(symbol):
+    """The name of a symbol in the letters of a keyboard: ``θ`` is ``theta``, ``θ_1`` is ``theta_1``."""
+    name = unicodedata.normalize("NFKC", _text(symbol)) if not symbol.isascii() else symbol
+    return _text(re.sub(r"[^\x00-\x7f]", lambda letter: _spelled(letter[0]), name))
+
+
+def _spelled(letter):
+    words = unicodedata.name(letter, "").lower().split()
+    if words[:1] == ["greek"] and words[2:3] == ["letter"]:
+        # Unicode spells one letter in another way than everybody else.
+        word = words[-1].replace("lamda", "lambda")
+        return word.capitalize() if words[1] == "capital" else word
+    return letter
 
 
 def _text(text):
@@ -317,8 +564,8 @@ def read_plain(data):
     def value(part, depth):
         demand(depth <= DEEPEST + 2 and isinstance(part, list) and part and part[0] in VALUES)
         kind, rest = part[0], part[1:]
-        demand(len(rest) == {"blank": 0, "matrix": 3, "frame": 2}.get(kind, 1))
-        if kind in ("text", "raised"):
+        demand(len(rest) == {"blank": 0, "matrix": 3, "frame": 2, "function": 2}.get(kind, 1))
+        if kind in ("text", "raised", "printed"):
             demand(isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
         elif kind == "truth":
             demand(isinstance(rest[0], bool))
@@ -331,7 +578,14 @@ def read_plain(data):
             demand(len(entries) <= MOST_PARTS)
             for entry in entries:
                 count(entry)
+        elif kind == "frames":
+            demand(isinstance(rest[0], dict) and len(rest[0]) <= 12)
+            for name, others in rest[0].items():
+                demand(len(name) <= LONGEST_TEXT and isinstance(others, dict) and len(others) <= 12)
+                for inner in others.values():
+                    value(inner, depth + 1)
         elif kind in ("list", "function"):
+            demand(kind == "list" or isinstance(rest[1], bool))
             demand(isinstance(rest[0], list) and len(rest[0]) <= MOST_PARTS)
             for inner in rest[0]:
                 value(inner, depth + 1)

@@ -43,6 +43,8 @@ class Kind(NamedTuple):
         How many numbers, each off by the tolerance, may make up one number of ``unique``.
     wrong : str
         What a wrong answer has right.
+    begin : str
+        Where to begin: the first step of the ladder of hints.
     needs : tuple of str
         Arguments that an author must give.
     arguments : tuple of str
@@ -53,6 +55,11 @@ class Kind(NamedTuple):
         The typical mistakes, carried out on the right answer.
     messages : dict
         What a student is told of a mistake, by its note: functions of the question and of the mistake's details.
+    details : dict
+        What the details of these mistakes may be, by name: tuples of values, so that a mistake has a number.
+    slips : dict
+        Common slips that go with another mistake, by name: what is said of each, and a function of the question and
+        the numbers of an answer that undoes it, or gives ``None`` where it makes no sense.
     build : function (turns) -> matrix
         The answer that successive turns lead to, where ``turns`` may be given.
     forms : function (question, answer) -> list of (str, answer)
@@ -67,11 +74,14 @@ class Kind(NamedTuple):
     fault: Callable | None = None
     parts: int = 1
     wrong: str = "The form is right, the value is not."
+    begin: str = ""
     needs: tuple = ()
     arguments: tuple = ()
     either_sign: bool = False
     mistakes: Callable | None = None
     messages: dict = {}
+    details: dict = {}
+    slips: dict = {}
     build: Callable | None = None
     forms: Callable | None = None
     another: Callable | None = None

@@ -3,17 +3,31 @@
 They follow from the question's own salt, so the author's machine and every student's take the same.
 """
 
+import functools
 import hashlib
+import json
+import math
 
 from .evaluate import MP
 
-#: At three points each symbol has had both signs, and no two forms that differ agree by chance.
-POINTS = 3
-#: Where an angle is sampled if its question says nothing: beyond a quarter turn, so that a root is not
-#: taken for the cosine it equals in the first quadrant, and within a half turn, where half-angle forms hold.
+#: So many that each angle has been in all four quadrants, and no two signs of sines and cosines always agree.
+POINTS = 5
+#: Where an angle is sampled if its question says nothing: in all four quadrants, so that no root is taken for
+#: the cosine it equals in the first one, and within a half turn, where half-angle forms hold.
 ANGLES = (-3.0, 3.0)
 #: Letters that SymPy has two of and handwriting one.
 TWINS = {"phi": "varphi", "varphi": "phi", "epsilon": "varepsilon", "varepsilon": "epsilon"}
+#: How a derivative with respect to time, ``theta'``, may be written as a symbol.
+RATES = ("{}dot", "{}_dot", "dot_{}", "d{}", r"\dot{{{}}}", r"\dot{{\{}}}")
+#: Tries to place the points well; a range within one quadrant leaves nothing to place.
+MOST_TRIES = 200
+
+
+def spellings(name):
+    """Other names of the symbol of this name."""
+    if name.endswith("'") and not name.endswith("''"):
+        return [rate.format(name[:-1]) for rate in RATES]
+    return [TWINS[name]] if name in TWINS else []
 
 
 def points(question):
@@ -21,27 +35,67 @@ def points(question):
     symbols = question.get("symbols", {})
     if not symbols:
         return [{}]
+    asked = json.dumps([question["salt"], sorted(symbols.items()), question.get("unit", ())])
+    return [dict(point) for point in _points(asked)]
+
+
+@functools.lru_cache(256)
+def _points(asked):
+    salt, symbols, unit = json.loads(asked)
+    placed = _placed(salt, [limits for _, limits in symbols])
     found = []
-    for number in range(POINTS):
-        point = {
-            name: _draw(question, number, order, *limits)
-            for order, (name, limits) in enumerate(sorted(symbols.items()))
-        }
-        for group in question.get("unit", ()):
+    for row in placed:
+        point = {name: value for (name, _), value in zip(symbols, row)}
+        for group in unit:
             length = MP.sqrt(sum(point[name] ** 2 for name in group))
             point.update({name: point[name] / length for name in group})
         for name in list(point):
-            twin = TWINS.get(name)
-            if twin and twin not in point:
-                point[twin] = point[name]
+            for other in spellings(name):
+                point.setdefault(other, point[name])
         found.append(point)
     return found
 
 
-def _draw(question, number, order, low, high):
-    seed = f"{question['salt']} point {number} of symbol {order}".encode()
-    share = int.from_bytes(hashlib.sha256(seed).digest()[:12], "big") / MP.mpf(2) ** 96
-    if low < 0 < high and number < 2:
-        # The first two points take both signs, so that an even function is never taken for an odd one.
-        low, high = (low, low / 20) if (number + order) % 2 else (high / 20, high)
-    return MP.mpf(low) + share * (MP.mpf(high) - MP.mpf(low))
+def _placed(salt, ranges):
+    """Rows of values, one for each point, such that no two signs of sines and cosines agree at all of them."""
+    best, most = None, -1
+    for attempt in range(MOST_TRIES):
+        columns = [_column(f"{salt} {attempt} {order}", *limits) for order, limits in enumerate(ranges)]
+        signs = [_signs(function, column) for column in columns for function in (math.sin, math.cos)]
+        changing = [sign for sign in signs if len(set(sign)) > 1]
+        different = len(set(changing))
+        if different > most:
+            best, most = columns, different
+        if different == len(changing):
+            break
+    return list(zip(*best))
+
+
+def _signs(function, column):
+    signs = [function(value) >= 0 for value in column]
+    # A sign and its opposite are one: the product of the two never changes.
+    return tuple(sign == signs[0] for sign in signs)
+
+
+def _column(seed, low, high):
+    """One value for each point, in every quadrant that the range has a part in."""
+    low, high = MP.mpf(low), MP.mpf(high)
+    quarter = MP.pi / 2
+    inner = [number * quarter for number in range(int(MP.ceil(low / quarter)), int(MP.floor(high / quarter)) + 1)]
+    edges = [low, *(edge for edge in inner if low < edge < high), high]
+    parts = list(zip(edges, edges[1:]))
+    parts.sort(key=lambda part: _share(f"{seed} part {MP.nstr(part[0], 8)}"))
+    kinds = {}
+    for part in parts:
+        kinds.setdefault(int(MP.floor((part[0] + part[1]) / 2 / quarter)) % 4, part)
+    chosen = [*kinds.values(), *parts, *parts, *parts, *parts, *parts][:POINTS]
+    chosen = sorted(enumerate(chosen), key=lambda place: _share(f"{seed} place {place[0]}"))
+    return [
+        # Not at the edge of a part: there a form may be undefined, or two that differ nearly agree.
+        start + (MP.mpf("0.06") + MP.mpf("0.88") * _share(f"{seed} value {number}")) * (end - start)
+        for number, (start, end) in chosen
+    ]
+
+
+def _share(seed):
+    return int.from_bytes(hashlib.sha256(seed.encode()).digest()[:12], "big") / MP.mpf(2) ** 96

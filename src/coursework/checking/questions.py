@@ -6,19 +6,29 @@ folder ``sealed`` stands beside the notebook, or in the package of a plug-in.
 
 import difflib
 import functools
+import hashlib
 import json
 import re
 from pathlib import Path
 
 from . import sealing
-from .kinds import Blank, Fault, Reading, Undecidable, fault, fingerprint, read
-from .mistakes import message
+from .evaluate import MP
+from .kinds import Blank, Fault, Reading, Undecidable, canonical, distance, fault, fingerprint, read
+from .mistakes import message, numbered
 from .plugins import kind_of_values, sealed_folders
-from .points import TWINS
+from .points import spellings
 from .reply import Reply
 from .variants import own_variant
 
-FORMAT = 1
+FORMAT = 2
+#: Letters and digits of a code that opens worked solutions: none that looks like another.
+CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
+#: The outcomes that a locker may hold, by their number in it.
+OUTCOMES = ("correct", "mistake")
+#: Faults of the form that no right value makes good.
+ALWAYS_WRONG = ("not unit length",)
+#: Up to so many tolerances from the right answer, one is told that it is close.
+NEARLY = 3
 
 
 class NoSuchQuestion(KeyError):
@@ -80,19 +90,43 @@ def find_question(name):
 
 
 def judge(name, question, plain):
-    """Compare an answer, as plain data, with what is sealed. Gives the reply and the key it earned."""
-    earned = None
+    """Compare an answer, as plain data, with what is sealed.
 
-    def open_locker(text):
-        nonlocal earned
-        key = sealing.slow_key(question["salt"], text)
-        sealed = question["lockers"].get(sealing.locker(key))
-        if sealed is None:
-            return None
-        earned = key
-        return sealing.unseal(sealed, key)
+    Returns
+    -------
+    tuple (Reply, dict)
+        The reply, and what the answer opened: hints, the worked solution, hints for another question.
+    """
+    reply = compare(name, question, plain, lambda text: opened(question, text))
+    return reply, reply.opened
 
-    return compare(name, question, plain, open_locker), earned
+
+def code_text(code):
+    """What is hashed of a code that opens worked solutions, however it is typed."""
+    return "code " + "".join(letter for letter in code.upper() if letter in CODE_LETTERS)
+
+
+def rung_key(question, number):
+    """The key of a step of the ladder of hints: no secret, it only keeps the step from being read in passing."""
+    return hashlib.sha256(f"{question['salt']} step {number}".encode()).digest()[: sealing.PAGE_KEY]
+
+
+def opened(question, text):
+    """What the locker of a fingerprint holds, or ``None``."""
+    key = sealing.slow_key(question["salt"], text)
+    found = sealing.open_locker(question["lockers"], key)
+    if found is None:
+        return None
+    outcome, numbers, page, page_key = found
+    if page is not None:
+        return {**open_page(question, page, page_key), "page": [page, page_key.hex()]}
+    known = numbered(question)
+    return {"cases": [{"outcome": OUTCOMES[outcome], "notes": [known[number] for number in numbers]}]}
+
+
+def open_page(question, page, key):
+    """What stands on a page; ``key`` as bytes or as the digits that another page holds."""
+    return sealing.unseal(question["pages"][page], bytes.fromhex(key) if isinstance(key, str) else key)
 
 
 def compare(name, question, plain, find):
@@ -105,11 +139,14 @@ def compare(name, question, plain, find):
         The public part of the question.
     plain : dict
     find : function
-        What is known of a fingerprint: its outcome and notes, or ``None``.
+        What is known of a fingerprint, or ``None``: a dictionary whose ``"cases"`` are each an outcome with its
+        notes and, where answers have a tolerance, the numbers that it is meant for.
     """
     try:
         reading = read(question, plain)
-        text = fingerprint(question, reading)
+        reply = _compare(name, question, plain, reading, find)
+        reply.answer = hashlib.sha256(fingerprint(question, reading).encode()).hexdigest()[:12]
+        return reply
     except Blank:
         return Reply(name, "not attempted", "", ["Put your answer in place of the `...` and run the cells again."])
     except Fault as found:
@@ -118,41 +155,107 @@ def compare(name, question, plain, find):
         return Reply(
             name, "undecided", "undecidable", [f"{found} Try another form, or ask your instructor to look at it."]
         )
+
+
+def _compare(name, question, plain, reading, find):
+    text = fingerprint(question, reading)
     content = find(text)
-    if content is None:
-        found = fault(question, reading)
-        if found:
-            return Reply(name, "invalid", found.note, [found.message])
-        return Reply(name, "wrong", "", [what_can_be_said(question, plain, reading)])
-    if content["outcome"] == "correct":
-        return Reply(name, "correct")
-    notes = content["notes"]
-    messages = [message(question, note, details) for note, details in notes[:2]]
+    case = _case_of(question, reading, content)
+    found = fault(question, reading) if case is None or case["outcome"] == "correct" else None
+    if found and (case is None or found.note in ALWAYS_WRONG):
+        # What comes of rounding is not called a fault of geometry.
+        said = _decimals(question, plain, reading) if found.note != "stray symbol" else ""
+        return Reply(name, "invalid", found.note, [said, found.message] if said else [found.message])
+    if case is None:
+        return _not_known(name, question, plain, reading, find, content)
+    if case["outcome"] == "correct":
+        return Reply(name, "correct", opened=content)
+    reply = Reply(name, "wrong", case["notes"][0][0], _messages(question, case), opened=case)
+    reply.opened = {**case, "page": content.get("page")}
+    reply.details = case["notes"][0][1]
+    return reply
+
+
+def _messages(question, case):
+    messages = [message(question, note, details) for note, details in case["notes"][:2]]
     if len(messages) > 1:
         messages[1] = f"Or, which comes to the same here: {messages[1]}"
-    return Reply(name, "wrong", notes[0][0], messages)
+    return messages
 
 
-def opened(question, key, purpose):
-    """Open what lies beside a locker: the worked solution, or hints; ``None`` where there is nothing."""
-    sealed = question.get("beside", {}).get(sealing.locker(key, purpose))
-    return None if sealed is None else sealing.unseal(sealed, key, purpose)
+def _case_of(question, reading, content):
+    """Which of the cases in a locker an answer is: the nearest, if that is near enough; or ``None``."""
+    if content is None:
+        return None
+    nearest, least = None, None
+    for case in content["cases"]:
+        far = _far(question, reading, case)
+        if least is None or far < least:
+            nearest, least = case, far
+    return nearest if least <= 1 else None
 
 
-def what_can_be_said(question, plain, reading: Reading):
+def _far(question, reading, case):
+    if not case.get("numbers"):
+        return 0
+    return distance(question, canonical(question, reading), [MP.mpf(number) for number in case["numbers"]])
+
+
+def _not_known(name, question, plain, reading, find, content):
+    """The reply to an answer that is neither right nor a mistake of the catalogue."""
+    if content is not None and any(
+        case["outcome"] == "correct" and _far(question, reading, case) <= NEARLY for case in content["cases"]
+    ):
+        tolerance = question["tolerance"]
+        return Reply(
+            name,
+            "wrong",
+            "rounded too far",
+            [
+                f"This is close, but off by more than the {tolerance:g} that is allowed. Was it rounded too far, "
+                "here or on the way? Keep all digits until the end."
+            ],
+        )
+    decimals = _decimals(question, plain, reading)
+    if decimals and find(fingerprint(question, reading, near=True)) is not None:
+        return Reply(
+            name,
+            "wrong",
+            "rounded too far",
+            ["This agrees with the exact answer to about three digits, and an exact answer is asked for.", decimals],
+        )
+    for slip, why, turned in other_readings(question, reading):
+        case = _case_of(question, turned, find(fingerprint(question, turned)))
+        if case and case["outcome"] != "correct":
+            said = _messages(question, case)[0]
+            reply = Reply(name, "wrong", f"{slip}, and {case['notes'][0][0]}", [f"Two things at once: {why} {said}"])
+            reply.details = case["notes"][0][1]
+            return reply
+    said = what_can_be_said(question, plain)
+    return Reply(name, "wrong", "", [f"{decimals} {said}" if decimals else said])
+
+
+def other_readings(question, reading):
+    """The answer with one common slip undone, by what is said of the slip: it may be a known mistake then."""
+    if reading.text is None:
+        for name, (said, undo) in kind_of_values(question).slips.items():
+            numbers = [undo(question, numbers) for numbers in reading.numbers]
+            if None not in numbers:
+                yield name, said, Reading(numbers)
+
+
+def _decimals(question, plain, reading):
+    exact = question.get("tolerance") is None and reading.text is None
+    if not exact or not any(node[0] == "float" for node in plain["nodes"]):
+        return ""
+    return "It holds decimal fractions; an exact answer is asked for: write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+
+
+def what_can_be_said(question, plain):
     """What a wrong answer has right, so that its author does not look for the fault there."""
     said = kind_of_values(question).wrong
     named = {node[1] for node in plain["nodes"] if node[0] == "symbol"}
-    missing = [symbol for symbol in question.get("symbols", {}) if not {symbol, TWINS.get(symbol)} & named]
+    missing = [symbol for symbol in question.get("symbols", {}) if not {symbol, *spellings(symbol)} & named]
     if question.get("every symbol") and named and missing:
         said += f" It holds no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
-    if (
-        any(node[0] == "float" for node in plain["nodes"])
-        and question.get("tolerance") is None
-        and reading.text is None
-    ):
-        said += (
-            " It holds decimal fractions; where an exact answer is asked for, write `sm.Rational(1, 2)` and "
-            "`sm.sqrt(3)`."
-        )
     return said

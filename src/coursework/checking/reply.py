@@ -10,6 +10,7 @@ OUTCOMES = {
     "wrong": ("✗", "Not yet", "#b54708"),
     "invalid": ("!", "Not in the form that is asked for", "#b54708"),
     "undecided": ("?", "Undecided", "#5b5fc7"),
+    "hints": ("→", "So far", "#6b7280"),
     "not attempted": ("…", "Not attempted", "#6b7280"),
 }
 
@@ -28,16 +29,34 @@ class Reply:
         Paragraphs, with ``code``, *emphasis* and $mathematics$ marked as in Markdown.
     solution : str
         HTML of the worked solution, once it is earned.
+    answer : str
+        What all ways of writing this answer have in common, hashed.
+    tries : int
+        How many different answers the record beside the notebook knows of; 0 where there is none.
+    details : dict
+        What the message of the mistake needed to know.
+    opened : dict
+        What else the answer opened: hints, the place of the worked solution.
     """
 
     def __init__(
-        self, question: str, outcome: str, note: str = "", messages: Iterable[str] = (), solution: str = ""
+        self,
+        question: str,
+        outcome: str,
+        note: str = "",
+        messages: Iterable[str] = (),
+        solution: str = "",
+        opened: dict | None = None,
     ) -> None:
         self.question = question
         self.outcome = outcome
         self.note = note
         self.messages = list(messages)
         self.solution = solution
+        self.answer = ""
+        self.tries = 0
+        self.details: dict = {}
+        self.opened = opened or {}
 
     def __repr__(self):
         _, word, _ = OUTCOMES[self.outcome]
@@ -49,6 +68,8 @@ class Reply:
     def _repr_html_(self):
         sign, word, colour = OUTCOMES[self.outcome]
         name = html.escape(self.question)
+        tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
+        known = f' data-tries="{self.tries}"' if self.tries else ""
         paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message)}</p>' for message in self.messages)
         solution = (
             f"<details><summary>The worked solution</summary><div>{self.solution}</div></details>"
@@ -56,10 +77,10 @@ class Reply:
             else ""
         )
         return (
-            f'<div class="coursework-reply" role="status" data-outcome="{self.outcome}" '
+            f'<div class="coursework-reply" role="status" data-outcome="{self.outcome}"{known} '
             f'style="border-left:.3em solid {colour};padding:.2em .8em">'
             f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> {word}</strong> '
-            f'<span style="opacity:.8">{name}</span></p>{paragraphs}{solution}</div>'
+            f'<span style="opacity:.8">{name}{tries}</span></p>{paragraphs}{solution}</div>'
         )
 
 

@@ -1,11 +1,12 @@
 """Locks that only an answer opens.
 
-The fingerprint of an answer is stretched by a slow hash into a key. The key gives the name of a locker,
-which can be looked up, and it opens what lies inside. Lockers for the right answer and for each mistake look
-alike, so the data that a student receives tells neither the answer, nor which mistakes are known.
+The fingerprint of an answer is stretched by a slow hash into a key. The key gives the name of a locker, which
+can be looked up, and it opens what lies inside: the numbers of the mistakes in the catalogue, and the key of a
+page where there is more to say. Lockers are all of one size, whether they hold the right answer, a mistake or
+the cell beside one, so the data that a student receives tells neither the answer, nor which mistakes are known.
 
 What can be checked without a server can also be tried without one. The slow hash makes each try cost about
-15 ms; an answer with few possibilities stays guessable, and the author's report says which those are.
+12 ms; an answer with few possibilities stays guessable, and the author's report says which those are.
 """
 
 import base64
@@ -15,9 +16,14 @@ import json
 import zlib
 
 #: Rounds of the slow hash (PBKDF2 with HMAC-SHA-256, RFC 8018).
-ROUNDS = 50_000
-#: Lockers are filled up to a multiple of this, so that their length tells nothing.
+ROUNDS = 40_000
+#: Pages are filled up to a multiple of this, so that their length tells little.
 BLOCK = 48
+#: Bytes of the name of a locker, of what lies in it, of its tag, and of the key of a page.
+NAME, INSIDE, TAG, PAGE_KEY = 7, 14, 3, 8
+LOCKER = NAME + INSIDE + TAG
+#: In place of the number of a mistake, and of a page: there is none.
+NO_MISTAKE, NO_PAGE = 0xFFFF, 0xFF
 
 
 def slow_key(salt, fingerprint):
@@ -61,21 +67,60 @@ else:
     pbkdf2 = portable_pbkdf2
 
 
-def locker(key, purpose="reply"):
-    """Name of the locker that a key opens."""
-    return _text(_derive(key, f"name of the {purpose}")[:9])
+# --- lockers: 24 bytes each, 32 characters in the file ------------------------------------------
 
 
-def seal(content, key, purpose="reply", length=0):
-    """Lock up JSON content; shorter content is filled up to ``length`` bytes first."""
+def locker(key, outcome, mistakes=(), page=NO_PAGE, page_key=bytes(PAGE_KEY)):
+    """Make a locker: one of two outcomes, up to two numbers of mistakes, and a page with its key."""
+    first, second = [*mistakes, NO_MISTAKE, NO_MISTAKE][:2]
+    inside = bytes([outcome, page]) + first.to_bytes(2, "big") + second.to_bytes(2, "big") + page_key
+    hidden = _mask(inside, key, "locker")
+    return _name(key) + hidden + _tag(hidden, key, "locker")[:TAG]
+
+
+def pack(lockers):
+    """The text of some lockers, in an order that tells nothing."""
+    return _text(b"".join(sorted(lockers)))
+
+
+def open_locker(lockers, key):
+    """Open the locker of a key: its outcome, its mistakes, its page and the key of that; or give ``None``.
+
+    Raises
+    ------
+    ValueError
+        The data was changed.
+    """
+    data, name = base64.b64decode(lockers), _name(key)
+    for start in range(0, len(data), LOCKER):
+        if data[start : start + NAME] == name:
+            hidden, tag = data[start + NAME : start + NAME + INSIDE], data[start + NAME + INSIDE : start + LOCKER]
+            if not hmac.compare_digest(tag, _tag(hidden, key, "locker")[:TAG]):
+                raise ValueError("The sealed data was changed.")
+            inside = _mask(hidden, key, "locker")
+            mistakes = [int.from_bytes(inside[2:4], "big"), int.from_bytes(inside[4:6], "big")]
+            page = None if inside[1] == NO_PAGE else inside[1]
+            return inside[0], [number for number in mistakes if number != NO_MISTAKE], page, inside[6:]
+    return None
+
+
+def _name(key):
+    return _derive(key, "name of the locker")[:NAME]
+
+
+# --- pages --------------------------------------------------------------------------------------
+
+
+def seal(content, key):
+    """Lock up JSON content as a page."""
     data = zlib.compress(json.dumps(content, ensure_ascii=False, sort_keys=True).encode("utf8"), 9)
     data = len(data).to_bytes(4, "big") + data
-    data = data.ljust(max(length, -(-len(data) // BLOCK) * BLOCK), b"\0")
-    hidden = _mask(data, key, purpose)
-    return _text(hidden + _tag(hidden, key, purpose))
+    data = data.ljust(-(-len(data) // BLOCK) * BLOCK, b"\0")
+    hidden = _mask(data, key, "page")
+    return _text(hidden + _tag(hidden, key, "page"))
 
 
-def unseal(sealed, key, purpose="reply"):
+def unseal(sealed, key):
     """Open what :func:`seal` locked.
 
     Raises
@@ -85,9 +130,9 @@ def unseal(sealed, key, purpose="reply"):
     """
     data = base64.b64decode(sealed)
     hidden, tag = data[:-16], data[-16:]
-    if not hmac.compare_digest(tag, _tag(hidden, key, purpose)):
+    if not hmac.compare_digest(tag, _tag(hidden, key, "page")):
         raise ValueError("The sealed data does not fit this key, or was changed.")
-    data = _mask(hidden, key, purpose)
+    data = _mask(hidden, key, "page")
     return json.loads(zlib.decompress(data[4 : 4 + int.from_bytes(data[:4], "big")]))
 
 

@@ -83,7 +83,8 @@ def about(question, secret):
                 "credit": question.credit,
                 "public": question.public,
                 "known": {
-                    text: {"outcome": entry.outcome, "notes": entry.notes} for text, entry in question.entries.items()
+                    **{text: {"cases": []} for text in question.near},
+                    **{text: {"cases": entry.cases} for text, entry in question.entries.items()},
                 },
                 "right": _canonical_of(question),
                 "plain": question.plain if question.public["kind"] != "function" else None,
@@ -174,12 +175,11 @@ def mark(name, question, answer, finished=True, limited=False):
         judge(name, other, answer)[0].outcome == "correct" for other in question.get("siblings", [])
     ):
         reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
-    notes = question["known"].get(text, {}).get("notes") if reply.outcome == "wrong" else None
     share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     return {
         "outcome": reply.outcome,
         "note": reply.note,
-        "details": notes[0][1] if notes else {},
+        "details": reply.details,
         "messages": reply.messages,
         "points": round(question["worth"] * share, 4),
         "worth": question["worth"],
@@ -214,13 +214,15 @@ def judge(name, question, answer, finished=True, limited=False):
     found = []
 
     def look_up(text):
-        found.append(text)
+        if not found:  # what is looked up after that is another reading of the same answer
+            found.append(text)
         return question["known"].get(text)
 
     try:
         plain = read_plain(answer["plain"])
         reply = compare(name, question["public"], plain, look_up)
-        if reply.outcome == "wrong" and not reply.note and _nearly_right(question, plain):
+        rounded = reply.outcome == "wrong" and reply.note in ("", "rounded too far")
+        if rounded and _nearly_right(question, plain):
             reply = _undecided(
                 name,
                 "nearly right",

@@ -236,7 +236,7 @@ class _Notebook:
             del sys.modules[name]
         package = types.ModuleType("coursework")
         package.check = self.check
-        package.hint = package.progress = package.me = nothing
+        package.hint = package.progress = package.me = package.worked_solution = nothing
         package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
         sys.modules["coursework"] = package
         for name, data in self.job["files"].items():

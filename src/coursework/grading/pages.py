@@ -188,6 +188,10 @@ class _Printer:
             return self.put(repr(readable(rest[0])))
         if kind == "truth":
             return self.put(str(rest[0]))
+        if kind == "printed":
+            return self.put(f"printed {readable(rest[0])}")
+        if kind == "frames":
+            return self.parts(sorted(rest[0]), lambda name: self.put(f"{readable(name)} ") + self.named(rest[0][name]))
         if kind == "raised":
             return self.put(f"raised {readable(rest[0])}")
         if kind == "expression":

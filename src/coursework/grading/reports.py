@@ -26,6 +26,9 @@ DEEDS = {
     "symbols interchanged": "interchanged {first} and {second}",
     "opposite": "gave the opposite",
     "reciprocal": "gave the reciprocal",
+    "factor": "gave {factor} times the answer",
+    "one wrong": "has one of the {number} wrong",
+    "rounded too far": "rounded too far",
     "half": "gave half of it",
     "double": "gave twice of it",
     "supplement": "gave the supplementary angle",
@@ -41,6 +44,7 @@ DEEDS = {
     "frame": "gave another frame than the one asked for",
     "raised an error": "gave a function that stops with an error",
     "returned nothing": "gave a function that returns nothing",
+    "printed": "gave a function that prints and returns nothing",
     "not unit length": "gave something that has not unit length",
     "degrees": "gave angles in degrees",
     "unreadable": "gave something that cannot be read as an answer",
@@ -229,9 +233,12 @@ def deed(mark):
         return f"were told: “{mark['messages'][0]}”"
     # Where there is only one turn, it has no number.
     details = {
-        name: ORDINALS[value] if isinstance(value, int) else value or "" for name, value in mark["details"].items()
+        name: ORDINALS[value] if isinstance(value, int) and name != "number" else value or ""
+        for name, value in mark["details"].items()
     }
-    return " ".join(_deeds().get(mark["note"], mark["note"]).format(**details).split())
+    # Two mistakes at once are named together, as in "transposed, and sign of one turn".
+    notes = [mark["note"]] if mark["note"] in _deeds() else mark["note"].split(", and ")
+    return " ".join(", and ".join(_deeds().get(note, note) for note in notes).format(**details).split())
 
 
 @functools.cache

@@ -1,0 +1,405 @@
+"""An attack on the seal of a question, with what a student has: its public part and its lockers.
+
+What can be checked without a server can be tried without one; how often one must try is found here by trying.
+Candidates come in an order in which somebody would try them who knows the subject and wants no work: turns about
+the axes through the symbols, in every order and sign; special angles and the numbers of the question's text;
+monomials of sines and cosines and their sums; small fractions and roots; all words. A candidate that opens the
+locker of a mistake is looked at closer, since its message tells what to change: every candidate that differs from
+it in one choice is tried next. (So do those who climb by the replies.)
+
+Each distinct candidate costs one slow hash. The author knows the fingerprints, so here none is hashed, and the
+number of hashes is counted exactly all the same: :func:`really_attack` spends them, to prove the count.
+
+"Not found" means not found within the budget by these candidates. Somebody may have a better idea: the count is
+an upper bound of what an attacker needs where an answer is found, and no proof of strength where it is not.
+"""
+
+import importlib.util
+import itertools
+import math
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checking import sealing
+from ..checking.kinds import EXACT, EXACT_WIDTH, calls_for, sign_limit, tolerances
+from ..checking.kinds import _offsets as offsets_of
+from ..checking.plugins import plugins
+from ..checking.points import points
+
+#: Slow hashes that the attack on one question may need; a question beyond it counts as not guessable.
+BUDGET = 2**16
+#: Candidates that are worked out together.
+CHUNK = 8192
+
+
+class Found(NamedTuple):
+    """What came of an attack.
+
+    ``tries`` is the number of slow hashes up to and with the one that opened the right answer, or, where it was
+    not found, the number of all candidates; ``way`` is the generator that found it, or empty.
+    """
+
+    tries: int
+    way: str
+
+    def __str__(self):
+        if self.way:
+            return f"found after {self.tries} slow hashes ({self.way})"
+        return f"not found within {self.tries} slow hashes"
+
+
+class Family(NamedTuple):
+    """Candidates that are made by some choices: how many there are of each, and what they give.
+
+    ``evaluate`` takes choices, one row for each candidate, and gives its numbers as they are read of an answer.
+    """
+
+    name: str
+    sizes: tuple
+    evaluate: object
+    by_shells: bool = False
+
+    def orders(self):
+        """All choices, some thousand rows at a time."""
+        if self.by_shells:
+            yield from _shells(self.sizes)
+            return
+        count = math.prod(self.sizes)
+        for start in range(0, min(count, 16 * BUDGET), CHUNK):
+            rows = np.arange(start, min(count, start + CHUNK))
+            columns = []
+            for size in reversed(self.sizes):
+                columns.append(rows % size)
+                rows = rows // size
+            yield np.stack(columns[::-1], axis=1)
+
+    def beside(self, choice):
+        """All choices that differ from one in a single place."""
+        rows = []
+        for place, size in enumerate(self.sizes):
+            for other in range(min(size, 200)):
+                if other != choice[place]:
+                    rows.append([*choice[:place], other, *choice[place + 1 :]])
+        return np.array(rows, dtype=int).reshape(-1, len(self.sizes))
+
+
+def _shells(sizes):
+    """All choices, those first in which every choice is among the first few."""
+    for largest in range(max(sizes)):
+        limited = [min(size, largest + 1) for size in sizes]
+        if math.prod(limited) > 4 * BUDGET:
+            return
+        rows = np.stack(np.meshgrid(*(np.arange(size) for size in limited), indexing="ij"), axis=-1)
+        rows = rows.reshape(-1, len(sizes))
+        yield rows[rows.max(axis=1) == largest]
+
+
+# --- the attack ---------------------------------------------------------------------------------
+
+
+def attack(question, text="", budget=BUDGET):
+    """Attack a :class:`coursework.authoring.author.Question` and count the slow hashes that it takes.
+
+    Parameters
+    ----------
+    question : Question
+    text : str
+        What the student is asked, in words: its numbers are tried.
+    budget : int
+    """
+    right = {known for known, entry in question.entries.items() if entry.outcome == "correct"}
+    mistaken = set(question.entries) - right
+    return _attack(question.public, text, budget, lambda known: 1 if known in right else 2 if known in mistaken else 0)
+
+
+def really_attack(sealed, text="", budget=100):
+    """The same attack with the slow hash on what a student has; only ``budget`` hashes are spent."""
+
+    def open_(known):
+        found = sealing.open_locker(sealed["lockers"], sealing.slow_key(sealed["salt"], known))
+        return 0 if found is None else 1 if found[0] == 0 else 2
+
+    return _attack(sealed, text, budget, open_)
+
+
+def _attack(public, text, budget, open_):
+    """Try candidates until one is right. ``open_`` says of a fingerprint: 1 right, 2 a mistake, 0 neither."""
+    tried = set()
+    for family in families(public, text):
+        for choices in family.orders():
+            with np.errstate(all="ignore"):
+                known = fingerprints_of(public, family.evaluate(choices))
+            for choice, one in zip(choices.tolist(), known, strict=True):
+                for way, candidate in _and_beside(public, family, choice, one, open_, tried):
+                    if candidate == 1:
+                        return Found(len(tried), way)
+                    if len(tried) >= budget:
+                        return Found(len(tried), "")
+    return Found(len(tried), "")
+
+
+def _and_beside(public, family, choice, known, open_, tried):
+    """Try one candidate, and where it is a mistake all beside it."""
+    if known is None or known in tried:
+        return
+    tried.add(known)
+    opened = open_(known)
+    yield family.name, opened
+    if opened != 2:
+        return
+    with np.errstate(all="ignore"):
+        others = fingerprints_of(public, family.evaluate(family.beside(choice)))
+    for other in others:
+        if other is not None and other not in tried:
+            tried.add(other)
+            yield f"{family.name}, then by the reply", open_(other)
+
+
+# --- fingerprints, many at a time ---------------------------------------------------------------
+
+
+def fingerprints_of(public, numbers):
+    """The fingerprints of many candidates: texts, with ``None`` where a candidate is not finite.
+
+    As :func:`coursework.checking.kinds.fingerprint`, in double precision; a test compares the two.
+    """
+    if isinstance(numbers, list):
+        return numbers
+    absolute, relative = (float(part) for part in tolerances(public))
+    count = numbers.shape[1]
+    width = EXACT_WIDTH if public.get("tolerance") is None else 3 * count
+    scale = numbers / absolute
+    if relative:
+        scale = np.sign(numbers) * np.log1p(relative * np.abs(numbers) / absolute) / relative
+    offsets = np.array([float(offset) for offset in offsets_of(public["salt"], count)])
+    cells = np.floor(scale / width + offsets)
+    finite = np.isfinite(cells).all(axis=1)
+    cells = np.where(np.isfinite(cells), cells, 0).astype(np.int64).tolist()
+    return [" ".join(map(str, row)) if good else None for row, good in zip(cells, finite, strict=True)]
+
+
+def one_sign(public, numbers, size):
+    """Of two opposites the one that is taken, as in :mod:`coursework.checking.kinds`."""
+    if not public.get("either sign"):
+        return numbers
+    limit = float(sign_limit(public))
+    groups = numbers.reshape(len(numbers), -1, size)
+    large = np.abs(groups) > limit
+    first = np.argmax(large, axis=2)[..., None]
+    leading = np.take_along_axis(groups, first, axis=2)
+    return np.where((leading < 0) & large.any(axis=2, keepdims=True), -groups, groups).reshape(numbers.shape)
+
+
+# --- what is tried for each kind ----------------------------------------------------------------
+
+
+def families(public, text=""):
+    """The generators of candidates for a question, in the order in which they are tried."""
+    kind = public["kind"]
+    at = At(public, text)
+    for plugin in plugins():
+        if importlib.util.find_spec(f"{plugin.__name__}.attack"):
+            yield from importlib.import_module(f"{plugin.__name__}.attack").families(public, at)
+    if kind in WORDS:
+        yield from WORDS[kind](public)
+    elif kind == "function":
+        yield from _of_functions(public)
+    elif kind in ("expression", "vector", "matrix"):
+        yield from of_pools(public, at, size_of(public))
+
+
+class At:
+    """The points of a question as doubles, and the angles and numbers that suggest themselves."""
+
+    def __init__(self, public, text=""):
+        self.points = points(public)
+        self.symbols = list(public.get("symbols", ()))
+        self.values = {name: np.array([float(point[name]) for point in self.points]) for name in self.symbols}
+        self.angular = [name for name, (low, high) in public.get("symbols", {}).items() if low < 0 < high]
+        self.given = sorted({float(found) for found in re.findall(r"\d+(?:\.\d+)?", text)}, key=lambda x: (x, x))[:24]
+        self.ones = np.ones(len(self.points))
+
+    def constants(self, step):
+        """Special angles, and those of the text, which is in degrees or in radians; one row for each."""
+        degrees = [*self.given, *range(step, 360, step)]
+        angles = [sign * math.radians(angle) for angle in degrees for sign in (1, -1) if angle]
+        angles += [sign * angle for angle in self.given for sign in (1, -1) if 0 < angle < 7]
+        return np.array(list(dict.fromkeys(angles)))[:, None] * self.ones
+
+
+WORDS = {
+    "choice": lambda public: [of_words("all options", [public["options"]], lambda word: word[0].lower())],
+    "truth values": lambda public: [of_words("all lists", ["TF"] * public["length"], "".join)],
+    "words": lambda public: [
+        of_words("all lists", [public["options"]] * public["length"], lambda word: " | ".join(word).lower())
+    ],
+}
+
+
+def of_words(name, options, write, allowed=lambda word: True):
+    def evaluate(choices):
+        words = ([part[place] for part, place in zip(options, row, strict=True)] for row in choices.tolist())
+        return [write(word) if allowed(word) else None for word in words]
+
+    return Family(name, tuple(map(len, options)), evaluate)
+
+
+# Formulas: monomials of what is given, and what is made of two of them.
+
+
+def of_pools(public, at, size):
+    pool = _monomials(at) if at.symbols else _numbers(public, at)
+
+    def evaluate(choices):
+        return one_sign(public, np.moveaxis(pool[choices], 1, 2).reshape(len(choices), -1), size)
+
+    if size > 1:
+        if not at.symbols and public.get("unit vector"):
+            yield _directions(public)
+        yield Family("small formulas for every component", (len(pool),) * size, evaluate, by_shells=True)
+        return
+    yield Family("one small formula", (len(pool),), evaluate)
+    if not at.symbols:
+        yield _sweep(public)
+        return
+    functions = (np.arctan, np.arccos, np.arcsin, np.sqrt, np.square, np.sin, np.cos, np.tan)
+    operations = (np.add, np.subtract, np.divide, np.arctan2, np.multiply)
+
+    def of_one(choices):
+        values = np.stack([function(pool) for function in functions])
+        return (1 - 2 * choices[:, 2, None]) * values[choices[:, 0], choices[:, 1]]
+
+    def of_two(choices):
+        values = np.zeros((len(choices), len(at.ones)))
+        for number, operation in enumerate(operations):
+            rows = choices[:, 2] == number
+            values[rows] = operation(pool[choices[rows, 0]], pool[choices[rows, 1]])
+        return values
+
+    def of_three(choices):
+        return (
+            pool[choices[:, 0]]
+            + (1 - 2 * (choices[:, 3, None] % 2)) * pool[choices[:, 1]]
+            + (1 - 2 * (choices[:, 3, None] // 2)) * pool[choices[:, 2]]
+        )
+
+    yield Family("a function of a small formula", (len(functions), len(pool), 2), of_one)
+    yield Family("two small formulas together", (len(pool), len(pool), len(operations)), of_two, by_shells=True)
+    yield Family("three small formulas together", (len(pool), len(pool), len(pool), 4), of_three, by_shells=True)
+
+
+def _monomials(at):
+    """Small formulas of the symbols, one row each: products of up to three sines, cosines and symbols."""
+    atoms = []
+    for name in at.symbols:
+        values = at.values[name]
+        if name in at.angular:
+            atoms += [np.sin(values), np.cos(values)]
+        atoms.append(values)
+    halves = [function(at.values[name] / 2) for name in at.angular for function in (np.sin, np.cos)]
+    powers = [values**2 for values in atoms]
+    found = [0 * at.ones, at.ones]
+    found += atoms
+    for degree in (2, 3):
+        if len(atoms) <= 12 or degree == 2:
+            found += [np.prod(part, axis=0) for part in itertools.combinations(atoms, degree)]
+    found += halves + powers
+    signed = []
+    for values in found:
+        signed += [values, -values]
+    signed += [factor * values for factor in (2, 0.5, -2, -0.5) for values in found[1 : 2 + 3 * len(atoms)]]
+    return np.array(signed)
+
+
+def _numbers(public, at):
+    """Small numbers: those of the text, special sines, fractions, multiples of pi."""
+    found = [0, 1, *at.given]
+    found += [math.sin(math.radians(angle)) for angle in (30, 45, 60)]
+    found += [math.radians(angle) for angle in (30, 45, 60, 90, 120, 135, 150, 180, *at.given)]
+    found += [function(math.radians(angle)) for angle in at.given for function in (math.sin, math.cos)]
+    found += [a / b for b in range(1, 13) for a in range(1, 13)]
+    found += [math.sqrt(a / b) for b in range(1, 7) for a in range(1, 13)]
+    found += [a * b for a, b in itertools.combinations(at.given, 2)]
+    found += [math.radians(angle) for angle in range(5, 360, 5)]
+    values = list(dict.fromkeys(sign * number for number in found for sign in (1, -1)))
+    return np.array(values)[:, None] * at.ones
+
+
+def _sweep(public):
+    """Every value of one number, from zero outwards: a cell at a time."""
+    absolute, _ = (float(part) for part in tolerances(public))
+    step = 3 * absolute if public.get("tolerance") is not None else float(EXACT) * EXACT_WIDTH
+
+    def evaluate(choices):
+        return (choices[:, :1] + 0.5) * (1 - 2 * choices[:, 1:]) * step
+
+    return Family("every value in turn", (BUDGET, 2), evaluate)
+
+
+def _directions(public):
+    whole = [axis for axis in itertools.product(range(-9, 10), repeat=3) if any(axis) and math.gcd(*axis) == 1]
+    whole.sort(key=lambda axis: (sum(map(abs, axis)), axis))
+    whole = np.array([np.array(axis) / np.linalg.norm(axis) for axis in whole])
+    return Family(
+        "directions of small whole numbers", (len(whole),), lambda choices: one_sign(public, whole[choices[:, 0]], 3)
+    )
+
+
+# Functions: what the library gives, and small formulas of the arguments.
+
+
+def _of_functions(public):
+    calls, size = calls_for(public), size_of(public)
+    pool = _features(calls)
+    if not len(pool):
+        return
+
+    def evaluate(choices):
+        numbers = np.moveaxis(pool[choices], 1, 2).reshape(len(choices), -1)
+        return one_sign(public, numbers, size)
+
+    def of_two(choices):
+        first, second = pool[choices[:, 0]], pool[choices[:, 1]]
+        values = [first + second, first - second, first / second, np.arctan2(first, second), np.arccos(first * second)]
+        return np.stack(values, axis=1)[np.arange(len(choices)), choices[:, 2]]
+
+    yield Family("small formulas of the arguments", (len(pool),) * size, evaluate, by_shells=True)
+    if size == 1:
+        yield Family("two small formulas together", (len(pool), len(pool), 5), of_two, by_shells=True)
+
+
+def size_of(public):
+    """How many numbers an answer is compared by, at one point or for one call."""
+    values = public.get("result", public["kind"])
+    if values == "expression":
+        return 1
+    if values in ("vector", "matrix"):
+        return public.get("length", 3) if values == "vector" else math.prod(public.get("shape", (3, 3)))
+    for plugin in plugins():
+        size = getattr(plugin, "SIZES", {}).get(values)
+        if size:
+            return size
+    return 1
+
+
+def _features(calls):
+    """Small formulas of the arguments of each call, one row each."""
+    flat = [
+        [float(part) for argument in call if not isinstance(argument, str) for part in np.ravel(argument)]
+        for call in calls
+    ]
+    shortest = min(map(len, flat))
+    entries = np.array([row[:shortest] for row in flat]).T
+    with np.errstate(all="ignore"):
+        found = [0 * entries[0], *entries, np.ones(len(calls))]
+        found += [
+            function(values) for values in entries for function in (np.sin, np.cos, np.arcsin, np.arccos, np.sqrt)
+        ]
+        found += [entries[a] * entries[b] for a, b in itertools.combinations_with_replacement(range(len(entries)), 2)]
+        found += [np.arctan2(entries[a], entries[b]) for a, b in itertools.permutations(range(len(entries)), 2)]
+        for operation in (np.add, np.subtract, np.multiply, np.divide, np.arctan2, np.hypot):
+            found += [operation(first, second) for first, second in itertools.permutations(found[:60], 2)]
+    found = [values for values in found if np.isfinite(values).all()]
+    return np.array([sign * values for values in found for sign in (1, -1)])
