@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy as sm
 from conftest import SEED
+from test_release import COURSE
 
 from coursework.authoring import source as sources
 from coursework.authoring.attack import At, Family, attack, families, fingerprints_of, really_attack
@@ -80,12 +81,12 @@ def test_the_candidates_hold_the_answers_of_those_who_know_the_subject():
 
 # --- wrong answers ------------------------------------------------------------------------------
 
-NAMES = sorted(path.stem for path in sources.SOURCES.glob("*.ipynb"))
+NAMES = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
 
 
 def with_formulas(names):
     for name in names:
-        for one in sources.read_source(sources.SOURCES / f"{name}.ipynb").questions.values():
+        for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
             if one.public.get("symbols") and not hasattr(one.answer, "to_matrix"):
                 yield one
 
@@ -165,7 +166,7 @@ def test_no_mutant_of_any_answer_passes():
 def test_every_form_of_every_right_answer_passes():
     tried = 0
     for name in NAMES:
-        for one in sources.read_source(sources.SOURCES / f"{name}.ipynb").questions.values():
+        for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
             chance = random.Random(f"{SEED} {one.name}")
             for _ in range(45 if not hasattr(one.answer, "to_matrix") else 1):
                 form = random_form(one.public, one.answer, chance)

@@ -93,16 +93,16 @@ def marks_of(questions, name, answer):
 
 
 def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
-    """The points of the check follow from the question: who reads them can put a parabola through them."""
+    """The points of the check follow from the question: who reads them can put a polynomial through them."""
     public = questions["turns/sum"]["public"]
     places = points(public)
-    rows = sm.Matrix([[1, point["alpha"], point["alpha"] ** 2] for point in places])
+    rows = sm.Matrix([[sm.Float(point["alpha"], 40) ** power for power in range(len(places))] for point in places])
     right = sm.Matrix([sm.sin(sm.Float(point["alpha"] + point["beta"], 40)) for point in places])
-    parabola = sum(part * alpha**power for power, part in enumerate(rows.LUsolve(right)))
-    plain = to_plain(sm.expand(parabola))
+    polynomial = sum(part * alpha**power for power, part in enumerate(rows.LUsolve(right)))
+    plain = to_plain(sm.expand(polynomial))
     assert compare("turns/sum", public, plain, questions["turns/sum"]["known"].get).outcome == "correct"
     forged = "wrong", "right only where it is checked", 0
-    assert marks_of(questions, "turns/sum", given(sm.expand(parabola))) == forged
+    assert marks_of(questions, "turns/sum", given(sm.expand(polynomial))) == forged
     # A share of the points for a known mistake is earned in no other way.
     assert marks_of(questions, "turns/about-x", given(A_C_N.T)) == ("wrong", "transposed", 1)
     place = points(questions["turns/about-x"]["public"])

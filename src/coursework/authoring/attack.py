@@ -384,13 +384,19 @@ def size_of(public):
     return 1
 
 
+def _numbers_in(argument):
+    """All numbers of an argument of a call, in order; what else stands in it, the name of an axis say, is left out."""
+    if isinstance(argument, (list, tuple, np.ndarray)):
+        return [number for part in argument for number in _numbers_in(part)]
+    return [float(argument)] if isinstance(argument, (int, float, np.number)) else []
+
+
 def _features(calls):
     """Small formulas of the arguments of each call, one row each."""
-    flat = [
-        [float(part) for argument in call if not isinstance(argument, str) for part in np.ravel(argument)]
-        for call in calls
-    ]
+    flat = [[part for argument in call for part in _numbers_in(argument)] for call in calls]
     shortest = min(map(len, flat))
+    if not shortest:
+        return np.array([])
     entries = np.array([row[:shortest] for row in flat]).T
     with np.errstate(all="ignore"):
         found = [0 * entries[0], *entries, np.ones(len(calls))]

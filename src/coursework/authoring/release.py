@@ -17,11 +17,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from ..checking.plugins import folders_of, packages
 from ..checking.questions import FORMAT
 from .author import AuthorError, solution_code
 from .selftest import try_question
-from .source import CHAPTERS, answered_in, checked_names, notebooks_in, posed, read_source
+from .source import CHAPTERS, answered_in, checked_names, digest_of_code, notebooks_in, posed, read_source
 from .variation import drawn_in
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
@@ -151,10 +150,7 @@ def _release_variant(path, number, course):
 
     What came of it is kept beside the archive, under a name that follows from the source and from our code.
     """
-    digest = hashlib.sha256(f"{course.edition}\n{number}\n".encode() + path.read_bytes())
-    for folder in [Path(__file__).parents[1], *folders_of(packages())]:
-        for code in sorted(Path(folder).rglob("*.py")):
-            digest.update(code.read_bytes())
+    digest = hashlib.sha256(f"{course.edition}\n{number}\n{digest_of_code()}\n".encode() + path.read_bytes())
     kept = course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
     if not kept.exists():
         source = read_source(path, number, course.edition)

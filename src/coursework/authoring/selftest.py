@@ -5,9 +5,12 @@ with it, if anything is.
 """
 
 import base64
+import concurrent.futures
+import hashlib
 import html
 import io
 import json
+import os
 import random
 import re
 import zipfile
@@ -23,12 +26,20 @@ from ..checking.reply import Reply, to_html
 from .attack import BUDGET, Found, attack
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
-from .source import CHAPTERS, HIDDEN, SOLUTION, blank, notebooks_in, read_source
+from .source import (
+    CHAPTERS,
+    DECLARED,
+    HIDDEN,
+    SOLUTION,
+    blank,
+    declared_strengths,
+    digest_of_code,
+    notebooks_in,
+    read_source,
+)
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
 SECONDS_PER_TRY = 0.012
-#: The file beside the sources in which an author declares what may be guessed.
-DECLARED = "guessable.json"
 #: Forms that a right answer is tried in, where algebra gives that many.
 FORMS = 6
 NO_LEAK = "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"
@@ -47,7 +58,7 @@ class Finding(NamedTuple):
     faults: list
 
 
-def try_question(question, text="", declared=None, budget=BUDGET, against_sealed=True):
+def try_question(question, text="", declared=None, budget=BUDGET, against_sealed=True, kept=None):
     """Try one question as students will, right and wrong, and as somebody does who guesses.
 
     Parameters
@@ -61,6 +72,8 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
         How many slow hashes the attack may need.
     against_sealed : bool
         Whether to try what was released of it too.
+    kept : path, optional
+        A folder in which what came of attacks is kept, since they take long.
 
     Answers are compared with what is sealed before the slow hash locks it up: that the locks hold the same is
     shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
@@ -89,7 +102,7 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
     if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
-    found = attack(question, text, budget)
+    found = attack_kept(question, text, budget, kept) if kept else attack(question, text, budget)
     if found.way and found.tries < min(declared or BUDGET, budget):
         faults.append(
             f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED} and give it little "
@@ -256,14 +269,12 @@ def _strings(data):
 
 def leaks(sources, texts):
     """Give every secret that stands in a released text: what it is, and where."""
-    return [
-        (what, place)
-        for source in sources
-        if source.name != CHAPTERS
-        for secret, what in secrets_of(source).items()
-        for place, text in texts.items()
-        if secret in text
-    ]
+    return [leak for source in sources if source.name != CHAPTERS for leak in found_in(texts, secrets_of(source))]
+
+
+def found_in(texts, secrets):
+    """Each of some secrets that stands in a text: what it is, and where."""
+    return [(what, place) for secret, what in secrets.items() for place, text in texts.items() if secret in text]
 
 
 # --- the page -----------------------------------------------------------------------------------
@@ -282,31 +293,47 @@ def selftest(course, page=None, budget=BUDGET):
     AuthorError
         There is nothing to try, or a notebook cannot be read.
     """
-    read = [read_source(path) for path in notebooks_in(course.sources)]
-    declared = declared_strengths(course.sources)
-    findings = [
-        try_question(question, text_of(source, question), declared.get(name), budget)
-        for source in read
-        for name, question in source.questions.items()
-    ]
+    paths, declared = notebooks_in(course.sources), declared_strengths(course.sources)
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+        tried = list(pool.map(_try_notebook, paths, [course] * len(paths), [budget] * len(paths)))
+    findings = [finding for found, _ in tried for finding in found]
     if not findings:
         raise AuthorError(f"The notebooks in {course.sources} ask no question.")
-    found = leaks(read, released_texts(course.exercises, course.sealed, course.archive))
+    texts = released_texts(course.exercises, course.sealed, course.archive)
+    found = [leak for _, secrets in tried for leak in found_in(texts, secrets)]
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
         Path(page).write_text(write_page(findings, found), "utf8")
-    return [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] + [
-        f"{what} stands in {place}" for what, place in found
+    unknown = sorted(set(declared) - {finding.name for finding in findings})
+    return (
+        [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults]
+        + [f"{what} stands in {place}" for what, place in found]
+        + [f"{name}: {DECLARED} names it, and there is no such question." for name in unknown]
+    )
+
+
+def _try_notebook(path, course, budget):
+    """What was found of the questions of a notebook, and its secrets."""
+    source, declared = read_source(path), declared_strengths(course.sources)
+    findings = [
+        try_question(
+            question, text_of(source, question), declared.get(name), budget, kept=course.archive.parent / "attacks"
+        )
+        for name, question in source.questions.items()
     ]
+    return findings, {} if source.name == CHAPTERS else secrets_of(source)
 
 
-def declared_strengths(sources):
-    """How many slow hashes each guessable question withstands, as its author declared in ``guessable.json``.
-
-    A question that is not named there is to withstand the whole attack.
-    """
-    file = Path(sources, DECLARED)
-    return json.loads(file.read_text("utf8")) if file.is_file() else {}
+def attack_kept(question, text, budget, folder):
+    """The attack on a question; what came of it is kept in a folder, for the same question and the same attack."""
+    known = {known: entry.outcome for known, entry in question.entries.items()}
+    asked = json.dumps([question.public, known, text, budget, digest_of_code()], sort_keys=True)
+    place = Path(folder, f"{hashlib.sha256(asked.encode()).hexdigest()[:24]}.json")
+    if not place.exists():
+        found = attack(question, text, budget)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(json.dumps(found), "utf8")
+    return Found(*json.loads(place.read_text("utf8")))
 
 
 def text_of(source, question):

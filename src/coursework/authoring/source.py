@@ -5,13 +5,17 @@
 
 import ast
 import contextlib
+import functools
+import hashlib
 import itertools
+import json
 import re
 import textwrap
 from pathlib import Path
 from typing import NamedTuple
 
 import coursework
+from coursework.checking.plugins import folders_of, packages
 from coursework.checking.variants import Given
 
 from . import author
@@ -19,6 +23,10 @@ from .variation import COUNT, VARIANTS, Rule, drawn_in, shown
 
 #: The source whose questions stand inside the chapters: only its sealed file is made.
 CHAPTERS = "chapters"
+#: Where the code is that the seals of a question follow from.
+ROOMS = ("authoring", "checking")
+#: The file beside the sources in which an author declares what may be guessed.
+DECLARED = "guessable.json"
 
 SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
 HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
@@ -49,6 +57,25 @@ def notebooks_in(folder):
             "get them first; without them everything builds, but nothing is released or graded."
         )
     return found
+
+
+@functools.cache
+def digest_of_code():
+    """A text that follows from the code that reads, attacks and seals questions, ours and that of plug-ins."""
+    digest = hashlib.sha256()
+    for folder in [*(Path(coursework.__file__).parent / room for room in ROOMS), *folders_of(packages())]:
+        for path in sorted(Path(folder).rglob("*.py")):
+            digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def declared_strengths(sources):
+    """How many slow hashes each guessable question withstands, as its author declared in ``guessable.json``.
+
+    A question that is not named there is to withstand the whole attack.
+    """
+    file = Path(sources, DECLARED)
+    return json.loads(file.read_text("utf8")) if file.is_file() else {}
 
 
 def read_source(path, variant=0, edition=""):

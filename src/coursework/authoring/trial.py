@@ -6,8 +6,8 @@ from pathlib import Path
 
 from ..checking.reply import to_html
 from .author import AuthorError, to_page
-from .selftest import declared_strengths, text_of, try_question, write_page
-from .source import read_source
+from .selftest import text_of, try_question, write_page
+from .source import declared_strengths, read_source
 
 
 def trial(course, name, page):

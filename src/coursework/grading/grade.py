@@ -21,7 +21,6 @@ from . import intake, marking
 from . import secret as in_secret
 from .identity import BadRoster, Roster
 from .ledger import DECISIONS, Ledger, digest_of_answer
-from .reports import GUESSABLE
 from .secret import secret_beside
 from .store import FORMAT, Store, as_text, write
 from .tables import number, readable, table
@@ -322,7 +321,7 @@ def _say_guessable(questions, show):
     """Say which points a script could have guessed: whoever tries answers in the check earns them."""
     for assignment, asked in questions.items():
         worth = sum(question["worth"] for question in asked.values())
-        cheap = {name: question for name, question in asked.items() if question["bits"] < GUESSABLE}
+        cheap = {name: question for name, question in asked.items() if question["guessable"] is not None}
         if cheap:
             print(
                 f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} "

@@ -11,7 +11,7 @@ import json
 from pathlib import Path
 from types import SimpleNamespace
 
-from ..authoring.source import checked_names, read_source
+from ..authoring.source import DECLARED, checked_names, declared_strengths, read_source
 from ..checking.evaluate import MP
 from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
 from ..checking.plain import NotPlain, read_plain
@@ -43,11 +43,11 @@ def names_asked(path):
 
 def questions_of(path, secret, edition=""):
     """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
-    source = read_source(path, edition=edition)
-    found = {name: about(question, secret) for name, question in source.questions.items()}
+    source, declared = read_source(path, edition=edition), declared_strengths(Path(path).parent)
+    found = {name: about(question, secret, declared.get(name)) for name, question in source.questions.items()}
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
         for name, question in read_source(path, number, edition).questions.items():
-            found[name].setdefault("others", []).append(about(question, secret))
+            found[name].setdefault("others", []).append(about(question, secret, declared.get(name)))
     return found
 
 
@@ -72,8 +72,11 @@ def of_student(questions, identity):
     return own
 
 
-def about(question, secret):
-    """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it."""
+def about(question, secret, guessable=None):
+    """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it.
+
+    ``guessable`` is how many tries of a script it withstands, where its author declared that it can be guessed.
+    """
     found = json.loads(
         json.dumps(
             {
@@ -89,7 +92,7 @@ def about(question, secret):
                 "right": _canonical_of(question),
                 "plain": question.plain if question.public["kind"] != "function" else None,
                 "secret": in_secret.secret_of(question, secret),
-                "bits": round(question.guessing_bits()),
+                "guessable": guessable,
             }
         )
     )
@@ -109,8 +112,11 @@ def load_questions(paths, kept, secret, edition=""):
     What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
     notebook and from the versions of the software.
     """
-    ours, found = hashlib.sha256(json.dumps(software()).encode() + secret).digest(), {}
+    found = {}
     for path in map(Path, paths):
+        declared = path.with_name(DECLARED)
+        declared = declared.read_bytes() if declared.is_file() else b""
+        ours = hashlib.sha256(json.dumps(software()).encode() + secret + declared).digest()
         place = (
             Path(kept)
             / f"{path.stem}-{hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]}.json"
@@ -167,8 +173,8 @@ def mark(name, question, answer, finished=True, limited=False):
     -------
     dict
         ``outcome``, ``note`` with its ``details``, ``messages``, ``points``, ``worth``, the ``version`` of the
-        question, ``group``, which identical answers have in common, and ``bits``, about how many a script had to
-        guess.
+        question, ``group``, which identical answers have in common, and ``guessable``, after how many tries a
+        script finds the right answer, or ``None``.
     """
     reply, text = judge(name, question, answer, finished, limited)
     if reply.outcome == "wrong" and any(
@@ -185,7 +191,7 @@ def mark(name, question, answer, finished=True, limited=False):
         "worth": question["worth"],
         "group": hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
         "version": question["version"],
-        "bits": question["bits"],
+        "guessable": question["guessable"],
     }
 
 

@@ -50,7 +50,6 @@ DEEDS = {
     "unreadable": "gave something that cannot be read as an answer",
     "right only where it is checked": "gave something that is right only where the check looks",
 }
-GUESSABLE = 20  # bits: a script tries a million answers in some hours
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
     "works only out of order": "It works only if its cells are run in another order than they stand in. The answers "

@@ -20,7 +20,7 @@ from tornado import httpserver, ioloop, netutil, web
 from . import pages
 from .ledger import Ledger, digest_of_answer
 from .mathematics import answer_as_mathematics
-from .reports import GUESSABLE, deed
+from .reports import deed
 from .store import Store
 from .tables import readable
 from .templates_of_pages import ENVIRONMENT
@@ -290,7 +290,7 @@ class _Overview(_Page):
         outcomes = {cluster.id: graded.outcome(cluster, current) for cluster in found}
         left = [one for one in graded.chosen({"show": "waiting"})]
         worth = Counter()
-        guessable = {name: about for name, about in graded.questions.items() if about["bits"] < GUESSABLE}
+        guessable = {name: about for name, about in graded.questions.items() if about["guessable"] is not None}
         for about in graded.questions.values():
             worth["all"] += about["worth"]
         self.show(

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from ..checking.check import calls_for
 from ..checking.evaluate import MP
-from ..checking.kinds import Blank, Fault, Undecidable, canonical, cell_of, read
+from ..checking.kinds import Blank, Fault, Undecidable, canonical, read, tolerances
 from ..checking.plain import NotPlain, to_plain
 from ..checking.plugins import kinds
 
@@ -26,6 +26,8 @@ FILE = ".grading-secret"
 CALLS = 3
 #: Farther apart than this share of the value, two answers are not the same: no rounding reaches it, and no guess.
 APART = MP.mpf("1e-6")
+#: What is within its tolerance where a student looked may be off by so many tolerances elsewhere.
+SLACK = 4
 ATTEMPTS = 60
 
 
@@ -129,9 +131,12 @@ def agree(public, numbers, others):
     """Whether two lists of numbers are the same but for rounding."""
     if len(numbers) != len(others):
         return False
-    slack = 0 if public.get("tolerance") is None else cell_of(public)
+    absolute, relative = tolerances(public)
     pairs = [(MP.mpf(number), MP.mpf(other)) for number, other in zip(numbers, others, strict=True)]
-    return all(abs(number - other) <= max(slack, APART * max(1, abs(other))) for number, other in pairs)
+    return all(
+        abs(number - other) <= max(SLACK * (absolute + relative * abs(other)), APART * max(1, abs(other)))
+        for number, other in pairs
+    )
 
 
 def digest(place):
