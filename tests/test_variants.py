@@ -15,7 +15,7 @@ from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive
 from coursework.authoring.release import release
 from coursework.authoring.source import read_source
-from coursework.authoring.variation import Rule, drawn_in, shown
+from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import questions, variants
 from coursework.checking.plain import to_plain
 from coursework.grading import marking
@@ -194,7 +194,7 @@ def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
 
 def test_parameters_are_shown_in_a_text():
     x = sympy.Symbol("x")
-    assert shown("{{a}} and ${{b}}$, {{c}}; {{d}}", {"a": "up", "b": x**2 / 3, "c": [1, 2]}) == (
+    assert variants.shown("{{a}} and ${{b}}$, {{c}}; {{d}}", written({"a": "up", "b": x**2 / 3, "c": [1, 2]})) == (
         r"up and $\frac{x^{2}}{3}$, 1, 2; {{d}}"
     )
     assert drawn_in("x = 1") is None and drawn_in(DRAWN) == ("lever", "levers/see-saw")

@@ -17,7 +17,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from ..checking.questions import FORMAT
+from ..checking.questions import FORMAT, beside
 from .author import AuthorError, solution_code
 from .selftest import try_question
 from .source import CHAPTERS, answered_in, checked_names, digest_of_code, notebooks_in, posed, read_source
@@ -125,12 +125,14 @@ def run_notebook(notebook, folder):
 # --- all of it ----------------------------------------------------------------------------------
 
 
-def sealed_file(source):
-    """The text of the file with the sealed questions of a notebook."""
+def sealed_file(source, first=None):
+    """The text of the file with the sealed questions of a notebook; of a variant, what differs from the ``first``."""
     code = solution_code(source.notebook)
     questions = {
         name: {"answer": question.variable, **question.sealed(code)} for name, question in source.questions.items()
     }
+    if first:
+        questions = {name: beside(one, first[name]) for name, one in questions.items()}
     return json.dumps({"format": FORMAT, "questions": questions}, indent=0, sort_keys=True, ensure_ascii=False) + "\n"
 
 
@@ -161,7 +163,8 @@ def _release_variant(path, number, course):
         kept.parent.mkdir(parents=True, exist_ok=True)
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()
-        kept.write_text(sealed_file(source), "utf8")
+        first = json.loads((course.sealed / f"{path.stem}.json").read_text("utf8"))["questions"]
+        kept.write_text(sealed_file(source, first), "utf8")
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)

@@ -23,6 +23,7 @@ from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
 from ..checking.questions import judge, notebook_questions
 from ..checking.reply import Reply, to_html
+from ..checking.variants import shown
 from .attack import BUDGET, Found, attack
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
@@ -337,7 +338,9 @@ def attack_kept(question, text, budget, folder):
 
 
 def text_of(source, question):
-    """The text of a question: the Markdown above the cell that its answer stands in."""
+    """The text of a question: that of its variant, or the Markdown above the cell that its answer stands in."""
+    if "text" in question.public:
+        return shown(question.public["text"], question.public["shown"])
     above = ""
     for cell in source.notebook.cells:
         if cell.cell_type == "markdown":

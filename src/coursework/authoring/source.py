@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
-from coursework.checking.variants import Given
+from coursework.checking.variants import Given, shown
 
 from . import author
-from .variation import COUNT, VARIANTS, Rule, drawn_in, shown
+from .variation import COUNT, VARIANTS, Rule, drawn_in, written
 
 #: The source whose questions stand inside the chapters: only its sealed file is made.
 CHAPTERS = "chapters"
@@ -104,7 +104,7 @@ def read_source(path, variant=0, edition=""):
     def draw(name, count=COUNT, where=None, **pools):
         rules[name] = Rule(name, count, pools, where)
         given[name] = rules[name].parameters(variant if variant < count else 0, edition)
-        return Given(shown(texts[name], given[name]), given[name])
+        return Given(shown(texts[name], written(given[name])), given[name])
 
     def record_check(name, answer):
         answers[name] = answer
@@ -123,7 +123,8 @@ def read_source(path, variant=0, edition=""):
             about["variant"] = {
                 "variant": variant,
                 "variants": rules[name].count,
-                "text": shown(texts[name], given[name]),
+                "text": texts[name],
+                "shown": written(given[name]),
                 "given": {key: value for key, value in given[name].items() if _is_plain(value)},
             } | ({"edition": edition} if edition else {})
             questions[name] = author.question(name, about.pop("kind"), answers[name], **about)

@@ -82,15 +82,9 @@ class Rule(NamedTuple):
         return drawn
 
 
-def shown(text, parameters):
-    """The text of a question with its parameters in their places.
-
-    >>> shown("A force of {{force}} N", {"force": 20})
-    'A force of 20 N'
-    """
-    for name, value in parameters.items():
-        text = text.replace(f"{{{{{name}}}}}", _written(value))
-    return text
+def written(parameters):
+    """Parameters as the text of a question shows them."""
+    return {name: _written(value) for name, value in parameters.items()}
 
 
 def _written(value):

@@ -76,7 +76,7 @@ def find_question(name):
     questions = notebook_questions(notebook)
     if name in questions:
         number = own_variant(name, questions[name])
-        return notebook_questions(notebook, number)[name] if number else questions[name]
+        return completed(notebook_questions(notebook, number)[name], questions[name]) if number else questions[name]
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(
@@ -87,6 +87,21 @@ def find_question(name):
     notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json"))
     near = difflib.get_close_matches(name, [*questions, *notebooks], 1, 0.5)
     raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
+
+
+def beside(question, first):
+    """What of a sealed variant differs from the first one: that is all that is kept of it.
+
+    >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, {'kind': 'vector', 'salt': 'a', 'ladder': []})
+    {'salt': 'b', 'shown': {'arm': '2'}, 'ladder': None}
+    """
+    return {name: question.get(name) for name in {**question, **first} if question.get(name) != first.get(name)}
+
+
+def completed(variant, first):
+    """The whole of a variant, of which :func:`beside` kept what differs from the first one."""
+    whole = {**first, **variant}
+    return {name: about for name, about in whole.items() if about is not None}
 
 
 def judge(name, question, plain):
@@ -108,7 +123,8 @@ def code_text(code):
 
 def rung_key(question, number):
     """The key of a step of the ladder of hints: no secret, it only keeps the step from being read in passing."""
-    return hashlib.sha256(f"{question['salt']} step {number}".encode()).digest()[: sealing.PAGE_KEY]
+    seed = f"step {number} for {question['kind']}"
+    return hashlib.sha256(seed.encode()).digest()[: sealing.PAGE_KEY]
 
 
 def opened(question, text):

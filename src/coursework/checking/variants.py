@@ -53,6 +53,17 @@ def own_variant(name, question):
     return variant_of(_identity, name, question.get("variants", 1), question.get("edition", ""))
 
 
+def shown(text, written):
+    """The text of a question with what is given in its places.
+
+    >>> shown("A force of {{force}} N", {"force": "20"})
+    'A force of 20 N'
+    """
+    for name, value in written.items():
+        text = text.replace(f"{{{{{name}}}}}", value)
+    return text
+
+
 class Given:
     """What is given in a question: its text, and its numbers and names by name.
 
@@ -101,4 +112,4 @@ def variant(name: str) -> Given:
     from .questions import find_question
 
     question = find_question(name)
-    return Given(question.get("text", ""), question.get("given", {}))
+    return Given(shown(question.get("text", ""), question.get("shown", {})), question.get("given", {}))
