@@ -326,7 +326,7 @@ def test_names_and_answers_stay_text(rules, tmp_path):
     store = Store(tmp_path / "out")
     mark = {
         "outcome": "wrong", "note": "", "details": {}, "messages": [], "points": 0, "worth": 1, "group": "",
-        "version": "1", "bits": 60, "title": name,
+        "version": "1", "guessable": None, "title": name,
     }  # fmt: skip
     plain = {"value": ["text", "</code><script>alert(2)</script>"], "nodes": []}
     store.save(

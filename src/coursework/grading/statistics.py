@@ -9,7 +9,7 @@ import math
 from collections import Counter, defaultdict
 
 from .ledger import digest_of_answer
-from .reports import GUESSABLE, deed
+from .reports import deed
 
 FEWEST = 10  # students, below which a correlation says nothing
 #: What fewer did is put together with the others, so that a count points at nobody.
@@ -68,7 +68,7 @@ class Question:
 
     def __init__(self, assignment, mark):
         self.assignment, self.title, self.worth = assignment, mark["title"], mark["worth"]
-        self.is_guessable = mark["bits"] < GUESSABLE
+        self.is_guessable = mark["guessable"] is not None
         self.outcomes, self.notes, self.earned, self.decided = Counter(), Counter(), 0.0, 0
         self.discrimination = Correlation()
         self.answers, self.versions = {}, set()
