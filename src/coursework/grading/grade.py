@@ -221,7 +221,9 @@ def grade(
             (one.student, one.assignment): key_of(one, questions[one.assignment], limits, allow_weak_isolation)
             for one in work
         }
-        waiting = [one for one in work if not _is_done(store, one, keys)]
+        waiting, kept = [], []
+        for one in work:
+            (kept if _is_done(store, one, keys) else waiting).append(one)
         print(
             f"{len(work)} to grade, {len(work) - len(waiting)} of them graded before, {len(refused)} files refused.",
             file=show,
@@ -249,9 +251,9 @@ def grade(
             store.log(f"graded: {one.student!r} {one.assignment}")
             progress.one_more(record)
         # What was kept may have been decided on since.
-        for one in work:
+        for one in kept:
             record = store.read(one.student, one.assignment)
-            again = record and marked(record, questions[one.assignment], decisions)
+            again = marked(record, questions[one.assignment], decisions)
             if again != record:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
@@ -302,12 +304,15 @@ def _put_renamed_aside(store, work):
     owners = {}
     for one in work:
         owners.setdefault((one.assignment, frozenset(notebook.digest for notebook in one.notebooks)), one.student)
-    known = [(record["student"], record["assignment"], record["notebooks"]) for record in store.all()]
-    for student, assignment, notebooks in known:
-        if (student, assignment) in present:
-            continue
-        now = owners.get((assignment, frozenset(notebook["sha256"] for notebook in notebooks)))
-        if now is not None and (now, assignment) not in {(before, name) for before, name, _ in known}:
+    known, absent = set(), []
+    for record in store.all():
+        known.add((record["student"], record["assignment"]))
+        if (record["student"], record["assignment"]) not in present:
+            digests = frozenset(notebook["sha256"] for notebook in record["notebooks"])
+            absent.append((record["student"], record["assignment"], digests))
+    for student, assignment, digests in absent:
+        now = owners.get((assignment, digests))
+        if now is not None and (now, assignment) not in known:
             place = store.put_aside(student, assignment)
             yield f"{student!r} is now {now!r}: the record of {assignment} was moved to {place}."
 

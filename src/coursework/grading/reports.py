@@ -12,9 +12,10 @@ from ..checking.plugins import plugins
 from ..checking.reply import OUTCOMES
 from . import pages
 from .ledger import stable_id
+from .mathematics import answer_as_mathematics
 from .pages import text
 from .store import file_name, write
-from .tables import number, table
+from .tables import lines, number, table
 
 DECIDED = ("✓", "Decided by a person")
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
@@ -50,6 +51,7 @@ DEEDS = {
     "unreadable": "gave something that cannot be read as an answer",
     "right only where it is checked": "gave something that is right only where the check looks",
 }
+MOST_UNDECIDED, MOST_NAMES = 200, 200  # that the report names; all are in the tables
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
     "works only out of order": "It works only if its cells are run in another order than they stand in. The answers "
@@ -60,46 +62,91 @@ NOTES = {
 }
 
 
+class _Assignment:
+    """What the report says of an assignment, from one record after another.
+
+    What is kept grows with the number of different answers, not with the class.
+    """
+
+    def __init__(self):
+        self.students, self.points, self.worth, self.titles = 0, Counter(), 0, {}
+        self.parts, self.mixups, self.same = {}, Counter(), {}
+        self.undecided, self.odd, self.ways, self.versions = [], {}, Counter(), Counter()
+        self.waiting = 0
+
+    def add(self, record):
+        self.students += 1
+        self.points[record["points"]] += 1
+        self.worth = max(self.worth, record["worth"])
+        for name, mark in record["marks"].items():
+            self.titles.setdefault(name, mark["title"])
+            self.parts.setdefault(name, Counter())[_part(mark)] += 1
+            if mark["outcome"] in ("wrong", "invalid") and mark["note"]:
+                self.mixups[name, deed(mark)] += 1
+            elif mark["outcome"] == "wrong" and mark["group"]:
+                if (name, mark["group"]) not in self.same:
+                    self.same[name, mark["group"]] = [0, pages.answer_as_text(record["answers"].get(name))]
+                self.same[name, mark["group"]][0] += 1
+            if mark["outcome"] == "undecided":
+                self.waiting += 1
+                if len(self.undecided) < MOST_UNDECIDED:
+                    answer = pages.answer_as_text(record["answers"].get(name))
+                    self.undecided.append((record["student"], name, mark["messages"], answer))
+        for kind in _oddities(record):
+            found = self.odd.setdefault(kind, [0, []])
+            found[0] += 1
+            if len(found[1]) < MOST_NAMES:
+                found[1].append(record["student"])
+        for notebook in record["notebooks"]:
+            isolation = notebook["isolation"]
+            self.ways[("WEAK: " if isolation["weak"] else "") + (", ".join(isolation["layers"]) or "none")] += 1
+        self.versions[", ".join(f"{name} {version}" for name, version in record["software"].items())] += 1
+
+    @property
+    def numbers(self):
+        """The number of each question."""
+        return {name: order for order, name in enumerate(self.titles, 1)}
+
+
 def write_all(store):
-    """Make the tables and the pages of all records."""
-    classes, rows, undecided = {}, [], []
-    for record in store.all():
-        record["answers"] = {name: answer.get("plain") for name, answer in record["answers"].items()}
+    """Make the tables and the pages of all records; no more than one record is held at a time."""
+    classes, names = {}, {}
+    for record in _readable(store):
         place = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
         _write_if_new(place, feedback(record))
-        shorter = {
-            **record,
-            "answers": {name: pages.answer_as_text(plain) for name, plain in record["answers"].items()},
-        }
-        classes.setdefault(record["assignment"], []).append(shorter)
-        rows.append(shorter)
-        undecided += [
-            (
-                stable_id(record["student"], record["assignment"], name),
-                record["student"],
-                name,
-                mark["worth"],
-                mark["note"],
-                " ".join(mark["messages"]),
-                shorter["answers"].get(name, ""),
-            )
-            for name, mark in record["marks"].items()
-            if mark["outcome"] == "undecided"
-        ]
+        classes.setdefault(record["assignment"], _Assignment()).add(record)
+        names.update(dict.fromkeys(record["marks"]))
     refused = [tuple(entry) for entry in _read(store.folder / "refused.json", [])]
-    write(store.folder / "grades.csv", grades(rows))
-    write(
-        store.folder / "undecided.csv",
-        table(
-            ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer"),
-            [
-                (one, student, name, "", "", worth, why, said, answer)
-                for one, student, name, worth, why, said, answer in undecided
-            ],
-        ),
-    )
+    write(store.folder / "grades.csv", grades(store.all(), list(names)))
+    write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(_readable(store))))
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
     write(store.folder / "report.html", report(classes, refused))
+
+
+def _readable(store):
+    for record in store.all():
+        record["answers"] = {name: answer.get("plain") for name, answer in record["answers"].items()}
+        yield record
+
+
+UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer")
+
+
+def _undecided_of(records):
+    for record in records:
+        for name, mark in record["marks"].items():
+            if mark["outcome"] == "undecided":
+                yield (
+                    stable_id(record["student"], record["assignment"], name),
+                    record["student"],
+                    name,
+                    "",
+                    "",
+                    mark["worth"],
+                    mark["note"],
+                    " ".join(mark["messages"]),
+                    pages.answer_as_text(record["answers"].get(name)),
+                )
 
 
 def _read(path, otherwise):
@@ -111,37 +158,24 @@ def _write_if_new(path, content):
         write(path, content, lasting=False)
 
 
-def grades(records):
-    """All marks as CSV: a line for each student and assignment."""
-    names = list(dict.fromkeys(name for record in records for name in record["marks"]))
-    rows = []
-    for record in records:
-        marks = [record["marks"].get(name) for name in names]
-        rows.append(
-            [
-                record["student"],
-                record["assignment"],
-                record["points"],
-                record["worth"],
-                record["undecided"],
-                "late" if any(notebook["late"] for notebook in record["notebooks"]) else "",
-                *(mark["points"] if mark else "" for mark in marks),
-                *(mark["outcome"] if mark else "" for mark in marks),
-            ]
-        )
-    return table(
-        [
-            "student",
-            "assignment",
-            "points",
-            "worth",
-            "undecided",
-            "late",
-            *names,
-            *(f"{name}: outcome" for name in names),
-        ],
-        rows,
-    )
+def grades(records, names):
+    """All marks as CSV, line by line: one for each student and assignment."""
+    header = ["student", "assignment", "points", "worth", "undecided", "late", *names]
+    return lines([*header, *(f"{name}: outcome" for name in names)], (_grades_of(record, names) for record in records))
+
+
+def _grades_of(record, names):
+    marks = [record["marks"].get(name) for name in names]
+    return [
+        record["student"],
+        record["assignment"],
+        record["points"],
+        record["worth"],
+        record["undecided"],
+        "late" if any(notebook["late"] for notebook in record["notebooks"]) else "",
+        *(mark["points"] if mark else "" for mark in marks),
+        *(mark["outcome"] if mark else "" for mark in marks),
+    ]
 
 
 # --- for a student ------------------------------------------------------------------------------
@@ -173,16 +207,19 @@ def _question(order, name, mark, plain):
     # What a function returned is not repeated: a list of it would do for a friend's answer.
     is_shown = plain and mark["outcome"] != "not attempted" and plain["value"][0] != "function"
     read = pages.answer_as_text(plain) if is_shown else ""
-    answer = f'<p class="soft">Your answer, as it was read:</p><pre>{text(read, 2_000)}</pre>' if read else ""
+    drawn = answer_as_mathematics(plain) if is_shown else ""
+    shown = f'<div class="scroll" tabindex="0" role="region" aria-label="Your answer">{drawn}</div>' if drawn else ""
+    shown = shown or f"<pre>{text(read, 2_000)}</pre>"
+    answer = f'<p class="soft">Your answer, as it was read:</p>{shown}' if read else ""
     return (
-        f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(_title(mark))}</h3>'
+        f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(_capital(mark["title"]))}</h3>'
         f'<span class="verdict"><span aria-hidden="true">{sign}</span> {word} · {_points(mark)}</span></div>'
         f'<p class="soft"><code>{text(name)}</code></p>{paragraphs}{answer}</section>'
     )
 
 
-def _title(mark):
-    return mark["title"][:1].upper() + mark["title"][1:]
+def _capital(title):
+    return title[:1].upper() + title[1:]
 
 
 def _points(mark):
@@ -226,6 +263,11 @@ def _count(how_many, one, more):
 # --- for the instructor -------------------------------------------------------------------------
 
 
+def feedback_of(student, assignment):
+    """Where a page of feedback lies, from the folder of results."""
+    return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
+
+
 def deed(mark):
     """What was done, in words that follow "31 % of the class"."""
     if mark["note"] == "authored":
@@ -250,8 +292,8 @@ def report(classes, refused):
     body = ["<h1>How the class did</h1>"]
     if not classes:
         body.append("<p>Nothing has been graded.</p>")
-    for assignment, records in sorted(classes.items()):
-        body.append(_assignment(assignment, records))
+    for assignment, found in sorted(classes.items()):
+        body.append(_assignment(assignment, found))
     if refused:
         rows = "".join(f"<tr><td><code>{text(file)}</code></td><td>{text(why)}</td></tr>" for file, _, why in refused)
         body.append(
@@ -263,23 +305,21 @@ def report(classes, refused):
     return pages.page("How the class did", "\n".join(body))
 
 
-def _assignment(assignment, records):
-    points, worth = [record["points"] for record in records], max(record["worth"] for record in records)
-    names = list(records[0]["marks"])
-    numbers = {name: order for order, name in enumerate(names, 1)}
+def _assignment(assignment, found):
+    points = list(found.points.elements())
     said = (
         f'<section><h2 id="{file_name(assignment)}">{text(assignment)}</h2>'
-        f"<p>{_count(len(records), 'student', 'students')}. The mean is {mean(points):.1f} of {number(worth)} points, "
-        f"the median {number(median(points))}.</p>"
+        f"<p>{_count(found.students, 'student', 'students')}. The mean is {mean(points):.1f} of {number(found.worth)} "
+        f"points, the median {number(median(points))}.</p>"
     )
     return (
         said
-        + _histogram(points, worth)
-        + _success(records, names)
-        + _mixups(records, names, numbers)
-        + _clusters(records, numbers)
-        + _undecided(records, numbers)
-        + _odd(records)
+        + _histogram(found.points, found.worth)
+        + _success(found)
+        + _mixups(found)
+        + _clusters(found)
+        + _undecided(assignment, found)
+        + _odd(found)
         + "</section>"
     )
 
@@ -287,8 +327,8 @@ def _assignment(assignment, records):
 def _histogram(points, worth):
     bins = min(10, max(1, round(worth)))
     counts = [0] * bins
-    for value in points:
-        counts[min(bins - 1, int(value / worth * bins)) if worth else 0] += 1
+    for value, students in points.items():
+        counts[min(bins - 1, int(value / worth * bins)) if worth else 0] += students
     width, height, left, base = 660, 190, 34, 158
     step, top = (width - 2 * left) / bins, max(counts)
     bars = []
@@ -326,22 +366,21 @@ PARTS = (
 )
 
 
-def _success(records, names):
+def _success(found):
     rows = []
-    for order, name in enumerate(names, 1):
-        marks = [record["marks"][name] for record in records if name in record["marks"]]
-        counts = Counter(_part(mark) for mark in marks)
+    for order, (name, counts) in enumerate(found.parts.items(), 1):
+        total = sum(counts.values())
         x, bars = 0.0, []
         for part, _ in PARTS:
             if counts[part]:
-                wide = 300 * counts[part] / len(marks)
+                wide = 300 * counts[part] / total
                 bars.append(f'<rect class="edge of-{part}" x="{x:.1f}" y="0" width="{wide:.1f}" height="18"/>')
                 x += wide
         spoken = ", ".join(f"{counts[part]} {word}" for part, word in PARTS if counts[part])
         rows.append(
-            f'<tr><td class="number">{order}</td><td>{text(_title(marks[0]))}<br><span class="soft">{spoken}</span></td>'
+            f'<tr><td class="number">{order}</td><td>{text(_capital(found.titles[name]))}<br><span class="soft">{spoken}</span></td>'
             f'<td><svg viewBox="0 0 300 18" width="300" height="18" role="img" aria-label="{spoken}">{"".join(bars)}</svg></td>'
-            f'<td class="number">{_percent(counts["correct"], len(marks))}</td></tr>'
+            f'<td class="number">{_percent(counts["correct"], total)}</td></tr>'
         )
     key = "".join(
         f'<span><svg width="11" height="11" viewBox="0 0 11 11" aria-hidden="true"><rect class="of-{part}" width="11" height="11"/></svg>'
@@ -366,22 +405,16 @@ def _percent(part, whole):
     return f"{share:.0f} %" if share >= 1 or not part else "under 1 %"
 
 
-def _mixups(records, names, numbers):
-    found = Counter()
-    for record in records:
-        for name in names:
-            mark = record["marks"].get(name)
-            if mark and mark["outcome"] in ("wrong", "invalid") and mark["note"]:
-                found[name, deed(mark)] += 1
-    shown = sorted(found.items(), key=lambda entry: (-entry[1], numbers[entry[0][0]], entry[0][1]))[:20]
-    titles = {name: mark["title"] for record in records for name, mark in record["marks"].items()}
+def _mixups(found):
+    numbers, titles = found.numbers, found.titles
+    shown = sorted(found.mixups.items(), key=lambda entry: (-entry[1], numbers[entry[0][0]], entry[0][1]))[:20]
     rows = "".join(
-        f'<tr><td class="number"><strong>{_percent(count, len(records))}</strong></td>'
-        f'<td><svg viewBox="0 0 120 12" width="120" height="12" role="img" aria-label="{count} of {len(records)}">'
-        f'<rect class="of-none" width="120" height="12"/><rect class="of-wrong" width="{120 * count / len(records):.1f}" height="12"/></svg></td>'
-        f'<td>{pages.message(what)} in question {numbers[name]}, <em>{text(titles[name])}</em> <span class="soft">({count} of {len(records)})</span></td></tr>'
+        f'<tr><td class="number"><strong>{_percent(count, found.students)}</strong></td>'
+        f'<td><svg viewBox="0 0 120 12" width="120" height="12" role="img" aria-label="{count} of {found.students}">'
+        f'<rect class="of-none" width="120" height="12"/><rect class="of-wrong" width="{120 * count / found.students:.1f}" height="12"/></svg></td>'
+        f'<td>{pages.message(what)} in question {numbers[name]}, <em>{text(titles[name])}</em> <span class="soft">({count} of {found.students})</span></td></tr>'
         for (name, what), count in shown
-        if count > 1 or len(records) < 30
+        if count > 1 or found.students < 30
     )
     return (
         (
@@ -393,20 +426,15 @@ def _mixups(records, names, numbers):
     )
 
 
-def _clusters(records, numbers):
-    groups = {}
-    for record in records:
-        for name, mark in record["marks"].items():
-            if mark["outcome"] == "wrong" and not mark["note"] and mark["group"]:
-                groups.setdefault((name, mark["group"]), []).append(record)
-    found = sorted(
-        (entry for entry in groups.items() if len(entry[1]) > 1),
-        key=lambda entry: (-len(entry[1]), numbers.get(entry[0][0], 0), entry[0][1]),
+def _clusters(found):
+    numbers = found.numbers
+    shown = sorted(
+        (entry for entry in found.same.items() if entry[1][0] > 1),
+        key=lambda entry: (-entry[1][0], numbers[entry[0][0]], entry[0][1]),
     )[:15]
     rows = "".join(
-        f'<tr><td class="number">{len(same)}</td><td class="number">{numbers.get(name, "")}</td>'
-        f"<td><code>{text(same[0]['answers'].get(name, ''))}</code></td></tr>"
-        for (name, _), same in found
+        f'<tr><td class="number">{students}</td><td class="number">{numbers[name]}</td><td><code>{text(answer)}</code></td></tr>'
+        for (name, _), (students, answer) in shown
     )
     return (
         (
@@ -420,41 +448,45 @@ def _clusters(records, numbers):
     )
 
 
-def _undecided(records, numbers):
+def _undecided(assignment, found):
     rows = "".join(
-        f'<tr><td>{text(record["student"])}</td><td class="number">{numbers.get(name, "")}</td>'
-        f"<td>{' '.join(map(pages.message, mark['messages']))}</td><td><code>{text(record['answers'].get(name, ''))}</code></td></tr>"
-        for record in records
-        for name, mark in record["marks"].items()
-        if mark["outcome"] == "undecided"
+        f'<tr><td><a href="{feedback_of(student, assignment)}">{text(student)}</a></td>'
+        f'<td class="number">{found.numbers[name]}</td>'
+        f"<td>{' '.join(map(pages.message, messages))}</td><td><code>{text(answer)}</code></td></tr>"
+        for student, name, messages, answer in found.undecided
     )
+    left = found.waiting - len(found.undecided)
+    more = f"<p>And {left} more, in <code>undecided.csv</code>.</p>" if left else ""
     return (
         (
             "<h3>For you to decide</h3><p>Copy <code>undecided.csv</code> to <code>decisions.csv</code>, write a credit "
             "from 0 to 1 into its lines, and run <code>coursework regrade</code>. Until then these answers earn nothing and "
             'are counted nowhere as wrong.</p><div class="scroll"><table><thead><tr><th>Student</th><th class="number">Question</th>'
-            f"<th>Why</th><th>The answer</th></tr></thead><tbody>{rows}</tbody></table></div>"
+            f"<th>Why</th><th>The answer</th></tr></thead><tbody>{rows}</tbody></table></div>{more}"
         )
         if rows
         else ""
     )
 
 
-def _odd(records):
-    kinds = {}
-    for record in records:
-        for notebook in record["notebooks"]:
-            for note in notebook["notes"]:
-                kinds.setdefault(note, []).append(record["student"])
-            for said in notebook.get("tried", ()):
-                kinds.setdefault(f"its code {said}", []).append(record["student"])
-            for outcome in {cell["outcome"] for cell in notebook["cells"]} - {"done", "not run", "error"}:
-                kinds.setdefault(f"stopped by a limit or by itself: {outcome}", []).append(record["student"])
-        if record["superseded"]:
-            kinds.setdefault("handed in more than once; the newest counts", []).append(record["student"])
+def _oddities(record):
+    """What is worth a look in a record, each kind once."""
+    found = {}
+    for notebook in record["notebooks"]:
+        found.update(dict.fromkeys(notebook["notes"]))
+        found.update(dict.fromkeys(f"its code {said}" for said in notebook.get("tried", ())))
+        outcomes = sorted({cell["outcome"] for cell in notebook["cells"]} - {"done", "not run", "error"})
+        found.update(dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes))
+    if record["superseded"]:
+        found["handed in more than once; the newest counts"] = None
+    return found
+
+
+def _odd(found):
     rows = "".join(
-        f'<tr><td>{text(kind)}</td><td class="number">{len(students)}</td><td>{text(", ".join(students))}</td></tr>'
-        for kind, students in sorted(kinds.items())
+        f'<tr><td>{text(kind)}</td><td class="number">{students}</td><td>{text(", ".join(names), 4_000)}'
+        f"{' and others' if students > len(names) else ''}</td></tr>"
+        for kind, (students, names) in sorted(found.odd.items())
     )
     return (
         (
@@ -467,15 +499,8 @@ def _odd(records):
 
 
 def _how(classes):
-    records = [record for group in classes.values() for record in group]
-    ways = Counter()
-    for record in records:
-        for notebook in record["notebooks"]:
-            isolation = notebook["isolation"]
-            ways[("WEAK: " if isolation["weak"] else "") + (", ".join(isolation["layers"]) or "none")] += 1
-    versions = Counter(
-        ", ".join(f"{name} {version}" for name, version in record["software"].items()) for record in records
-    )
+    ways = sum((found.ways for found in classes.values()), Counter())
+    versions = sum((found.versions for found in classes.values()), Counter())
     items = [
         f"<li>{_count(count, 'notebook', 'notebooks')} isolated by {text(way)}.</li>"
         for way, count in sorted(ways.items())

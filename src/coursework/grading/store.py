@@ -85,9 +85,10 @@ class Store:
 
     def all(self):
         """All records, by student and assignment, one at a time."""
-        found = sorted(self.records.glob("*/*.json"), key=lambda path: (path.parent.name, path.name))
-        for path in found:
-            yield json.loads(path.read_text("utf8"))
+        # Names of folders alone, and not all paths: a class may have a hundred thousand.
+        for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
+            for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
+                yield json.loads(path.read_text("utf8"))
 
     def log(self, line):
         """Write a line of what happened, with its time; nothing that is graded depends on it."""
@@ -120,12 +121,16 @@ def file_name(name):
 
 
 def write(path, text, lasting=True):
-    """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down."""
+    """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down.
+
+    ``text`` is text, bytes or pieces of text that come one after another.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     half = path.with_name(f".half-{secrets.token_hex(8)}")
     with open(half, "wb") as file:
-        file.write(text.encode("utf8", "backslashreplace") if isinstance(text, str) else text)
+        for piece in (text,) if isinstance(text, (str, bytes)) else text:
+            file.write(piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece)
         if lasting:
             file.flush()
             os.fsync(file.fileno())

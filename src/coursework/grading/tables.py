@@ -2,6 +2,7 @@
 
 import csv
 import io
+import itertools
 import unicodedata
 
 STARTS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -34,12 +35,18 @@ def number(value):
 
 def table(header, rows):
     """A table as CSV, every text in quotation marks."""
+    return "".join(lines(header, rows))
+
+
+def lines(header, rows):
+    """The lines of a table as CSV, one after another, for a table that no memory need hold."""
     file = io.StringIO()
     writer = csv.writer(file, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
-    writer.writerow(header)
-    for row in rows:
-        writer.writerow([as_cell(value) for value in row])
-    return file.getvalue()
+    for row in itertools.chain([header], ([as_cell(value) for value in row] for row in rows)):
+        writer.writerow(row)
+        yield file.getvalue()
+        file.seek(0)
+        file.truncate()
 
 
 def readable(text, most=2_000):
