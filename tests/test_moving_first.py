@@ -1,4 +1,4 @@
-"""The figures of the first chapters: hands, challenges and the belt, in Python and in the browser."""
+"""The figures of the first chapters: hands, challenges, a tree of frames and the belt, in Python and in the browser."""
 
 import math
 
@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 from traitlets import TraitError
 
 from orientation import dcm_from_body_fixed
-from orientation_figures.moving import BeltFigure, ChallengeFigure, HandsFigure
+from orientation_figures.moving import BeltFigure, ChallengeFigure, GraphFigure, HandsFigure
 from orientation_figures.moving.stills.belt import belt
 
 FULL = 2 * math.pi
@@ -96,7 +96,55 @@ def test_the_belt_does_not_stretch():
     assert np.abs(np.sum(along * frames[:-1, 0], axis=1)).max() < 0.1, "its width stays across it"
 
 
+TREE = [("A", "N", "z", 0.7), ("B", "N", "x", -0.4), ("C", "B", "y", 1.1), ("D", "B", "z", 2.0), ("E", "D", "x", -0.9)]
+
+
+@pytest.mark.parametrize(
+    "edges", [[("B", "A", "x", 0.1)], [("A", "N", "x", 0.1), ("A", "N", "y", 0.1)], [("Q", "N", "x", 1)]]
+)
+def test_a_tree_has_each_frame_once_and_its_reference_before(edges):
+    with pytest.raises(TraitError, match="edges (turns B in A, which is not there|makes the frame)"):
+        GraphFigure(edges=edges, target="N", source="N")
+
+
+def test_the_ends_of_a_path_are_frames_of_the_tree():
+    with pytest.raises(TraitError, match="target is C, and the frames are N, A"):
+        GraphFigure(edges=TREE[:1], target="C", source="N")
+
+
 # In the browser.
+
+
+@pytest.mark.parametrize("target, source", ["EA", "AE", "CD", "NC", "DN", "BB"])
+def test_the_matrix_over_a_path_is_that_of_sympy(open_figure, target, source):
+    import sympy.physics.mechanics as me
+
+    frames = {name: me.ReferenceFrame(name) for name in "NABCDE"}
+    for frame, reference, axis, angle in TREE:
+        frames[frame].orient_axis(frames[reference], getattr(frames[reference], axis), angle)
+    expected = np.array(frames[target].dcm(frames[source])).astype(float)
+    assert rotation_error(GraphFigure(edges=TREE, target=target, source=source).dcm, expected) < 1e-12
+    page = open_figure(GraphFigure(edges=TREE))
+    page.get_by_label("Matrix of").select_option(target)
+    page.get_by_label("with respect to").select_option(source)
+    assert numbers(page, "Direction cosine matrix over the path") == pytest.approx(expected, abs=6e-4)
+
+
+def test_frames_are_added_turned_and_removed_by_keys(open_figure):
+    page = open_figure(GraphFigure(edges=TREE[:2], target="B", source="A"))
+    assert "B C A = B C N N C A" in words(page) and "transposed: N C A" in words(page)
+    page.get_by_role("button", name="add a frame turned in A").press("Enter")
+    type_number(page, "Angle of the frame in degrees", 90)
+    page.get_by_label("about", exact=True).select_option("x")
+    page.get_by_label("Matrix of").select_option("C")
+    name = "Direction cosine matrix over the path"
+    assert numbers(page, name) == pytest.approx(np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]]))
+    assert page.get_by_role("button", name="add a frame turned in C").is_visible()
+    assert not page.get_by_role("button", name="add a frame turned in D").is_visible()
+    page.get_by_role("button", name="Remove the last").press("Enter")
+    settle(page)
+    assert page.get_by_label("Matrix of").input_value() == "N", "a matrix of a frame that is gone is not asked for"
+    assert numbers(page, name)[0, 1] == pytest.approx(-math.sin(0.7), abs=6e-4)
 
 
 def test_a_matrix_is_matched_by_keys(open_figure):

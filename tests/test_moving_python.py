@@ -61,9 +61,10 @@ SET = {
     "triad": ("angle", 0.3), "gimbal": ("angles", (0.1, 0.2, 0.3)), "nine_numbers": ("matrix", ((1.0,) * 3,) * 3),
     "successive": ("turns", (("z", 0.3),)), "quaternion": ("first", (0.1, 0.2, 0.3)), "motion": ("time", 3.0),
     "phone": ("angles", (0.1, 0.2, 0.3)), "simple": ("angle", 0.25), "belt": ("angle", 0.25),
-    "hands": ("quaternion", (0.0, 0.0, 1.0, 0.0)), "challenge": ("turns", (("z", 0.3),)),
+    "hands": ("quaternion", (0.0, 0.0, 1.0, 0.0)),
+    "graph": ("edges", (("A", "N", "x", 0.2), ("C", "A", "y", 0.4))), "challenge": ("turns", (("z", 0.3),)),
 }
-NEEDS_NUMPY = {"nine_numbers": "nearest", "motion": "dcm", "successive": "dcm", "challenge": "dcm"}
+NEEDS_NUMPY = {"nine_numbers": "nearest", "motion": "dcm", "successive": "dcm", "challenge": "dcm", "graph": "dcm"}
 figures = [getattr(moving, name) for name in moving.__all__ if name not in ("MovingFigure", "SequenceExplorer")]
 assert sorted(SET) == sorted(figure.kind for figure in figures)
 for kind in figures:

@@ -174,7 +174,7 @@ def gimbal_drawing(angles, alt=GIMBAL_ALT):
 
 
 TURNING_FRAMES_ALT = (
-    "Four frames, each drawn at its own place: A yellow with solid arrows, B red with dashed arrows, C green with "
+    "Four frames, each drawn at its own place: A gold with solid arrows, B red with dashed arrows, C green with "
     "dash-dotted arrows, D blue with dotted arrows. At first they are aligned, x towards the reader and to the "
     "left, y to the right, z up. First B, C and D turn together through 50 degrees; the arrows marked z of B, C "
     "and D stay where they are. Then C and D turn together through 45 degrees; the arrows marked x of C and D "

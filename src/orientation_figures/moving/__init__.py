@@ -8,6 +8,7 @@ from .challenge import ChallengeFigure
 from .explorer import SequenceExplorer
 from .figure import MovingFigure
 from .gimbal import GimbalFigure
+from .graph import GraphFigure
 from .hands import HandsFigure
 from .motion import MotionFigure
 from .nine_numbers import NineNumbersFigure
@@ -21,6 +22,7 @@ __all__ = [
     "BeltFigure",
     "ChallengeFigure",
     "GimbalFigure",
+    "GraphFigure",
     "HandsFigure",
     "MotionFigure",
     "MovingFigure",

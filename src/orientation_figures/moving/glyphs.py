@@ -19,6 +19,8 @@ LABELS = (
     *(rf"\hat{{{frame}}}_{axis}" for frame in "nabcdm" for axis in "xyz"),
     r"\hat{e}",
     *"NABCDtxyz",
+    # Between any two of the frames of a tree.
+    *(rf"{{}}^{target}\mathbf{{C}}^{source}" for target in "NABCDE" for source in "NABCDE"),
     r"\alpha",
     r"\beta",
     r"\gamma",
@@ -36,8 +38,6 @@ LABELS = (
     "I_x",
     "I_y",
     "I_z",
-    r"{}^A\mathbf{C}^N",
-    r"{}^D\mathbf{C}^A",
     r"\hat{a}_x\times\hat{a}_y",
     *(rf"\hat{{e}}_{axis}" for axis in "xyz"),
     "E",
@@ -48,7 +48,6 @@ LABELS = (
     *(rf"{top}^\circ/\mathrm{{s}}" for top in (30, 60, 90, 120, 180, 360, 720)),
     r"\mathrm{cut\ off}",
     *(rf"\mathbf{{C}}_{axis}" for axis in "xyz"),
-    *(rf"{{}}^{frames[0]}\mathbf{{C}}^{frames[1]}" for frames in ("NN", "BN", "CN", "DN", "BA", "CB", "DC")),
     # The axes of the plots of motion.
     r"\mathbf{H}",
     r"\mathrm{not\ orthogonal\ by}",
