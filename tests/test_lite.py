@@ -165,7 +165,7 @@ NO_SWITCHING = "delete WebAssembly.Suspending; delete WebAssembly.promising; del
 @pytest.mark.long
 def test_exercise_is_solved_kept_and_downloaded(browser, site):
     context = browser.new_context(viewport={"width": 1300, "height": 900}, accept_downloads=True)
-    script = NO_SWITCHING + (HTML / runtime.FOLDER / "pyodide" / "pyodide.js").read_text("utf8")
+    script = NO_SWITCHING + (HTML / runtime.FOLDER / runtime.pyodide_folder() / "pyodide.js").read_text("utf8")
     context.route("**/pyodide.js?as=.mjs", lambda route: route.fulfill(body=script, content_type="text/javascript"))
     interface = Interface(context, site, EXERCISE)
     assert interface.run(interface.number("from math")) == []

@@ -18,6 +18,7 @@ from website.browser import FLAGS, find
 from website.execution import STORED
 from website.live import runtime, scripts
 from website.live.cells import kinds_of_cells
+from website.live.fetch import fetch
 from website.notebooks import all_notebooks
 from website.serve import Handler, server
 
@@ -239,7 +240,7 @@ def test_browser_asks_nobody_else(site, browser, tmp_path):
 def test_download_is_small_enough():
     lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
     first = runtime.with_dependencies([runtime.DISTRIBUTION], lock["packages"])
-    files = [HTML / runtime.FOLDER / "pyodide" / name for name in runtime.PYODIDE_FILES]
+    files = [HTML / runtime.FOLDER / runtime.pyodide_folder() / name for name in runtime.PYODIDE_FILES]
     files += [HTML / runtime.FOLDER / lock["packages"][name]["file_name"] for name in first]
     assert lock["bytes"] == sum(path.stat().st_size for path in files)
     files += (HTML / scripts.folder_name()).iterdir()
@@ -302,6 +303,23 @@ def test_numpy_from_a_folder(made_wheels, tmp_path_factory):
     numpy.unlink()
     with pytest.raises(Exception, match="there is no numpy-"):
         runtime.numerical_packages(str(folder), target, official, "unused")
+
+
+def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_path_factory):
+    folder, official = made_wheels
+    target = tmp_path_factory.mktemp("fetched")
+    address = folder.as_uri() + "/"
+    names = {package["file_name"] for package in official["packages"].values()}
+    assert set(fetch(target, official["packages"], address)) == names
+    assert fetch(target, official["packages"], address) == []
+    numpy = official["packages"]["numpy"]["file_name"]
+    (target / numpy).write_bytes(b"half of it")
+    assert fetch(target, official["packages"], address) == [numpy]
+    (target / numpy).unlink()
+    (folder / numpy).write_bytes(b"another file")
+    with pytest.raises(RuntimeError, match="is not the file that Pyodide's list names"):
+        fetch(target, official["packages"], address)
+    assert not (target / numpy).exists()
 
 
 @pytest.mark.parametrize("setting", ["off", False])
@@ -519,7 +537,8 @@ def test_stop_ends_what_does_not_listen(shared):
 
 
 @pytest.mark.long
-def test_stop_in_a_page_without_shared_memory(context, not_isolated):
+def test_stop_in_a_page_without_shared_memory(browser, not_isolated):
+    context = browser.new_context(service_workers="block")  # or one would isolate the pages
     page = Page(context, not_isolated, QUIET)
     assert not page.page.evaluate("crossOriginIsolated")
     page.page.click("button.run-cell >> nth=2")
@@ -529,6 +548,8 @@ def test_stop_in_a_page_without_shared_memory(context, not_isolated):
     # The cells above run again first, so that their names are there.
     text = page.try_code(4, "theta, kept if 'kept' in globals() else 'new'")
     assert "new" in text and page.errors == []
+    opened.remove(page.page)
+    context.close()
 
 
 @pytest.mark.long
@@ -662,13 +683,13 @@ def test_accessible_in_use(browser, site, theme, width):
         page.click("button.run-page")
         page.wait_for_selector("html.live-busy", state="attached")
         assert violations(page) == []
-        page.wait_for_function(RAN, timeout=120_000)
+        page.wait_for_selector("html:not(.live-busy)", timeout=120_000)
         page.locator(".cm-content").nth(2).focus()
         page.keyboard.press("Control+a")
         page.keyboard.insert_text("print('a' * 500)\nthis_is_not_a_name")
         page.keyboard.press("Shift+Enter")
         page.wait_for_selector(".live-error")
-        page.wait_for_function(RAN)
+        page.wait_for_selector("html:not(.live-busy)")
         assert violations(page) == []
         sideways = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
         assert page.evaluate(sideways) <= 0

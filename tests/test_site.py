@@ -12,6 +12,7 @@ from conftest import HTML, REPOSITORY, html_pages
 
 PAGES = html_pages()
 WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
+NARROWEST = {"width": 320, "height": 640}  # a wide page at four times its size: WCAG 2.2, 1.4.10
 HEAVIEST = 450_000  # bytes over the wire, compressed
 LARGEST_SHIFT = 0.001
 
@@ -69,7 +70,8 @@ class Visit:
     """A page opened in the browser, with everything it said and asked for."""
 
     def __init__(self, browser, site, name, theme, viewport):
-        self.context = browser.new_context(color_scheme=theme, viewport=viewport)
+        # With the page's own policy: what that forbids is an error on the console.
+        self.context = browser.new_context(color_scheme=theme, viewport=viewport, bypass_csp=False)
         self.context.add_init_script(WATCH_SHIFTS)
         self.page = self.context.new_page()
         self.faults, self.bytes = [], {}
@@ -81,7 +83,7 @@ class Visit:
         self.page.on("requestfinished", self.note_size)
         self.page.goto(site + name)
         self.page.wait_for_load_state("networkidle")
-        self.page.wait_for_function("!document.documentElement.classList.contains('settling')")
+        self.page.wait_for_selector("html:not(.settling)")
 
     def note_request(self, request):
         if not request.url.startswith((self.site, "data:", "blob:")):
@@ -121,6 +123,8 @@ def test_page_in_light_and_wide(browser, site, name):
         assert page.evaluate(HIDDEN) == []
         page.set_viewport_size(NARROW)
         assert page.evaluate(SIDEWAYS) <= 0, "the narrow page scrolls sideways"
+        page.set_viewport_size(NARROWEST)
+        assert page.evaluate(SIDEWAYS) <= 0, "the page of 320 pixels scrolls sideways"
         assert sum(visit.bytes.values()) <= HEAVIEST, visit.bytes
         assert visit.faults == []
 
@@ -177,6 +181,19 @@ def test_theme_switch(browser, site):
         assert colours["dark"] != colours["light"] == colours["auto"]
 
 
+def test_icons_are_seen_in_colours_that_the_system_sets(browser, site):
+    context = browser.new_context(viewport=WIDE, forced_colors="active")
+    page = context.new_page()
+    page.goto(f"{site}chapters/gimbal-lock.html")
+    page.wait_for_selector("html:not(.settling)")
+    colours = page.evaluate("""() => {
+      const icons = [...document.querySelectorAll('[class*="fa-"]')].filter((icon) => icon.checkVisibility());
+      return [document.body, ...icons].map((element) => getComputedStyle(element).backgroundColor);
+    }""")
+    assert len(colours) > 6 and colours[0] not in colours[1:]
+    context.close()
+
+
 def test_theme_stays_on_the_next_page(browser, site):
     with Visit(browser, site, "index.html", "light", WIDE) as visit:
         visit.page.click(".theme-switch-button")
@@ -220,7 +237,7 @@ def test_take_away_menu(browser, site):
 
 def test_nothing_in_the_site_is_idle():
     """Every file of _static is named by a page, a style sheet or a script."""
-    kinds = (".html", ".css", ".js")
+    kinds = (".html", ".css", ".js", ".webmanifest")
     everything = "\n".join(path.read_text("utf8") for path in HTML.rglob("*") if path.suffix in kinds)
     idle = [p.name for p in (HTML / "_static").rglob("*") if p.is_file() and p.name not in everything]
     assert idle == []

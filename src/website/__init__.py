@@ -9,13 +9,16 @@ from . import (
     alternative_text,
     execution,
     exercises,
+    finish,
     fonts,
+    install,
     lite,
     live,
     mathematics,
     moving,
     page,
     progress,
+    publish,
     questions,
     take_away,
 )
@@ -23,6 +26,6 @@ from . import (
 
 def setup(app):
     pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress)
-    for module in (*pages, take_away, page, moving, live, lite):
+    for module in (*pages, take_away, page, publish, moving, live, lite, install, finish):
         module.setup(app)
     return {"version": "1.0", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -6,7 +6,7 @@ import sys
 import time
 from pathlib import Path
 
-from . import lite, whole_book
+from . import install, lite, whole_book
 from .paths import BUILD, HTML, pages
 
 
@@ -33,6 +33,7 @@ def main():
         sys.exit("The book was not built: see the warnings above.")
     lite.write(HTML)
     whole_book.withdraw_outdated()
+    install.write_list(HTML)
     print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import yaml
 
-from . import offline
+from . import install, offline
 from .paths import BUILD, HTML, WEBSITE, fingerprint, package, pages
 
 NAME = package()["name"]
@@ -41,7 +41,7 @@ def site_files():
     files = {
         str(path.relative_to(HTML)): path.read_bytes()
         for path in sorted(HTML.rglob("*"))
-        if path.is_file() and path not in (PDF, ZIP)
+        if path.is_file() and path not in (PDF, ZIP, HTML / install.LIST)
     }
     files[FRONT] = with_offer(files[FRONT].decode(), []).encode()
     return files
@@ -127,6 +127,7 @@ def main():
             note_stamps()
             print(f"Made in {time.monotonic() - start:.0f} s: {path}, {path.stat().st_size / 1e6:.1f} MB")
     write_front_page()
+    install.write_list(HTML)
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ def write_workshop(site, settings, names):
     # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
     kernel = {
         # The kernel takes it for a module by the end of the address, servers by the name of the file.
-        "pyodideUrl": f"./../{runtime.FOLDER}/pyodide/pyodide.js?as=.mjs",
+        "pyodideUrl": f"./../{runtime.FOLDER}/{runtime.pyodide_folder()}/pyodide.js?as=.mjs",
         "disablePyPIFallback": True,
         # The name is the same in every version of the book: what follows it tells them apart.
         "loadPyodideOptions": {"lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}", "packages": names},

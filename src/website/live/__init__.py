@@ -2,14 +2,14 @@
 
 The site's folder ``runtime`` holds all of it, and nothing there is loaded before the reader asks:
 
-- ``pyodide/``: the interpreter, as npm brings it (``pyodide.js`` and what it loads);
+- ``pyodide-<hash>/``: the interpreter, as npm brings it (``pyodide.js`` and what it loads);
 - ``wheels/<hash>/*.whl``: SymPy, mpmath and our own packages, byte-compiled;
 - ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file names of
   wheels in it are relative to the lock file. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says;
 - ``scripts-<hash>/``: what makes the cells of a page run in place (``js``, ``python``).
 
 Whatever else is to run Python in a browser (a notebook interface, say) needs only the address of
-``pyodide/pyodide.js`` and that of ``pyodide-lock.json``.
+``pyodide.js`` and that of ``pyodide-lock.json``.
 """
 
 import json
@@ -55,7 +55,9 @@ def add_live_code(app, pagename, templatename, context, doctree):
     context["live_data"] = json.dumps(
         {
             "page": pagename,
+            "bytes": 0,  # finish.py puts in how many it takes to start Python
             "runtime": pathto(f"{runtime.FOLDER}/", 1),
+            "pyodide": f"{runtime.pyodide_folder()}/",
             "scripts": pathto(f"{scripts.folder_name()}/", 1),
             "notebook": pathto(notebook_address(pagename), 1),
             "cells": {
@@ -70,8 +72,15 @@ def add_live_code(app, pagename, templatename, context, doctree):
     app.add_js_file("live.js", loading_method="defer")
 
 
+def note_folders(app, config):
+    """Write every page anew that names the folders of scripts and of Pyodide, when these have another version."""
+    config.runtime_folders = f"{scripts.folder_name()} {runtime.pyodide_folder()}"
+
+
 def setup(app):
     app.add_config_value("numpy_in_the_page", "official", "html", (str, bool))
+    app.add_config_value("runtime_folders", "", "html", str)
+    app.connect("config-inited", note_folders)
     app.add_directive("cells-that-need-more", NeedsMore)
     app.connect("builder-inited", write_scripts)
     app.connect("html-page-context", add_live_code, priority=970)  # after page.py has set the styles

@@ -14,7 +14,7 @@ from pathlib import Path
 from sphinx.errors import ConfigError
 
 from ..packing import wheel_name
-from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY
+from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY, fingerprint
 from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
@@ -35,6 +35,11 @@ LOCK = "pyodide-lock.json"
 DISTRIBUTION = "orientation-of-reference-frames"
 DEPENDS = {"sympy": ["mpmath"], DISTRIBUTION: ["sympy"]}
 NUMERICAL = ("numpy", "matplotlib")  # not on PyPI for browsers; see the setting numpy_in_the_page
+
+
+def pyodide_folder():
+    """Where Pyodide lies in the runtime folder: its files have the same names in every version."""
+    return f"pyodide-{fingerprint(*(PYODIDE / source for source in PYODIDE_FILES.values()))}"
 
 
 def sha256(content):
@@ -153,18 +158,22 @@ def write(site, setting):
     """Write the runtime folder of ``site``, a folder with the built pages."""
     target = site / FOLDER
     shutil.rmtree(target / "wheels", ignore_errors=True)
-    (target / "pyodide").mkdir(parents=True, exist_ok=True)
+    pyodide = target / pyodide_folder()
+    for outdated in target.glob("pyodide*/"):
+        if outdated != pyodide:
+            shutil.rmtree(outdated)
+    pyodide.mkdir(parents=True, exist_ok=True)
     for name, source in PYODIDE_FILES.items():
         content = (PYODIDE / source).read_bytes()
         if name.endswith(".js"):
             content = content.replace(b"pyodide.asm.mjs", b"pyodide.asm.js")
-        (target / "pyodide" / name).write_bytes(content)
+        (pyodide / name).write_bytes(content)
     wheels = [*sorted(FETCHED.glob("*.whl")), site / TAKE_AWAY / wheel_name()]
     official = official_lock()
     packages = own_packages(compile_wheels(wheels), target)
     packages |= numerical_packages(setting, target, official, official_address())
     first = with_dependencies([DISTRIBUTION], packages)
-    loaded = [target / "pyodide" / name for name in PYODIDE_FILES]
+    loaded = [pyodide / name for name in PYODIDE_FILES]
     loaded += [target / packages[name]["file_name"] for name in first]
     lock = {"info": official["info"], "packages": packages, "bytes": sum(map(size, loaded))}
     (target / LOCK).write_text(json.dumps(lock, indent=1), "utf8")

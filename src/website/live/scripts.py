@@ -36,7 +36,7 @@ def write(site):
         shutil.copytree(JS, workshop / "js")
         write_python(workshop / "python")
         esbuild(
-            *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js")),
+            *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")),
             "--bundle", "--format=esm", "--loader:.py=text", f"--outdir={target}",
         )  # fmt: skip
     shutil.copyfile(JS / "live.css", target / "live.css")
@@ -44,3 +44,5 @@ def write(site):
     static.mkdir(exist_ok=True)
     esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
     shutil.copyfile(JS / "page.css", static / "live.css")
+    # A service worker may act for the pages below it only.
+    esbuild(JS / "service-worker.js", f"--outfile={site / 'service-worker.js'}")

@@ -14,6 +14,18 @@ const watch = new ResizeObserver((entries) => {
 for (const box of boxes) watch.observe(box);
 window.watchWidth = (box) => watch.observe(box); // for what a page puts out later
 
+// Who reports a mistake tells where: the section that is being read.
+const report = document.querySelector("a.report-mistake");
+report?.addEventListener("click", () => {
+  const above = [...document.querySelectorAll(".bd-article :is(h1, h2, h3)")].filter((h) => h.getBoundingClientRect().top < innerHeight / 2);
+  const address = new URL(report.href);
+  const section = above.at(-1)?.cloneNode(true);
+  section?.querySelectorAll(".headerlink").forEach((link) => link.remove());
+  const body = address.searchParams.get("body").replace(/^Section: .*$/m, `Section: ${section?.textContent.trim() ?? ""}`);
+  address.searchParams.set("body", body);
+  report.href = address;
+});
+
 // The take-away menu closes like any menu: by Escape, or by a press elsewhere.
 const menu = document.querySelector("details.take-away");
 if (menu) {
@@ -27,6 +39,8 @@ if (menu) {
     }
   });
 }
+
+document.querySelector("button.print-page")?.addEventListener("click", () => print());
 
 // A page opened from disk may not read other pages: the search then shows titles alone.
 if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined") {

@@ -11,6 +11,7 @@ const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one :
 class Page {
   constructor({ data, boxes, bar }) {
     this.runtime = new URL(data.runtime, location.href).href;
+    this.pyodide = data.pyodide;
     this.answers = new Answers(data.page);
     this.bar = bar;
     this.cells = boxes.map((box, index) => new Cell(box, index + 1, data.cells[index] ?? {}, this));
@@ -185,11 +186,12 @@ class Page {
   async load() {
     this.bar.say("Python is being loaded ...");
     this.has = null;
-    this.python = new Python(this.runtime, (message, cell) => this.hear(message, cell));
+    this.python = new Python(this.runtime, this.pyodide, (message, cell) => this.hear(message, cell));
     const { python } = this;
     setTimeout(() => this.edit());
     try {
       this.has = await python.ready;
+      this.bar.fetched();
     } catch (error) {
       if (this.python === python) this.python = null;
       throw error;

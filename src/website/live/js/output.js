@@ -79,11 +79,14 @@ function html(text) {
   const box = element("div", "output text_html");
   box.innerHTML = text;
   setFormulas(box);
-  // Scripts that are set in as text do not run; a copy does.
+  // Scripts that are set in as text do not run; a copy does, as a file: the page's policy lets no other in.
   for (const script of box.querySelectorAll("script")) {
     const copy = element("script");
     for (const { name, value } of script.attributes) copy.setAttribute(name, value);
-    copy.textContent = script.textContent;
+    if (script.textContent.trim()) {
+      copy.src = URL.createObjectURL(new Blob([script.textContent], { type: "text/javascript" }));
+      copy.addEventListener("load", () => URL.revokeObjectURL(copy.src));
+    }
     script.replaceWith(copy);
   }
   box.querySelectorAll("figure.orientation-figure").forEach((figure) => window.watchWidth?.(figure));

@@ -1,6 +1,7 @@
 // On every page with code: the buttons, and a bar for what there is to say. All else is loaded when asked for.
 {
   const data = JSON.parse(document.getElementById("live-data").textContent);
+  const place = new URL("../", document.currentScript.src).pathname;
   const boxes = [...document.querySelectorAll("div.cell")].filter((box) => box.querySelector(".cell_input"));
   const make = (tag, attributes, text = "") => Object.assign(document.createElement(tag), attributes, { textContent: text });
 
@@ -41,6 +42,10 @@
       bytes.textContent = loaded === null ? "" : `${Math.round(loaded / 1e6)} of ${Math.round(all / 1e6)} MB`;
       if (loaded !== null) Object.assign(progress, { max: all, value: loaded });
     },
+    fetched() {
+      localStorage.setItem(`book ${place} fetched`, data.pyodide);
+      tellSize();
+    },
     buttons: (actions) => Object.entries(actions).map(([text, action]) => {
       const made = button(text, action);
       close.before(made);
@@ -56,11 +61,32 @@
     tools.say(FROM_DISK);
   });
 
+  // Only an isolated page shares memory with its Python, which can then be stopped and keeps its names. Where the
+  // server does not isolate the pages, a service worker does, from the moment when the page is loaded once more.
+  const RUN = `book ${place} run`; // in this tab: "tried", or what to run when the page is there again
+  const isolate = async (number) => {
+    const able = isSecureContext && "serviceWorker" in navigator && self === top && !window.keepsNothing;
+    if (crossOriginIsolated || !able || sessionStorage.getItem(RUN)) return false;
+    sessionStorage.setItem(RUN, "tried");
+    try {
+      await navigator.serviceWorker.register(`${place}service-worker.js`);
+      const late = new Promise((_, reject) => setTimeout(reject, 5000, new Error("it does not start")));
+      await Promise.race([navigator.serviceWorker.ready, late]);
+    } catch (error) {
+      console.info(`The page is not isolated: ${error.message}`);
+      return false;
+    }
+    sessionStorage.setItem(RUN, JSON.stringify({ page: data.page, number, line: scrollY }));
+    location.reload();
+    return true;
+  };
+
   let page;
   const script = (name) => import(new URL(data.scripts + name, location.href));
   const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
   const ask = async (number) => {
     if (fromDisk) return tools.say(FROM_DISK);
+    if (number !== undefined && (await isolate(number))) return;
     try {
       const opened = await open();
       if (number !== undefined) opened.run(opened.cells[number]);
@@ -73,10 +99,34 @@
   boxes.forEach((box, number) => {
     const run = button("Run", () => ask(number));
     run.className = "run-cell";
-    run.setAttribute("aria-label", `Run cell ${number + 1}`);
+    run.dataset.label = `Run cell ${number + 1}`;
     box.querySelector(".cell_input").append(run);
   });
-  document.querySelector("button.run-page").addEventListener("click", () => ask(-1));
+  const runPage = document.querySelector("button.run-page");
+  runPage.addEventListener("click", () => ask(-1));
+
+  // What Python weighs is told before it is fetched; once it has come, the browser has it.
+  function tellSize() {
+    const told = localStorage.getItem(`book ${place} fetched`) === data.pyodide ? "" : `${Math.round(data.bytes / 1e6)} MB`;
+    for (const run of [runPage, ...document.querySelectorAll("button.run-cell")]) {
+      if (told) run.dataset.size = told;
+      else delete run.dataset.size;
+      run.setAttribute("aria-label", `${run.dataset.label}${told && `, which first fetches ${told}`}`);
+    }
+  }
+  runPage.dataset.label = "Run this page";
+  tellSize();
+
+  // The book, kept for reading without a network.
+  document.querySelector("button.keep-book").addEventListener("click", async () => {
+    document.querySelector("details.take-away").open = false;
+    if (fromDisk) return tools.say("This copy of the book is on your disk: it needs no network.");
+    try {
+      await (await script("keep.js")).keep(tools);
+    } catch (error) {
+      tools.say(`That did not work: ${error.message}.`);
+    }
+  });
 
   // Take away and bring back: the page's answers as a notebook, all answers of the book as one file.
   const originals = boxes.map((box) => box.querySelector(".cell_input pre").textContent.trimEnd());
@@ -94,9 +144,15 @@
   }
 
   // What the reader has written here before comes back, also from another tab; see answers.js for the keys.
-  const place = new URL("../", document.currentScript.src).pathname;
   const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`];
   const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));
-  if (Object.keys(localStorage).some(isOwn)) ask();
+  const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
+  if (again.page) sessionStorage.setItem(RUN, "tried");
+  if (localStorage.getItem(`book ${place} kept`)) script("keep.js").then(({ remind }) => remind(tools)).catch(() => {});
+  if (again.page === data.page) {
+    addEventListener("load", () => scrollTo(0, again.line));
+    ask(again.number);
+  }
+  else if (Object.keys(localStorage).some(isOwn)) ask();
   else addEventListener("storage", ({ key }) => page || (isOwn(key) && ask()));
 }

@@ -3,10 +3,10 @@
 // Milliseconds. Before Python's thread says anything it has to be fetched itself, and what it starts with.
 const SILENCE = 18_000;
 // A run that cannot be interrupted in this time is ended, and everything that it knew with it.
-const PATIENCE = 700;
+const PATIENCE = 2500;
 
 export class Python {
-  constructor(runtime, listener) {
+  constructor(runtime, pyodide, listener) {
     this.listener = listener;
     this.jobs = 0;
     // Shared memory, through which Python is asked to stop, is given to isolated pages only.
@@ -23,7 +23,7 @@ export class Python {
     });
     this.ready.catch(() => {});
     this.watchSilence();
-    this.worker.postMessage({ type: "start", runtime, interrupts: this.interrupts?.buffer });
+    this.worker.postMessage({ type: "start", runtime, pyodide, interrupts: this.interrupts?.buffer });
   }
 
   watchSilence() {

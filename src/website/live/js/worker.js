@@ -124,18 +124,18 @@ function watchModules() {
   }
 }
 
-async function start({ runtime, interrupts }) {
+async function start({ runtime, pyodide, interrupts }) {
   let lock;
   watchModules();
   watchFetching(() => lock?.bytes);
   const [{ loadPyodide }] = await Promise.all([
-    import(`${runtime}pyodide/pyodide.js`),
+    import(`${runtime}${pyodide}pyodide.js`),
     fetch(`${runtime}pyodide-lock.json`, { cache: "no-cache" }).then(async (answer) => (lock = await answer.json())),
   ]);
   packages = lock.packages;
   postMessage({ type: "progress", bytes: 0, all: lock.bytes });
   python = await loadPyodide({
-    indexURL: `${runtime}pyodide/`,
+    indexURL: `${runtime}${pyodide}`,
     lockFileContents: lock,
     packageBaseUrl: runtime,
     packages: [OURS],

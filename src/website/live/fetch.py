@@ -1,0 +1,46 @@
+"""``python -m website.live.fetch FOLDER``: the official wheels of NumPy and Matplotlib, to come with the site.
+
+Each is fetched from Pyodide's makers, once, and compared with the fingerprint that their own list names. With
+``numpy_in_the_page: FOLDER`` in ``_config.yml`` the pages then ask nobody else for anything.
+"""
+
+import sys
+import urllib.request
+from pathlib import Path
+
+from . import runtime
+
+
+def fetch(folder, packages, address):
+    """Put the wheels that NumPy and Matplotlib need into ``folder``; return the names of those that were fetched."""
+    folder.mkdir(parents=True, exist_ok=True)
+    fetched = []
+    for name in runtime.with_dependencies(runtime.NUMERICAL, packages):
+        wheel, print_ = folder / packages[name]["file_name"], packages[name]["sha256"]
+        if wheel.is_file() and runtime.sha256(wheel.read_bytes()) == print_:
+            continue
+        with urllib.request.urlopen(address + wheel.name, timeout=60) as answer:
+            content = answer.read()
+        if runtime.sha256(content) != print_:
+            raise RuntimeError(
+                f"{address}{wheel.name} is not the file that Pyodide's list names; nothing of it was kept"
+            )
+        wheel.write_bytes(content)
+        fetched.append(wheel.name)
+    return fetched
+
+
+def main():
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "wheels")
+    address = runtime.official_address()
+    try:
+        fetched = fetch(folder, runtime.official_lock()["packages"], address)
+    except (OSError, RuntimeError) as error:
+        sys.exit(f"Not all wheels could be fetched from {address}: {error}")
+    size = sum(path.stat().st_size for path in folder.glob("*.whl")) / 1e6
+    print(f"{len(fetched)} wheels fetched; {folder} holds {size:.0f} MB, each file as its makers name it.")
+    print(f"Write `numpy_in_the_page: {folder}` into _config.yml, and run `make book`.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+"""What the built pages say of themselves to others, and what a published book adds when it knows its address."""
+
+import re
+from collections import Counter
+from functools import cache
+from html import unescape
+from urllib.parse import parse_qs, urlsplit
+
+import pytest
+import yaml
+from conftest import HTML, REPOSITORY
+from test_website import build, chapter
+
+from website.finish import pages_of
+from website.paths import pages
+from website.publish import LICENCE, LONGEST
+
+SETTINGS = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
+
+
+@cache
+def head(path):
+    return path.read_text("utf8").partition("<body")[0]
+
+
+def meta(text, name):
+    (found,) = re.findall(rf'<meta (?:name|property)="{name}" content="([^"]*)"', text)
+    return unescape(found)
+
+
+def test_each_page_describes_itself():
+    described = [path for path in pages_of(HTML) if path.name not in ("404.html", "search.html", "genindex.html")]
+    descriptions = Counter()
+    for path in described:
+        words = meta(head(path), "description")
+        assert 20 < len(words) <= LONGEST and "\\" not in words and "<" not in words, f"{path}: {words}"
+        assert meta(head(path), "og:description") == words
+        assert SETTINGS["title"] in meta(head(path), "og:title")
+        assert head(path).count('name="viewport"') == 1, path
+        assert LICENCE in path.read_text("utf8").partition("<footer")[2], f"{path} does not name its licence"
+        descriptions[words] += 1
+    assert [words for words, count in descriptions.items() if count > 1] == []
+
+
+def test_files_for_machines():
+    assert (HTML / ".nojekyll").is_file()
+    assert "Allow: /" in (HTML / "robots.txt").read_text("utf8")
+    outline = (HTML / "llms.txt").read_text("utf8")
+    for page in pages()[1:]:
+        assert f"{page}.html): " in outline, f"llms.txt lacks {page}"
+    assert all((HTML / address).is_file() for address in re.findall(r"\]\(([^)]*)\)", outline))
+    missing = (HTML / "404.html").read_text("utf8")
+    assert 'href="/index.html"' in missing and "_static" not in missing, "it stands in for an address in any folder"
+
+
+def test_title_is_said_once():
+    """In the settings; what else names the book reads it there."""
+    title = SETTINGS["title"]
+    programs = [*(REPOSITORY / "src" / "website").rglob("*.py"), *(REPOSITORY / "src" / "website").rglob("*.js")]
+    programs += [*(REPOSITORY / "src" / "website").rglob("*.html"), *(REPOSITORY / "tests").glob("test_*.py")]
+    assert [path.name for path in programs if title in path.read_text("utf8")] == []
+
+
+@pytest.mark.long
+def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
+    monkeypatch.setenv("BOOK_ADDRESS", "https://example.org/books/tiny")
+    monkeypatch.setenv("BOOK_REPOSITORY", "https://example.org/tiny-book")
+    (tmp_path / "CITATION.cff").write_text("version: 3.0\ndate-released: 2026-11-22\ndoi: 10.5281/zenodo.1\n")
+    code, words = build(tmp_path, {"chapter": chapter()})
+    assert code == 0, words
+    site = tmp_path / "_build" / "html"
+    text = (site / "chapter.html").read_text("utf8")
+    assert '<link rel="canonical" href="https://example.org/books/tiny/chapter.html" />' in text
+    assert meta(text, "og:url") == "https://example.org/books/tiny/chapter.html"
+    assert "<loc>https://example.org/books/tiny/chapter.html</loc>" in (site / "sitemap.xml").read_text("utf8")
+    assert "Sitemap: https://example.org/books/tiny/sitemap.xml" in (site / "robots.txt").read_text("utf8")
+    assert 'href="/books/tiny/index.html"' in (site / "404.html").read_text("utf8")
+    assert "Edition 3.0 of 2026-11-22" in text and "https://doi.org/10.5281/zenodo.1" in text
+    (report,) = re.findall(r'class="report-mistake" href="([^"]*)"', text)
+    asked = parse_qs(urlsplit(unescape(report)).query)
+    assert "(chapter)" in asked["body"][0] and "Edition: 3.0" in asked["body"][0]
+    assert 'href="https://example.org/tiny-book/edit/main/chapter.ipynb"' in text
