@@ -5,7 +5,7 @@ import json
 import re
 from functools import cache
 from html import unescape
-from urllib.parse import unquote, urldefrag, urljoin
+from urllib.parse import quote, unquote, urldefrag, urljoin
 
 import pytest
 from conftest import HTML, REPOSITORY, html_pages
@@ -217,6 +217,35 @@ def test_search(browser, site):
         assert "\\" not in page.inner_text("#search-results")
         assert visit.faults == []
         assert violations(page) == []
+
+
+def test_the_search_finds_what_engineers_call_it(browser, site):
+    names = (
+        "attitude",
+        "SO(3)",
+        "rotation matrix",
+        "DCM",
+        "roll pitch yaw",
+        "intrinsic",
+        "extrinsic",
+        "Cardan",
+        "versor",
+        "slerp",
+    )
+    with Visit(browser, site, "search.html", "light", WIDE) as visit:
+        for name in names:
+            visit.page.goto(f"{site}search.html?q={quote(name)}")
+            visit.page.wait_for_selector("#search-results .search li a")
+            first = visit.page.eval_on_selector_all(
+                "#search-results li a", "links => links.slice(0, 4).map((a) => a.href)"
+            )
+            assert any("glossary" in address or "chapters/" in address for address in first), (name, first)
+            assert any(
+                "glossary" in address
+                for address in visit.page.eval_on_selector_all(
+                    "#search-results li a", "links => links.map((a) => a.href)"
+                )
+            ), name
 
 
 def test_take_away_menu(browser, site):

@@ -33,6 +33,14 @@ class ChallengeFigure(MovingFigure):
     >>> figure = ChallengeFigure(task='undo', given=[('z', 0.5), ('x', 0.3)], turns=[('x', -0.3)])
     >>> round(figure.remaining, 6)
     0.5
+
+    A matrix of one's own becomes a challenge by its Euler angles.
+
+    >>> from orientation import body_fixed_from_dcm
+    >>> own = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]]
+    >>> figure = ChallengeFigure(given=list(zip('zxy', body_fixed_from_dcm(own, 'zxy'))))
+    >>> bool(abs(figure.goal - own).max() < 1e-12)
+    True
     """
 
     kind = "challenge"
