@@ -4,9 +4,10 @@ import re
 from xml.dom import minidom
 
 import matplotlib
+import numpy as np
 import pytest
 
-from orientation_figures.plot import Plot
+from orientation_figures.plot import Plot, _short_path
 from orientation_figures.style import LIGHT
 
 ALT = "A line that rises from the origin to the point one, one, and a flat dashed line below it."
@@ -59,3 +60,44 @@ def test_matplotlib_is_left_as_it_was():
     before = dict(matplotlib.rcParams)
     example(rows=2)
     assert dict(matplotlib.rcParams) == before
+
+
+def points(path):
+    """The points of a path with steps or places of any kind, one list for each line that it draws."""
+    lines, here = [], np.zeros(2)
+    for letter, numbers in re.findall(r"([A-Za-z])([^A-Za-z]*)", path):
+        if letter in "zZ":
+            here = lines[-1][0]
+            continue
+        values = np.array([float(number) for number in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)])
+        size = {"M": 2, "L": 2, "Q": 4, "C": 6}[letter.upper()]
+        for group in values.reshape(-1, size // 2, 2):
+            group = group + here if letter.islower() else group
+            here = group[-1]
+            if letter in "Mm":
+                lines.append([here])
+            else:
+                lines[-1].extend(group)
+    return lines
+
+
+def test_short_paths_lead_along_the_same_points():
+    random = np.random.default_rng(2)
+    for count, tolerance in ((5, 0.0051), (400, 0.051)):
+        way = np.cumsum(random.normal(scale=3, size=(count, 2)), axis=0)
+        path = "M 0 0 \n" + "".join(f"L {x:.6f} {y:.6f} \n" for x, y in way) + "z\nM 5 5 \nQ 6 6 7 4.123456 \n"
+        short = _short_path(path)
+        assert len(short) < 0.7 * len(path)
+        for found, expected in zip(points(short), points(path), strict=True):
+            assert np.abs(np.array(found) - expected).max() <= tolerance
+
+
+def test_steps_along_one_axis_become_one_and_turning_back_does_not():
+    assert _short_path("M 1 1 \nL 2 1 \nL 4 1 \nL 3 1 \nL 3 5 \nL 3 9 \n") == "M1 1l3 0-1 0 0 8"
+
+
+def test_nothing_is_kept_that_nothing_needs():
+    html = example(rows=2)
+    ids = re.findall(r' id="([^"]+)"', html)
+    assert all(f"#{name})" in html or f'"#{name}"' in html for name in ids)
+    assert "<g>" not in html and "metadata" not in html and not re.search(r"\d\.\d{4,}", html.replace("0.015625", ""))

@@ -4,8 +4,12 @@ import hashlib
 import io
 import re
 from html import escape
+from xml.etree import ElementTree
 
 from .style import LIGHT, STYLE
+
+SVG = "{http://www.w3.org/2000/svg}"
+LINK = "{http://www.w3.org/1999/xlink}href"
 
 SETTINGS = {
     "svg.fonttype": "path",
@@ -91,24 +95,108 @@ class Plot:
         buffer = io.StringIO()
         with matplotlib.rc_context({**SETTINGS, "svg.hashsalt": self.alt}):
             self.figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-        svg = buffer.getvalue().replace("xlink:href", "href")  # in a page the prefix has no meaning
-        svg = re.sub(r"<metadata>.*?</metadata>", "", svg[svg.index("<svg") :], flags=re.DOTALL)
-        # Matplotlib's style is for every element of a page: it would take the round ends of lines from all drawings.
-        svg = re.sub(r" <defs>\s*<style[^>]*>[^<]*</style>\s*</defs>\n", "", svg)
-        for name, colour in LIGHT.items():
-            svg = svg.replace(colour, f"var(--{name})")
         # Every id carries a name of its own: two plots on one page cannot clash.
         name = "p" + hashlib.sha256(self.alt.encode()).hexdigest()[:8]
-        svg = re.sub(r'(id="|href="#|url\(#)', rf"\g<1>{name}-", svg)
-        svg = re.sub(
-            r'<svg .*?viewBox="([^"]*)"[^>]*>',
-            rf'<svg viewBox="\1" role="img" aria-label="{escape(self.alt)}" '
-            rf'style="max-width:{self.width}px;stroke:none;stroke-linecap:butt">',
-            svg,
-            count=1,
-            flags=re.DOTALL,
+        root = ElementTree.fromstring(buffer.getvalue())
+        _lighten(root, name)
+        svg = "".join(ElementTree.tostring(child, "unicode") for child in root)
+        svg = svg.replace(' xmlns:ns0="http://www.w3.org/2000/svg"', "").replace("ns0:", "")
+        for frame, colour in LIGHT.items():
+            svg = svg.replace(colour, f"var(--{frame})")
+        svg = (
+            f'<svg viewBox="{root.get("viewBox")}" role="img" aria-label="{escape(self.alt)}" '
+            f'style="max-width:{self.width}px;stroke:none;stroke-linecap:butt">{svg}</svg>'
         )
         return f'<figure class="orientation-figure"><style>{STYLE}</style>{svg}</figure>'
 
     def __repr__(self):
         return f"Plot: {self.alt}"
+
+
+def _lighten(root, name):
+    """Leave out of Matplotlib's drawing what nobody sees: it would be most of its weight.
+
+    Numbers keep a tenth of a pixel along curves and a hundredth elsewhere; ids that nothing refers to, groups
+    without a meaning, invisible frames and the document's own style go. The ids that stay begin with `name`.
+    """
+    # Matplotlib's style is for every element of a page: it would take the round ends of lines from all drawings.
+    for child in list(root):
+        if child.tag == f"{SVG}metadata" or child.find(f"{SVG}style") is not None:
+            root.remove(child)
+    text = ElementTree.tostring(root, "unicode")
+    used = dict.fromkeys(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
+    short = {old: f"{name}-{number}" for number, old in enumerate(used)}
+    for element in root.iter():
+        element.text = element.tail = None
+        old = element.attrib.pop("id", None)
+        if old in short:
+            element.set("id", short[old])
+        if LINK in element.attrib:  # in a page the prefix has no meaning
+            element.set("href", "#" + short[element.attrib.pop(LINK)[1:]])
+        for key, value in element.attrib.items():
+            if key == "d":
+                value = _short_path(value)
+            elif key in ("x", "y", "width", "height", "transform"):  # scales and turns keep all of their digits
+                value = re.sub(r"^-?[\d.]+$|translate\([^)]*\)", _shorter, value)
+            elif key == "style":
+                value = re.sub(r"([:;]) ", r"\1", value)
+            elif key == "clip-path":
+                value = f"url(#{short[value[5:-1]]})"
+            element.set(key, value)
+    _drop_shells(root)
+
+
+def _drop_shells(element):
+    """Take out paths that draw nothing, and put the children of groups that say nothing in their place."""
+    for child in list(element):
+        _drop_shells(child)
+        place = list(element).index(child)
+        invisible = child.tag == f"{SVG}path" and child.get("style") == "fill:none" and "id" not in child.attrib
+        if invisible or child.tag == f"{SVG}g" and not (child.attrib and len(child)):
+            element[place : place + 1] = [] if invisible else list(child)
+
+
+def _short(number, digits):
+    """The number with so many digits after the point at most, without zeros that say nothing."""
+    text = f"{number:.{digits}f}"
+    text = text.rstrip("0").rstrip(".")
+    return re.sub(r"^(-?)0\.", r"\1.", text) if text not in ("-0", "-") else "0"
+
+
+def _shorter(numbers):
+    """The text of a match with each of its numbers rounded to a hundredth."""
+    return re.sub(r"-?\d+\.\d+", lambda number: _short(float(number[0]), 2), numbers[0])
+
+
+def _short_path(path):
+    """The same path in steps from point to point, whose rounding errors do not add up."""
+    tokens = re.findall(r"[A-Za-z]|-?[\d.]+(?:e-?\d+)?", path)
+    digits = 1 if len(tokens) > 150 else 2
+    here, start, place, letter, steps = [0.0, 0.0], [0.0, 0.0], 0, "", []
+    while place < len(tokens):
+        if tokens[place].isalpha():
+            letter, place = tokens[place], place + 1
+        if letter == "z":
+            steps, here = [*steps, ("z", [])], list(start)
+            continue
+        size = {"M": 2, "L": 2, "Q": 4, "C": 6}[letter]  # all that Matplotlib writes, absolute
+        step = [round(float(token) - here[k % 2], digits) for k, token in enumerate(tokens[place : place + size])]
+        place += size
+        here = [here[0] + step[-2], here[1] + step[-1]]
+        if letter == "M":
+            start = list(here)
+        if letter == "L" and steps and steps[-1][0] == "L" and any(_along(step, steps[-1][1], k) for k in (0, 1)):
+            step = [step[0] + steps.pop()[1][0], 0] if step[1] == 0 else [0, step[1] + steps.pop()[1][1]]
+        steps.append((letter, step))
+    found = ""
+    for (letter, step), (before, _) in zip(steps, [("", []), *steps], strict=False):
+        # A letter that is repeated need not be written, and a minus parts two numbers as well as a blank does.
+        written = "" if letter == before != "M" else letter.lower() if found else letter
+        numbers = " ".join(_short(value, digits) for value in step).replace(" -", "-")
+        found += written + (" " if not written and not numbers.startswith("-") else "") + numbers
+    return found
+
+
+def _along(step, before, axis):
+    """Whether two steps go on along one axis, to the same side: then they are one."""
+    return step[1 - axis] == before[1 - axis] == 0 and step[axis] * before[axis] >= 0

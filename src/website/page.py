@@ -61,6 +61,23 @@ def drop_thebe(app, doctree, docname):
             node.parent.remove(node)
 
 
+def lighten(body):
+    """Say once what a page would repeat.
+
+    Every figure brings the style sheet of all figures, since in a notebook it stands alone. Names, brackets and
+    blanks of a program have the colour of the text around them, and need no element each.
+    """
+    seen = set()
+
+    def first_only(style):
+        known = style[0] in seen
+        seen.add(style[0])
+        return "" if known else style[0]
+
+    body = re.sub(r"<style>\.orientation-figure[^<]*</style>", first_only, body)
+    return re.sub(r'<span class="(?:n|p|w|nn)">([^<]*)</span>', r"\1", body)
+
+
 def trim_page(app, pagename, templatename, context, doctree):
     def is_used(script):
         name = getattr(script, "filename", None) or ""
@@ -69,6 +86,8 @@ def trim_page(app, pagename, templatename, context, doctree):
 
     context["script_files"][:] = filter(is_used, context["script_files"])
     context["styles"] = STYLES
+    if "body" in context:
+        context["body"] = lighten(context["body"])
 
 
 def bundle_styles(site):
