@@ -63,6 +63,7 @@ SET = {
     "phone": ("angles", (0.1, 0.2, 0.3)), "simple": ("angle", 0.25), "belt": ("angle", 0.25),
     "hands": ("quaternion", (0.0, 0.0, 1.0, 0.0)),
     "graph": ("edges", (("A", "N", "x", 0.2), ("C", "A", "y", 0.4))), "challenge": ("turns", (("z", 0.3),)),
+    "converter": ("quaternion", (0.6, 0.8, 0.0, 0.0)),
 }
 NEEDS_NUMPY = {"nine_numbers": "nearest", "motion": "dcm", "successive": "dcm", "challenge": "dcm", "graph": "dcm"}
 figures = [getattr(moving, name) for name in moving.__all__ if name not in ("MovingFigure", "SequenceExplorer")]
@@ -166,6 +167,8 @@ def test_state_goes_to_the_page_and_back(figure):
     first = figure()
     _, still = bundle_of(first)
     state = json.loads(still["data-state"])
+    told = {name: state.pop(name) for name in first.trait_names(told=True)}  # constants of the front end
+    assert told == {name: getattr(first, name) for name in told}
     assert state and set(state) == set(first.state())
     second = figure(**state)
     assert second.state() == first.state()

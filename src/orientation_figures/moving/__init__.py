@@ -5,6 +5,7 @@
 
 from .belt import BeltFigure
 from .challenge import ChallengeFigure
+from .converter import ConverterFigure
 from .explorer import SequenceExplorer
 from .figure import MovingFigure
 from .gimbal import GimbalFigure
@@ -21,6 +22,7 @@ from .triad import TriadFigure
 __all__ = [
     "BeltFigure",
     "ChallengeFigure",
+    "ConverterFigure",
     "GimbalFigure",
     "GraphFigure",
     "HandsFigure",

@@ -21,9 +21,10 @@ class MovingFigure(anywidget.AnyWidget):
     runs the same front end without one, in place of the still.
 
     A figure has a ``kind``, the name of its modules in ``js`` and in ``stills``, and traits tagged
-    ``state=True``. ``sheet`` gives left, top, right and bottom of what may be drawn, in pixels from the
-    origin: still and figure have the same size. ``room`` is the height of the whole figure
-    in pixels, beside and below its controls, which a page keeps free so that nothing moves.
+    ``state=True``; traits tagged ``told=True`` are constants that the front end needs. ``sheet`` gives
+    left, top, right and bottom of what may be drawn, in pixels from the origin: still and figure have the
+    same size. ``room`` is the height of the whole figure in pixels, beside and below its controls, which
+    a page keeps free so that nothing moves.
     """
 
     kind = ""
@@ -71,7 +72,8 @@ class MovingFigure(anywidget.AnyWidget):
     def still(self):
         """Return the HTML for pages without a kernel: the still, and the state to start from."""
         svg = svg_on(self.sheet, self.drawing())
-        state = escape(json.dumps(self.state(), separators=(",", ":")), quote=False).replace("'", "&#39;")
+        told = {name: getattr(self, name) for name in self.trait_names(told=True)} | self.state()
+        state = escape(json.dumps(told, separators=(",", ":")), quote=False).replace("'", "&#39;")
         return (
             f'<figure class="orientation-figure moving" data-figure="{self.kind}" '
             f"style=\"--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px\" data-state='{state}'>"

@@ -8,7 +8,7 @@ import { LABELS, OUTLINES } from './glyphs.js';
 // ---- elements and words --------------------------------------------------------------------------------
 
 const DRAWN = new Set(['svg', 'g', 'path', 'circle']);
-const WITH_KEYS = new Set(['button', 'input', 'select']);
+const WITH_KEYS = new Set(['button', 'input', 'select', 'textarea']);
 // On an element that has the focus, this keeps JupyterLab from taking the keys as its own shortcuts.
 const OWN_KEYS = 'data-lm-suppress-shortcuts';
 

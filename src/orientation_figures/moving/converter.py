@@ -1,0 +1,79 @@
+"""Numbers of one program turned into those of another."""
+
+import traitlets
+
+from orientation.euler_angles import SEQUENCES
+from orientation.quaternions import dcm_from_quaternion
+
+from ..conventions import FORMS, OTHER, PROGRAMS
+from .figure import MovingFigure
+from .state import Numbers
+
+# What a side of the converter says; for a program of the table its own convention goes before the last three.
+CHOICES = {
+    "program": (*PROGRAMS, OTHER),
+    "form": FORMS,
+    "sequence": SEQUENCES,
+    "matrix": ("as here", "transposed"),
+    "scalar": ("first", "last"),
+    "unit": ("radians", "degrees"),
+}
+FIRST = {"form": "quaternion", "sequence": "zyx", "matrix": "as here", "scalar": "first", "unit": "radians"}
+# The camera in its gimbal that the whole chapter is about: 0.4, 0.7 and -0.3 rad, body fixed z-x-y.
+AT_FIRST = (0.9204901330363197, 0.3601778830129209, -0.07022156093803689, 0.13430837632305287)
+
+
+class Side(traitlets.TraitType):
+    """A program and the form of its numbers, kept as a dictionary with a value for every choice."""
+
+    def validate(self, obj, value):
+        if not isinstance(value, dict):
+            raise traitlets.TraitError(
+                f"{self.name} is {value!r}: a dictionary was expected, as {{'program': 'SciPy'}}"
+            )
+        side = FIRST | {"program": "this book"} | value
+        for name, chosen in side.items():
+            if name not in CHOICES:
+                raise traitlets.TraitError(f"{self.name} has {name!r}; what can be chosen is {', '.join(CHOICES)}")
+            allowed = CHOICES[name]
+            if chosen not in allowed:
+                raise traitlets.TraitError(f"{self.name} has {name} {chosen!r}; there is {', '.join(allowed)}")
+        lines = PROGRAMS.get(side["program"], {}).get("lines", FORMS)
+        if side["form"] not in lines:
+            raise traitlets.TraitError(f"{side['program']} takes no {side['form']}; it takes {', '.join(lines)}")
+        return side
+
+
+class ConverterFigure(MovingFigure):
+    r"""Numbers of one program, read as that program means them, and the same orientation in another.
+
+    Attributes
+    ----------
+    quaternion : tuple of four floats
+        The orientation that both sides describe: :math:`{}^A\mathbf{C}^N` as a quaternion, scalar first.
+    source, target : dict
+        For each side ``program``, one of those in ``orientation_figures.conventions``; ``form``; ``sequence``;
+        and for another program ``matrix``, ``scalar`` and ``unit``.
+
+    Examples
+    --------
+    >>> from orientation_figures.moving import ConverterFigure
+    >>> figure = ConverterFigure(source={'program': 'SciPy', 'form': 'quaternion'})
+    >>> figure.source['sequence']
+    'zyx'
+    """
+
+    kind = "converter"
+    sheet = (-180, -172, 180, 172)
+    room = (800, 1210)
+    quaternion = Numbers(AT_FIRST, (4,), 1.0).tag(sync=True, state=True)
+    source = Side(FIRST | {"program": "SciPy"}).tag(sync=True, state=True)
+    target = Side(FIRST | {"program": "this book", "form": "body fixed angles", "sequence": "zxy"}).tag(
+        sync=True, state=True
+    )
+    programs = traitlets.Dict(PROGRAMS, read_only=True).tag(sync=True, told=True)
+
+    @property
+    def dcm(self):
+        r""":math:`{}^A\mathbf{C}^N`, shape ``(3, 3)``."""
+        return dcm_from_quaternion(self.quaternion)

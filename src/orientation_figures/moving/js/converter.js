@@ -1,0 +1,224 @@
+import { AXES, IDENTITY, SEQUENCES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm, dcmFromAxisAngle, dcmFromBodyFixed,
+  dcmFromQuaternion, dcmFromSpaceFixed, gimbalLockMargin, length, nearestDcm, quaternionFromDcm, reversed, scale,
+  spaceFixedFromDcm, transpose, unit } from './mathematics.js';
+import { Sheet, button, change, choice, degrees, element, fixed, follow, group, hats, liveText, numberTable, onceAFrame,
+  open, put, radians, readout, stage, write } from './shared.js';
+
+const REACH = 1.25, SIZE = 112;   // as in stills/converter.py
+const [N, A] = ['n', 'a'].map(hats);
+const OTHER = 'another program', ANGLES = ['body fixed angles', 'space fixed angles'];
+const FORMS = { matrix: 9, quaternion: 4, [ANGLES[0]]: 3, [ANGLES[1]]: 3, 'axis times angle': 3 };
+// Numbers copied with two or three digits are put right, and the reader is told; more is another mistake.
+const ROUNDED = 0.02, EXACT = 1e-6;
+const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi;
+const MINUS = /[\u2212\u2013]/g;
+
+// ---- what a side means ---------------------------------------------------------------------------------
+
+// The side with the convention of its program in place of what the reader might have chosen.
+export function settled(side, programs) {
+  const facts = programs[side.program];
+  if (!facts) return side;
+  const sequences = sequencesOf(side, programs);
+  return { ...side, matrix: side.form === 'matrix' ? facts.matrix : 'as here', scalar: facts.scalar || 'first', unit: facts.unit,
+    sequence: sequences.includes(side.sequence) ? side.sequence : sequences[0] };
+}
+
+export const formsOf = (program, programs) => (programs[program] ? Object.keys(programs[program].lines) : Object.keys(FORMS));
+
+export const sequencesOf = (side, programs) => programs[side.program]?.sequences?.[side.form] ?? SEQUENCES;
+
+// The orientation that the numbers in a text describe, and what was put right; a text that means none is an error.
+export function read(side, text) {
+  const numbers = (text.replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
+  if (numbers.length !== wanted) throw new Error(`${numbers.length} numbers are there, and ${wanted} were expected for ${side.form}.`);
+  let dcm = null, said = '';
+  if (side.form === 'matrix') {
+    dcm = [0, 3, 6].map((k) => numbers.slice(k, k + 3));
+    const fault = checkDcm(dcm), near = fault ? nearestDcm(dcm) : null;
+    if (near && !(near.dcm && near.distance < ROUNDED)) throw new Error(`${fault}.`);
+    if (near && near.distance > EXACT) said = `The matrix was rounded: the nearest valid one, ${near.distance.toFixed(4)} away, is taken.`;
+    dcm = near ? near.dcm : dcm;
+  } else if (side.form === 'quaternion') {
+    const parts = side.scalar === 'last' ? [numbers[3], ...numbers.slice(0, 3)] : numbers, long = length(parts);
+    if (Math.abs(long - 1) > ROUNDED) throw new Error(`The quaternion has length ${long.toFixed(4)}, not 1.`);
+    if (Math.abs(long - 1) > EXACT) said = `The length was ${long.toFixed(4)}, and is made 1.`;
+    dcm = dcmFromQuaternion(unit(parts));
+  } else {
+    const values = side.unit === 'degrees' ? numbers.map(radians) : numbers;
+    if (side.unit === 'radians' && ANGLES.includes(side.form) && values.some((value) => Math.abs(value) > 2 * Math.PI)) {
+      said = 'An angle is more than a whole turn: are these degrees?';
+    }
+    if (side.form === 'axis times angle') dcm = length(values) ? dcmFromAxisAngle(unit(values), length(values)) : IDENTITY;
+    else dcm = (side.form === ANGLES[0] ? dcmFromBodyFixed : dcmFromSpaceFixed)(values, side.sequence);
+  }
+  return { dcm: side.matrix === 'transposed' ? transpose(dcm) : dcm, said };
+}
+
+// The numbers of an orientation, in a flat list, as the side means them.
+export function told(side, orientation) {
+  const dcm = side.matrix === 'transposed' ? transpose(orientation) : orientation;
+  if (side.form === 'matrix') return dcm.flat();
+  if (side.form === 'quaternion') {
+    const [scalar, ...vector] = quaternionFromDcm(dcm);
+    return side.scalar === 'last' ? [...vector, scalar] : [scalar, ...vector];
+  }
+  let values;
+  if (side.form === 'axis times angle') {
+    const { axis, angle } = axisAngleFromDcm(dcm);
+    values = scale(angle, axis);
+  } else values = (side.form === ANGLES[0] ? bodyFixedFromDcm : spaceFixedFromDcm)(dcm, side.sequence);
+  return side.unit === 'degrees' ? values.map(degrees) : values;
+}
+
+// Twelve digits after the point: with nine, a program that looks at the length of a quaternion would refuse it.
+const short = (value) => String(Number(value.toFixed(12)) + 0);
+
+// The line of code that makes this orientation in the program of a side; none for another program.
+export function line(side, numbers, programs) {
+  const template = programs[side.program]?.lines[side.form];
+  if (!template) return '';
+  const texts = numbers.map(short), letters = [...side.sequence], values = { s: side.sequence, S: side.sequence.toUpperCase() };
+  if (side.form === 'matrix') values.m = `[${[0, 3, 6].map((k) => `[${texts.slice(k, k + 3).join(', ')}]`).join(', ')}]`;
+  if (side.form === 'quaternion') (side.scalar === 'last' ? 'xyzw' : 'wxyz').split('').forEach((name, k) => { values[name] = texts[k]; });
+  if (side.form === 'axis times angle') AXES.forEach((name, k) => { values[name] = texts[k]; });
+  if (ANGLES.includes(side.form)) {
+    letters.forEach((letter, k) => Object.assign(values, { ['abc'[k]]: texts[k], ['ABC'[k]]: letter.toUpperCase(),
+      ['ijk'[k]]: String(AXES.indexOf(letter)), [`a${letter}`]: texts[k] }));
+  }
+  return template.replace(/\{(\w+)\}/g, (_, name) => values[name]);
+}
+
+// The numbers as they are shown: a matrix in three rows.
+export const shown = (numbers) => (numbers.length === 9 ? [0, 3, 6].map((k) => numbers.slice(k, k + 3)) : [numbers])
+  .map((row) => row.map(short).join(', ')).join('\n');
+
+// ---- the figure ----------------------------------------------------------------------------------------
+
+export function render({ model, el }) {
+  const programs = model.get('programs');
+  let fault = '', said = '', text = '';
+  const side = (name) => settled(model.get(name), programs);
+  const sheet = new Sheet({ bounds: [-180, -172, 180, 172], size: SIZE, changed: () => redraw(),
+    name: 'Triads of the frames N and A: the orientation that is converted.' });
+  const redraw = onceAFrame(draw);
+  const words = liveText();
+  const field = element('textarea', { rows: 3, spellcheck: 'false', 'aria-label': 'Numbers to convert',
+    input: () => take(field.value) });
+  const result = element('output', { class: 'result', 'aria-label': 'Converted numbers' });
+  const code = element('output', { class: 'result', 'aria-label': 'Line of code' });
+  const copy = button('Copy the line', async () => {
+    await navigator.clipboard.writeText(`${code.textContent}\n`);
+    words.say('The line is copied.');
+  });
+  const swap = button('Exchange the two sides', () => {
+    const [from, to] = [model.get('source'), model.get('target')];
+    change(model, { source: to, target: from });
+    refill();
+  });
+
+  // A change of the source says anew what the text means; a change of the target only how it is written.
+  function pick(name, values) {
+    const chosen = { ...model.get(name), ...values };
+    if (!formsOf(chosen.program, programs).includes(chosen.form)) chosen.form = formsOf(chosen.program, programs)[0];
+    const before = model.get(name);
+    change(model, { [name]: settled(chosen, programs) });
+    if (name !== 'source') return;
+    // Another form, sequence or unit would make nonsense of the text: it is written anew. Another reading of the
+    // same numbers is the question that the reader asks.
+    if (FORMS[chosen.form] !== FORMS[before.form]) refill(); else take(text);
+  }
+
+  function refill() {
+    text = shown(told(side('source'), dcmFromQuaternion(model.get('quaternion'))));
+    field.value = text;
+    take(text);
+  }
+
+  function take(typed) {
+    text = typed;
+    try {
+      const found = read(side('source'), typed);
+      fault = '';
+      said = found.said;
+      change(model, { quaternion: quaternionFromDcm(found.dcm) });
+    } catch (error) {
+      fault = error.message;
+    }
+    put(field, 'aria-invalid', String(Boolean(fault)));
+    redraw();
+  }
+
+  const panel = (name, heading) => {
+    const lists = {
+      program: choice({ name: `${heading}: program`, options: [...Object.keys(programs), OTHER], hidden: true, change: (value) => pick(name, { program: value }) }),
+      form: choice({ name: `${heading}: form`, options: Object.keys(FORMS), hidden: true, change: (value) => pick(name, { form: value }) }),
+      sequence: choice({ name: `${heading}: sequence`, options: SEQUENCES.map((one) => [one, [...one].join('-')]), hidden: true, change: (value) => pick(name, { sequence: value }) }),
+      matrix: choice({ name: `${heading}: way round`, options: [['as here', 'as here (passive)'], ['transposed', 'transposed (active)']], hidden: true, change: (value) => pick(name, { matrix: value }) }),
+      scalar: choice({ name: `${heading}: scalar`, options: [['first', 'scalar first'], ['last', 'scalar last']], hidden: true, change: (value) => pick(name, { scalar: value }) }),
+      unit: choice({ name: `${heading}: unit`, options: ['radians', 'degrees'], hidden: true, change: (value) => pick(name, { unit: value }) }),
+    };
+    const box = element('div', { class: 'row-of-controls' }, ...Object.values(lists).map((list) => list.element));
+    return { box, show() {
+      const now = side(name), known = Boolean(programs[now.program]), forms = formsOf(now.program, programs);
+      const needed = { matrix: now.form === 'matrix' || !known, scalar: now.form === 'quaternion',
+        unit: !['matrix', 'quaternion'].includes(now.form), sequence: ANGLES.includes(now.form) };
+      for (const [key, list] of Object.entries(lists)) {
+        list.show(now[key]);
+        const select = list.element.querySelector('select');
+        // What the program decides cannot be chosen; what it does not take is not offered.
+        if (key === 'form') for (const option of select.options) option.hidden = option.disabled = !forms.includes(option.value);
+        if (key === 'sequence') for (const option of select.options) option.hidden = option.disabled = !sequencesOf(now, programs).includes(option.value);
+        if (key in needed) {
+          list.element.hidden = !needed[key];
+          select.disabled = known && key !== 'sequence';
+        }
+      }
+    } };
+  };
+  const panels = [panel('source', 'From'), panel('target', 'To')];
+  const matrix = numberTable({ name: 'Direction cosine matrix of A with respect to N', kind: 'bracket', rows: A, columns: N,
+    names: AXES.map((i) => AXES.map((j) => `a ${i} dot n ${j}`)), light: () => {} });
+  const quaternion = numberTable({ name: 'Quaternion, scalar first', columns: ['$q_0$', '$q_i$', '$q_j$', '$q_k$'],
+    names: [['q 0', 'q i', 'q j', 'q k']], light: () => {} });
+  open(el, stage(sheet, words),
+    element('div', { class: 'readouts' }, readout(['In this book: direction cosine matrix ${}^A\\mathbf{C}^N$'], matrix.element),
+      readout(['Quaternion'], quaternion.element), swap),
+    element('div', { class: 'controls converter' },
+      group('From', 'side', element('div', { class: 'title' }, 'From'), panels[0].box, field),
+      group('To', 'side', element('div', { class: 'title' }, 'To'), panels[1].box, result)),
+    group('Line of code', 'controls line', element('div', { class: 'title' }, 'Line of code'), code, copy));
+
+  function draw() {
+    const dcm = dcmFromQuaternion(model.get('quaternion')), to = side('target'), numbers = told(to, dcm);
+    for (const one of panels) one.show();
+    matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
+    quaternion.show([quaternionFromDcm(dcm).map((entry) => fixed(entry))]);
+    write(result, fault ? '\u2013' : shown(numbers));
+    const programmed = fault ? '' : line(to, numbers, programs);
+    write(code, programmed || '\u2013');
+    copy.disabled = !programmed;
+    sheet.draw(() => {
+      sheet.triad('N', IDENTITY, { reach: REACH });
+      sheet.triad('A', dcm);
+    });
+    words.say(fault || [said, note(to, numbers, programs)].filter(Boolean).join(' '));
+  }
+
+  draw();
+  refill();
+  const unfollow = follow(model, ['quaternion', 'source', 'target'], redraw);
+  return unfollow;
+}
+
+// What is to be known about the numbers that come out.
+function note(to, numbers, programs) {
+  const angles = to.unit === 'degrees' ? numbers.map(radians) : numbers;
+  if (to.form === ANGLES[0] && gimbalLockMargin(angles, to.sequence) < 1e-6
+    || to.form === ANGLES[1] && gimbalLockMargin(reversed(angles), reversed(to.sequence).join('')) < 1e-6) {
+    return 'This is gimbal lock: the first angle and the last could share their turn in any other way.';
+  }
+  const version = programs[to.program]?.version;
+  const means = { matrix: `the matrix is ${to.matrix}`, quaternion: `the scalar stands ${to.scalar}` }[to.form] ?? `the numbers are in ${to.unit}`;
+  return `For ${to.program}${version ? ` (tried: ${version})` : ''} ${means}.`;
+}
