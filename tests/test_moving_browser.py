@@ -185,8 +185,8 @@ def test_keys_alone(open_figure, kind):
         pytest.fail("the focus is caught in the figure")
     # One stop for each group of radio buttons, and for each table of numbers.
     controls = page.eval_on_selector_all(
-        ".live :is(input:not([type=radio]:not(:checked)), select:not(:disabled), [role=application], button:not([tabindex='-1'], "
-        ":disabled), textarea)",
+        ".live :is(input:not([type=radio]:not(:checked)), select:not(:disabled), textarea, "
+        "[role=application], button:not([tabindex='-1'], :disabled))",
         "all => all.filter(one => one.checkVisibility({ visibilityProperty: true })).length",
     )
     assert len(stops) == controls and "svg" in {tag.lower() for tag in tags}
