@@ -13,6 +13,7 @@ import sys
 import weakref
 import zipfile
 from html.parser import HTMLParser
+from pathlib import Path
 
 import nbformat
 import pytest
@@ -20,7 +21,7 @@ from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
 
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
-from coursework.grading import gradebooks, pages, sample_class
+from coursework.grading import gradebooks, pages, sample_class, term
 from coursework.grading.grade import NothingToGrade, grade, regrade, run_here
 from coursework.grading.ledger import Ledger
 from coursework.grading.reports import write_all
@@ -998,3 +999,26 @@ def test_what_is_missing_is_said(course, tmp_path):
         )
     with pytest.raises(SystemExit, match="no records"):
         main(["regrade", str(tmp_path / "empty"), "--solutions", str(course / "solutions")])
+
+
+@pytest.mark.long
+def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
+    said = io.StringIO()
+    notebooks = ["simple-orientations", "unit-quaternions"]
+    submissions = sample_class.make_class(tmp_path / "class", 200, 1, notebooks)
+    grade(submissions, tmp_path / "out", assignments={"homework": notebooks}, show=said)
+    manual = (Path(__file__).parents[1] / "appendix" / "instructors.md").read_text("utf8")
+    report = (tmp_path / "out" / "report.html").read_text("utf8")
+    for line in said.getvalue().splitlines():
+        if line.startswith(("196 to grade", "Isolation:", "homework:")):
+            assert line.partition("(")[0] in manual
+    (figure,) = re.findall(r'aria-label="(Number of students by points[^"]*)"', report)
+    assert figure in manual
+    (about,) = re.findall(r"<p>(\d+ students)\. The (mean is .*?)\.</p>", report)
+    assert "; the ".join(about) in manual
+    rows = re.findall(r"^\| (\d+) % \| .*\((\d+) of (\d+)\) \|$", manual, re.M)
+    found = re.findall(r"<strong>(\d+) %</strong>.*?\((\d+) of (\d+)\)</span>", report, re.S)
+    assert len(rows) == 4 and rows == found[:4]
+    rules = tmp_path / "term.toml"
+    rules.write_text(re.search(r"```toml\n(.*?)```", manual, re.S)[1].replace('times = "worksheet.csv"\n', ""))
+    assert list(term.read_rules(rules).assignments) == notebooks

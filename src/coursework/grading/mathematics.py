@@ -77,6 +77,11 @@ def _name(name):
     return f"{shown}_{{{index}}}" if index else shown
 
 
+def _in_brackets(text):
+    """Brackets that grow with what is in them, where it is high: in a table others would grow with its line."""
+    return rf"\left({text}\right)" if r"\frac" in text or "^" in text else f"({text})"
+
+
 class _Writer:
     def __init__(self, nodes):
         self.nodes = nodes
@@ -93,7 +98,7 @@ class _Writer:
             return self.node(child, binding, depth + 1)
 
         def bracketed(text, binding):
-            return rf"\left({text}\right)" if around > binding else text
+            return _in_brackets(text) if around > binding else text
 
         if operation == "symbol":
             dots = len(rest[0]) - len(rest[0].rstrip("'"))
@@ -128,7 +133,7 @@ class _Writer:
         if operation == "Abs":
             return rf"\left|{inner(rest[0])}\right|"
         if operation in FUNCTIONS and rest:
-            return rf"{FUNCTIONS[operation]}\left({', '.join(map(inner, rest))}\right)"
+            return FUNCTIONS[operation] + _in_brackets(", ".join(map(inner, rest)))
         raise NoMathematics
 
     def product(self, factors, around, depth):
@@ -145,4 +150,4 @@ class _Writer:
         text = sign + (rf"\frac{{{top}}}{{{' , '.join(below)}}}" if below else top)
         if len(below) > 1:
             raise NoMathematics
-        return rf"\left({text}\right)" if around > (1 if sign else 2) else text
+        return _in_brackets(text) if around > (1 if sign else 2) else text

@@ -326,7 +326,10 @@ class _Answer(_Page):
             filters=filters,
             mark=cluster.mark,
             judged=judged,
-            deed=deed({**cluster.mark, **judged}) if judged["outcome"] == "wrong" and judged["note"] else "",
+            # What an author says stands below, word for word.
+            deed=deed({**cluster.mark, **judged})
+            if judged["outcome"] == "wrong" and judged["note"] not in ("", "authored")
+            else "",
             record=record,
             cells=cells,
             near=near,
