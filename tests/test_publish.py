@@ -64,7 +64,7 @@ def test_title_is_said_once():
 @pytest.mark.long
 def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
     monkeypatch.setenv("BOOK_ADDRESS", "https://example.org/books/tiny")
-    monkeypatch.setenv("BOOK_REPOSITORY", "https://example.org/tiny-book")
+    monkeypatch.setenv("BOOK_REPOSITORY", "https://github.com/example/tiny-book")
     (tmp_path / "CITATION.cff").write_text("version: 3.0\ndate-released: 2026-11-22\ndoi: 10.5281/zenodo.1\n")
     code, words = build(tmp_path, {"chapter": chapter()})
     assert code == 0, words
@@ -79,4 +79,4 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
     (report,) = re.findall(r'class="report-mistake" href="([^"]*)"', text)
     asked = parse_qs(urlsplit(unescape(report)).query)
     assert "(chapter)" in asked["body"][0] and "Edition: 3.0" in asked["body"][0]
-    assert 'href="https://example.org/tiny-book/edit/main/chapter.ipynb"' in text
+    assert 'href="https://github.com/example/tiny-book/edit/main/chapter.ipynb"' in text
