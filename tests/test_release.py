@@ -3,6 +3,7 @@
 import base64
 import json
 import os
+import random
 import re
 import shlex
 import shutil
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from conftest import SEED
 
 from coursework.authoring import release
 from coursework.authoring.author import AuthorError
@@ -176,7 +178,9 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     write_to = tmp_path / "sources", tmp_path / "exercises", tmp_path / "sealed"
     write_to[0].mkdir()
     shutil.copy(COURSE.sources / f"{name}.ipynb", write_to[0])
-    release.release(made_in(tmp_path))
+    one = random.Random(f"{SEED} {name}").randrange(1, 8)
+    release.release(made_in(tmp_path), variants=[one])
+    variants = [folder / "variants" / f"{name}-{one}.json" for folder in (write_to[2], COURSE.sealed)]
     message = (
         "Run `make release` and commit exercises/ and src/orientation_course/sealed/: they are not what this makes."
     )
@@ -184,6 +188,8 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     for folder, file in zip(write_to[1:], made, strict=True):
         if name != release.CHAPTERS or file.suffix == ".json":
             assert (folder / file.name).read_bytes() == file.read_bytes(), message
+    made, committed = (path.read_bytes() if path.is_file() else None for path in variants)
+    assert made == committed, message
 
 
 @needs_solutions

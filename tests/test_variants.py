@@ -2,18 +2,21 @@
 
 import collections
 import json
+import random
 import shutil
 import zipfile
 
 import nbformat
 import pytest
 import sympy
-from test_release import made_in, write_source
+from conftest import SEED
+from test_release import COURSE, made_in, needs_solutions, write_source
 
 import coursework
 from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive
 from coursework.authoring.release import release
+from coursework.authoring.selftest import try_question
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import questions, variants
@@ -112,6 +115,46 @@ def test_variants_are_different_fair_and_of_the_students_own(course):
     assert 60 < sum(same) < 200  # one in 16: what one question gives tells nothing of the next
     drawn = [json.dumps(Rule("a/b", 12, {"x": range(3), "y": range(4)}).parameters(number)) for number in range(12)]
     assert len(set(drawn)) == 12 and drawn[0] == '{"x": 0, "y": 0}'
+
+
+def of_the_book():
+    """The questions of the book that have variants, by name."""
+    return {
+        name: about
+        for path in sorted(COURSE.sealed.glob("*.json"))
+        for name, about in json.loads(path.read_text("utf8"))["questions"].items()
+        if "variants" in about
+    }
+
+
+def test_the_book_has_variants_that_stay_small():
+    assert len(of_the_book()) >= 24
+    files = list(COURSE.sealed.rglob("*.json"))
+    assert sum(path.stat().st_size for path in files) < 1_500_000
+    for path in (COURSE.sealed / "variants").glob("*.json"):
+        assert path.stat().st_size < 20_000, path  # all that a student's own variant needs beside the first
+        first = json.loads((COURSE.sealed / f"{path.stem.rpartition('-')[0]}.json").read_text("utf8"))["questions"]
+        for name, about in json.loads(path.read_text("utf8"))["questions"].items():
+            assert about["salt"] != first[name]["salt"] and "kind" not in about and "text" not in about
+
+
+@needs_solutions
+def test_a_variant_of_the_book_is_opened_by_its_own_answer_and_by_no_other():
+    chance = random.Random(SEED)
+    name = chance.choice(sorted(of_the_book()))
+    count = of_the_book()[name]["variants"]
+    path = COURSE.sources / f"{name.partition('/')[0]}.ipynb"
+    numbers = [0, *chance.sample(range(1, count), 2)]
+    asked = {number: read_source(path, number).questions[name] for number in numbers}
+    for number, question in asked.items():
+        assert try_question(question, budget=0).faults == [], (name, number)
+        student = next(f"s{k}" for k in range(999) if variants.variant_of(f"s{k}", name, count) == number)
+        coursework.me(student)
+        assert "{{" not in repr(coursework.variant(name))
+        for other, theirs in asked.items():
+            outcome = questions.judge(name, questions.find_question(name), theirs.plain)[0].outcome
+            assert (outcome == "correct") == (number == other), (name, number, other)
+    coursework.me("")
 
 
 def test_the_grader_finds_the_same_variant_from_the_roster():

@@ -181,7 +181,7 @@ def _run_one(path, sealed):
     nbformat.write(notebook, path)
 
 
-def release(course, only=(), run=True):
+def release(course, only=(), run=True, variants=None):
     """Make the exercise notebooks and the sealed questions.
 
     Parameters
@@ -191,6 +191,8 @@ def release(course, only=(), run=True):
         Names of the notebooks to make; all of them if there is none.
     run : bool
         Whether to run the exercise notebooks, so that they show what an untouched notebook shows.
+    variants : collection of int, optional
+        Which variants to make; all of them if nothing is said.
 
     Returns
     -------
@@ -215,9 +217,14 @@ def release(course, only=(), run=True):
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
         names = [name for name, _ in made]
-        variants = [(path, number) for path, (_, count) in zip(paths, made, strict=True) for number in range(1, count)]
-        if variants:
-            list(pool.map(_release_variant, *zip(*variants, strict=True), [course] * len(variants)))
+        wanted = [
+            (path, number)
+            for path, (_, count) in zip(paths, made, strict=True)
+            for number in range(1, count)
+            if variants is None or number in variants
+        ]
+        if wanted:
+            list(pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted)))
         for name, count in made:
             for path in (course.sealed / "variants").glob(f"{name}-*.json"):
                 if (

@@ -21,7 +21,7 @@ from ..checking.kinds import Fault, Undecidable
 from ..checking.mistakes import GENERAL, message
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
-from ..checking.questions import judge, notebook_questions
+from ..checking.questions import in_variant, judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from ..checking.variants import shown
 from .attack import BUDGET, Found, attack
@@ -88,8 +88,8 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     words = kinds()[question.public["kind"]].text or question.public["kind"] == "function"
     if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
         faults.append(f"The right answer was tried in {len(forms)} forms only.")
-    notebook, variant = question.name.partition("/")[0], question.public.get("variant", 0)
-    sealed = notebook_questions(notebook, variant).get(question.name) if against_sealed else None
+    there = against_sealed and question.name in notebook_questions(question.name.partition("/")[0])
+    sealed = in_variant(question.name, question.public.get("variant", 0)) if there else None
     if sealed and judge(question.name, sealed, question.plain)[0].outcome != "correct":
         faults.append("The right answer does not open what is sealed: make the release anew.")
     named, unmoved = _try_mistakes(question, faults)
@@ -231,7 +231,7 @@ def released_texts(exercises, sealed, archive):
     files = {
         str(path): path.read_bytes()
         for folder, pattern in ((exercises, "*.ipynb"), (sealed, "*.json"))
-        for path in sorted(Path(folder).glob(pattern))
+        for path in sorted(Path(folder).rglob(pattern))
     }
     if Path(archive).exists():
         files[str(archive)] = Path(archive).read_bytes()

@@ -75,8 +75,7 @@ def find_question(name):
     notebook, _, _ = name.partition("/")
     questions = notebook_questions(notebook)
     if name in questions:
-        number = own_variant(name, questions[name])
-        return completed(notebook_questions(notebook, number)[name], questions[name]) if number else questions[name]
+        return in_variant(name, own_variant(name, questions[name]))
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(
@@ -98,10 +97,13 @@ def beside(question, first):
     return {name: question.get(name) for name in {**question, **first} if question.get(name) != first.get(name)}
 
 
-def completed(variant, first):
-    """The whole of a variant, of which :func:`beside` kept what differs from the first one."""
-    whole = {**first, **variant}
-    return {name: about for name, about in whole.items() if about is not None}
+def in_variant(name, number):
+    """A sealed question in a variant: the first one, with what :func:`beside` kept of the variant."""
+    notebook, _, _ = name.partition("/")
+    whole = dict(notebook_questions(notebook)[name])
+    if number:
+        whole |= notebook_questions(notebook, number)[name]
+    return {part: about for part, about in whole.items() if about is not None}
 
 
 def judge(name, question, plain):
