@@ -93,6 +93,33 @@ function html(text) {
   return box;
 }
 
+// The text of a question that has variants: paragraphs, lists, and in them code, stress and formulas.
+function markdown(text) {
+  const box = element("div", "output text_markdown");
+  for (const part of text.split(/\n{2,}/)) {
+    const display = part.trim().match(/^\$\$([\s\S]*)\$\$$/);
+    const items = part.split(/\n(?=\d+\. |- )/);
+    if (display) box.append(formula(display[1]));
+    else if (/^(\d+\. |- )/.test(part)) {
+      const list = element(part.startsWith("-") ? "ul" : "ol");
+      list.append(...items.map((item) => withStress(element("li"), item.replace(/^(\d+\.|-) /, ""))));
+      box.append(list);
+    } else box.append(withStress(element("p"), part));
+  }
+  setFormulas(box);
+  return box;
+}
+
+function withStress(block, text) {
+  for (const piece of text.split(/(`[^`]+`|\$[^$]+\$|\*\*[^*]+\*\*|\*[^*\s][^*]*\*)/)) {
+    if (/^`.+`$/.test(piece)) block.append(element("code", "", piece.slice(1, -1)));
+    else if (/^\*\*.+\*\*$/s.test(piece)) block.append(element("strong", "", piece.slice(2, -2)));
+    else if (/^\*.+\*$/s.test(piece)) block.append(element("em", "", piece.slice(1, -1)));
+    else block.append(piece);
+  }
+  return block;
+}
+
 // One value in the best of its forms, and in a few words for those who hear the page.
 export function shown(data, name) {
   const form = ORDER.find((known) => known in data);
@@ -101,6 +128,7 @@ export function shown(data, name) {
     return [box, box.querySelector("figure, svg, img") ? "a figure" : data["text/plain"] ?? box.textContent.trim()];
   }
   if (form === "text/latex") return [formula(data[form]), data["text/plain"]?.includes("\n") ? "a formula" : data["text/plain"] ?? "a formula"];
+  if (form === "text/markdown") return [markdown(data[form]), data["text/plain"] ?? data[form]];
   if (form?.startsWith("image/")) return [picture(form, data[form], name), "a picture"];
   const text = data[form] ?? "a value without a form that can be shown";
   return [preformatted("text_plain", text), text];
