@@ -20,8 +20,11 @@ def main():
     start = time.monotonic()
     print("Building the book ...", flush=True)
     jupyter_book = Path(sys.executable).with_name("jupyter-book")
+    # What was fetched for browsers is byte-compiled while the pages are read one by one.
+    ahead = subprocess.Popen([sys.executable, "-c", "from website import lite; lite.compile_ahead()"])
     command = [jupyter_book, "build", ".", "-q", "-W", "-n", "--keep-going"]
     code = subprocess.run(command).returncode
+    ahead.wait()
     if code == 0 and (missing := missing_pages()):
         print("These pages did not come out:", ", ".join(missing), file=sys.stderr)
         code = 1

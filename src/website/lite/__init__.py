@@ -46,12 +46,22 @@ NUMERICAL = (
 PLACES = {"official": "`cdn.jsdelivr.net`, where Pyodide's makers serve them", "folder": "the place of these pages"}
 
 
+def wheels_of_kernel():
+    kernel = [wheel for name in KERNEL for wheel in KERNEL_WHEELS.glob(f"{name}-*.whl")]
+    return [*sorted(FETCHED.glob("*.whl")), *kernel]
+
+
+def compile_ahead():
+    """Byte-compile what was fetched for browsers, the dearest part first; whoever needs it then finds it."""
+    for wheels in (sorted(runtime.FETCHED.glob("*.whl")), wheels_of_kernel()):
+        runtime.compile_wheels(wheels)
+
+
 def write_lock(site):
     """Put the wheels of the kernel beside the others, and list all of them; return the names of what to load."""
     target = site / runtime.FOLDER
     lock = json.loads((target / runtime.LOCK).read_text("utf8"))
-    kernel = [wheel for name in KERNEL for wheel in KERNEL_WHEELS.glob(f"{name}-*.whl")]
-    added = runtime.own_packages(runtime.compile_wheels([*sorted(FETCHED.glob("*.whl")), *kernel]), target)
+    added = runtime.own_packages(runtime.compile_wheels(wheels_of_kernel()), target)
     packages = lock["packages"] | added
     (target / LOCK).write_text(json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8")
     return sorted({*added, *runtime.with_dependencies([runtime.DISTRIBUTION], packages)})

@@ -4,11 +4,13 @@ Whatever is fetched is fetched by `make setup`, pinned and hash-checked; here it
 put in place. A wheel is compiled once: the result is kept under its contents' hash.
 """
 
+import fcntl
 import hashlib
 import json
 import shutil
 import subprocess
 import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
 from sphinx.errors import ConfigError
@@ -72,6 +74,16 @@ def with_dependencies(names, packages):
     return sorted(found)
 
 
+@contextmanager
+def one_at_a_time():
+    """Whoever comes second waits, and finds what the first has made."""
+    COMPILED.mkdir(parents=True, exist_ok=True)
+    with open(COMPILED / "lock", "w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@one_at_a_time()
 def compile_wheels(wheels):
     """Return the compiled form of each of ``wheels``, made now or kept from before."""
     program = b"".join(path.read_bytes() for path in COMPILER)
