@@ -35,7 +35,7 @@ FORGOTTEN = {
         "chapters/gimbal-lock.ipynb",
         ":class: objectives",
         "",
-        r"chapters/gimbal-lock.ipynb:1 \(cell \d+\): no objectives",
+        r"chapters/gimbal-lock.ipynb:1 \(cell 1\): no objectives",
     ),
     "summary": (
         "chapters/gimbal-lock.ipynb",
@@ -43,7 +43,7 @@ FORGOTTEN = {
         "",
         r"chapters/gimbal-lock.ipynb:\d+ \(cell \d+\): no summary",
     ),
-    "label": ("chapters/gimbal-lock.ipynb", "(chapter-gimbal-lock)=", "(gimbal)=", r"gimbal-lock.ipynb:1 \(cell \d+\)"),
+    "label": ("chapters/gimbal-lock.ipynb", "(chapter-gimbal-lock)=", "(gimbal)=", r"gimbal-lock.ipynb:1 \(cell 1\)"),
     "solution": (
         "appendix/solutions.ipynb",
         "{solution-start} exercise-scalar-last",
