@@ -12,7 +12,7 @@ KEPT = "() => JSON.parse(Object.entries(localStorage).find(([key]) => key.starts
 
 SHOWN = """() => [...document.querySelectorAll("article section > :not(section)")].flatMap(
   (block, place) => block.checkVisibility() ? [place] : [])"""
-pytestmark = pytest.mark.sampled(6)
+pytestmark = pytest.mark.sampled(4)
 
 
 @pytest.fixture

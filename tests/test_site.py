@@ -108,7 +108,7 @@ def test_there_are_pages():
     assert "index.html" in PAGES and any(name.startswith("chapters/") for name in PAGES)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", PAGES)
 def test_page_in_light_and_wide(browser, site, name):
     with Visit(browser, site, name, "light", WIDE) as visit:
@@ -129,7 +129,7 @@ def test_page_in_light_and_wide(browser, site, name):
         assert visit.faults == []
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", PAGES)
 def test_page_in_dark_and_narrow(browser, site, name):
     with Visit(browser, site, name, "dark", NARROW) as visit:
