@@ -10,6 +10,9 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_outp
 from website import execution, used
 from website.live import cells
 
+# jupyter-cache leaves its database open, which Python tells since 3.13.
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+
 PACKAGE = {
     "orientation/__init__.py": "from .a import f\n",
     "orientation/a.py": "def f():\n    from . import late\n",

@@ -138,7 +138,12 @@ def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
 def _explain(entries, where, name="dcm"):
     rows = {"x": entries[0:3], "y": entries[3:6], "z": entries[6:9]}
     names = list(rows)
-    products = {(p, q): sum(a * b for a, b in zip(rows[p], rows[q])) for k, p in enumerate(names) for q in names[k:]}
+    # Added in this order by every Python and in the page: sum() rounds otherwise since 3.12.
+    products = {
+        (p, q): rows[p][0] * rows[q][0] + rows[p][1] * rows[q][1] + rows[p][2] * rows[q][2]
+        for k, p in enumerate(names)
+        for q in names[k:]
+    }
     faults = {pair: value - (pair[0] == pair[1]) for pair, value in products.items()}
     (p, q), worst = max(faults.items(), key=lambda item: abs(item[1]))
     (a, b, c), (d, e, g), (h, k, m) = rows.values()
