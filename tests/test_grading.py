@@ -845,30 +845,116 @@ def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, mess
     assert message in str(error.value)
 
 
-@pytest.mark.parametrize("layout, beginning", [("canvas", "student001_100001_900001_"),
-                                               ("moodle", "Student 001_100001_assignsubmission_file_/"),
-                                               ("brightspace", "100001-4711 - Student 001 - ")])  # fmt: skip
-def test_feedback_is_named_as_the_system_named_the_work(course, tmp_path, layout, beginning):
-    """From a download to feedback that is ready for upload, with the records of a class that was graded."""
-    sample_class.LAYOUTS[layout](tmp_path, {"student-001": b"", "student-002": b""}, "turns")
-    with zipfile.ZipFile(tmp_path / "submissions.zip") as archive:
-        names = [name for name in archive.namelist() if name.endswith(".ipynb")]
-    store = Store(tmp_path / "out")
-    for name, student in zip(names, ("right", "mistaken"), strict=True):
-        found = record(course, student)
-        found["notebooks"][0]["file"] = name
-        store.save(found)
-        shutil.copytree(course / "out" / "feedback" / student, tmp_path / "out" / "feedback" / student)
+# ---- from a system's download to what it takes back
+
+#: The notebook's name as a student may have chosen it, which each system keeps at the end of its own name for it.
+CHOSEN = ("turns.ipynb", "my_2_turns_linked.ipynb", "work.zip")
+
+
+def packed(data):
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("homework/turns.ipynb", data)
+    return file.getvalue()
+
+
+def download(system, students):
+    """What a system hands out: the archive's files by name, and the gradebook."""
+    files, lines = {}, []
+    for number, (student, data) in enumerate(students, 101):
+        chosen = CHOSEN[number % 3]
+        data = packed(data) if chosen.endswith("zip") else data
+        name = f"Ann {student.title()}"
+        if system == "canvas":
+            late = "LATE_" if number % 2 else ""
+            files[f"{student}ann_{late}{number}_{number + 5000}_{chosen}"] = data
+            lines.append(f'"{student.title()}, Ann",{number},{student},Section 1,,')
+        elif system == "moodle":
+            files[f"{name}_{number}_assignsubmission_file/{chosen}"] = data
+            lines.append(f'"Participant {number}","{name}",{student}@uni.example,Submitted,,6.00,Yes')
+        else:
+            files[f"{number}-4711 - {name} - Nov 21, 2026 801 PM/{chosen}"] = data
+            lines.append(f"#{student},{name.split()[1]},Ann,,#")
+    header = {
+        "canvas": "Student,ID,SIS Login ID,Section,Homework (17),Final Score\n    Points Possible,,,,6,(read only)",
+        "moodle": 'Identifier,"Full name","Email address",Status,Grade,"Maximum grade","Grade can be changed"',
+        "brightspace": "OrgDefinedId,Last Name,First Name,Homework Points Grade <Numeric MaxPoints:6>,"
+        "End-of-Line Indicator",
+    }[system]
+    return files, "\n".join([header, *lines, ""])
+
+
+def canvas_takes(name, uploads):
+    """Whom Canvas gives a file of an archive to, as its ``infer_comment_context_from_filename`` does."""
+    parts = name.rpartition("/")[2].split("_")
+    numbers = [part for part in parts if re.fullmatch("[0-9]+", part)][:2]
+    if len(numbers) < 2 or parts[-1].startswith("link") or name.startswith("._"):
+        return None
+    return uploads.get(tuple(map(int, numbers)))
+
+
+def moodle_takes(name, participants):
+    """Whom Moodle gives a file of an archive to, as its ``is_valid_filename_for_import`` does."""
+    if name.rpartition("/")[2].startswith((".", "~")):
+        return None
+    for part in name.split("/"):
+        parts = part.split("_", 4)
+        if len(parts) >= 4 and parts[1].isdigit() and int(parts[1]) in participants:
+            return participants[int(parts[1])] if parts[2:4] == ["assignsubmission", "file"] else None
+    return None
+
+
+@pytest.mark.parametrize("system", ["canvas", "moodle", "brightspace"])
+@pytest.mark.parametrize("around", ["", "Homework 1_2/"])
+def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(course, tmp_path, capsys, system, around):
+    solutions = str(course / "solutions")
+    students = {
+        "right": handed_in(),
+        "mistaken": handed_in(sum="sine = -sm.sin(alpha + beta)"),
+        "blank": handed_in(sum="sine = ..."),
+        "nearly": handed_in(sum="sine = sm.sin(alpha + beta)*1.0004"),
+    }
+    files, gradebook = download(system, [(name, nbformat.writes(made).encode()) for name, made in students.items()])
+    with zipfile.ZipFile(tmp_path / "submissions.zip", "w") as archive:
+        for name, data in files.items():
+            archive.writestr(around + name, data)
+    (tmp_path / "gradebook.csv").write_text(gradebook)
+    out, feedback = str(tmp_path / "out"), tmp_path / "feedback.zip"
+    shutil.copytree(course / "out" / "questions", tmp_path / "out" / "questions")
+    main(
+        ["grade", str(tmp_path / "submissions.zip"), "--roster", str(tmp_path / "gradebook.csv"), "--out", out]
+        + ["--solutions", solutions]
+    )
+    (waiting,) = rows_of(tmp_path / "out" / "undecided.csv")
+    Ledger(tmp_path / "out").add(Store(out).read(waiting["student"], "turns"), "turns/sum", 0.5)
+    main(["regrade", out, "--solutions", solutions])
     for _ in range(2):
-        main(["export", str(tmp_path / "out"), "--feedback", str(tmp_path / "feedback.zip")])
-        data = (tmp_path / "feedback.zip").read_bytes()
+        main(["export", out, "--lms", str(tmp_path / "gradebook.csv"), "--feedback", str(feedback)])
+        data = feedback.read_bytes()
+    assert "4 filled in" in capsys.readouterr().out
+    filled = (tmp_path / "gradebook-filled.csv").read_text()
+    points = {"right": "6", "mistaken": "5", "blank": "5", "nearly": "5.5"}
+    for student, earned in points.items():
+        (line,) = (line for line in filled.splitlines() if student in line.lower())
+        assert earned in line.split(","), line
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        assert sorted(archive.namelist()) == sorted(name.replace(".ipynb", "-feedback.html") for name in names)
-        first = next(name for name in archive.namelist() if name.startswith(beginning[:20]))
-        assert b"6 of 6 points" in archive.read(first)
+        pages_of = {name: archive.read(name).decode() for name in archive.namelist()}
+    assert len(pages_of) == 4
+    numbered = dict(zip(range(101, 105), students))
+    for name, page in pages_of.items():
+        if system == "canvas":
+            student = canvas_takes(name, {(number, number + 5000): who for number, who in numbered.items()})
+        elif system == "moodle":
+            student = moodle_takes(name, numbered)
+        else:
+            # Brightspace: the folder as it was handed out, at the top.
+            assert name.count("/") == 1 and any(file.startswith(name.partition("/")[0] + "/") for file in files)
+            student = numbered[int(name.partition("-")[0])]
+        assert f"{points[student]} of 6 points" in page, name
     shutil.rmtree(tmp_path / "out" / "feedback")
     with pytest.raises(SystemExit, match="no feedback for"):
-        main(["export", str(tmp_path / "out"), "--feedback", str(tmp_path / "feedback.zip")])
+        main(["export", out, "--feedback", str(feedback)])
+    assert feedback.read_bytes() == data and not list(tmp_path.glob(".half*"))
 
 
 def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):

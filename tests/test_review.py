@@ -5,6 +5,9 @@ import io
 import json
 import re
 import shutil
+import signal
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -245,6 +248,18 @@ def test_the_commands(out, capsys, tmp_path, graded):
     assert "1 decisions" in capsys.readouterr().out.splitlines()[0]
     with pytest.raises(SystemExit, match="No such file"):
         main(["merge", str(out), str(tmp_path / "none")])
+
+
+def test_who_stops_judging_has_the_decisions_in_the_marks(out, graded):
+    solutions = str(graded / "solutions")
+    command = [sys.executable, "-m", "coursework", "review", str(out), "--solutions", solutions]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as page:
+        assert "Open this address" in page.stdout.readline()
+        Ledger(out).add(Store(out).read("rounded-1", "turns"), "turns/sum", 0.5, comment="Nearly.")
+        page.send_signal(signal.SIGINT)
+        said = page.stdout.read()
+    assert "'rounded-1', turns: 5 -> 5.5" in said and "1 moved." in said
+    assert "Nearly." in (out / "feedback" / "rounded-1" / "turns.html").read_text()
 
 
 # ---- in a browser

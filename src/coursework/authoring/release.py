@@ -29,6 +29,11 @@ KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 # --- the exercise notebook ----------------------------------------------------------------------
 
 
+def shows_variants(cells, number):
+    """Whether a cell is the text of a question with variants, which students are shown by the cell before."""
+    return number > 0 and cells[number].cell_type == "markdown" and drawn_in(cells[number - 1].source) is not None
+
+
 def exercise_notebook(source):
     """The notebook that students get: no solution, no hidden test, and no code of a figure."""
     import nbformat
@@ -39,8 +44,8 @@ def exercise_notebook(source):
     for number, cell in enumerate(source.notebook.cells):
         cell = copy.deepcopy(cell)
         cell.metadata = {}
-        if cell.cell_type == "markdown" and number and drawn_in(source.notebook.cells[number - 1].source):
-            continue  # the text of a question with variants is shown by the cell before
+        if shows_variants(source.notebook.cells, number):
+            continue
         elif number in source.figures:
             cells.append(nbformat.v4.new_markdown_cell(_image(source.figures[number])))
         elif cell.cell_type == "markdown":

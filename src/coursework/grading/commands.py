@@ -45,6 +45,7 @@ def add_commands(commands):
         "--share", default="1/1", metavar="K/N", help="the K-th of N shares, if several people judge: 2/3"
     )
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
+    review.add_argument("--solutions", help="folder of the notebooks with solutions")
     review.add_argument("--port", type=int, default=0, help="the port; any that is free if it is not said")
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
     merge.add_argument("out", metavar="DIR")
@@ -115,15 +116,19 @@ def grade(assignment, **options):
 
 
 def regrade(out, solutions):
-    from .grade import NothingToGrade
-    from .grade import regrade as regrade_class
     from .store import InUse
-    from .tables import number
 
     try:
-        moved = regrade_class(out, solutions=solutions)
-    except (NothingToGrade, InUse, ValueError) as error:
+        _regrade(out, solutions)
+    except (InUse, ValueError) as error:  # NothingToGrade is such
         sys.exit(f"coursework regrade: {error}")
+
+
+def _regrade(out, solutions):
+    from .grade import regrade as regrade_class
+    from .tables import number
+
+    moved = regrade_class(out, solutions=solutions)
     for one in moved:
         print(
             f"{one.student!r}, {one.assignment}: {number(one.before)} -> {number(one.after)}  "
@@ -132,10 +137,11 @@ def regrade(out, solutions):
     print(f"{len(moved)} moved.")
 
 
-def review(out, grader, share, hide_names, port):
+def review(out, grader, share, hide_names, solutions, port):
     import getpass
 
     from .review import review as serve
+    from .store import InUse
 
     found = re.fullmatch(r"(\d+)/(\d+)", share)
     mine, shares = map(int, found.groups()) if found else (0, 0)
@@ -150,7 +156,11 @@ def review(out, grader, share, hide_names, port):
     except ValueError as error:
         sys.exit(f"coursework review: {error}")
     except KeyboardInterrupt:
-        print(f"\nBring the decisions into the marks: coursework regrade {out}")
+        print("\nThe decisions are brought into the marks and pages.")
+        try:
+            _regrade(out, solutions)
+        except (InUse, ValueError) as error:
+            sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 
 def merge(out, ledgers):

@@ -358,12 +358,18 @@ def key_of(work, questions, limits, weak):
             for notebook in work.notebooks
         ],
         [notebook.digest for notebook in work.superseded],
+        reply_of(work),
         {name: question["version"] for name, question in questions.items()},
         vars(limits),
         weak,
         software(),
     ]
     return hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
+
+
+def reply_of(work):
+    """How the name of a page begins that goes back to the student: what the system wrote of the newest notebook."""
+    return max((*work.notebooks, *work.superseded), key=_by_age).claim.reply
 
 
 class _Jobs:
@@ -465,6 +471,7 @@ def record_of(work, results, key, questions, limits):
         "student": work.student,
         "assignment": work.assignment,
         "identity": work.notebooks[0].identity,
+        "reply": reply_of(work),
         "notebooks": notebooks,
         "superseded": [{"file": notebook.file, "sha256": notebook.digest} for notebook in work.superseded],
         "software": software(),

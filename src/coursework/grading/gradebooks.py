@@ -5,11 +5,12 @@ quotation marks and line ends, stays as the system wrote it, so that the system 
 student wrote gets into it.
 """
 
-import io
 import json
+import os
 import re
+import secrets
 import zipfile
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import NamedTuple
 
 from ..checking.reply import plain_text
@@ -368,8 +369,10 @@ def _keys_of_student(system, student, identity):
 def write_feedback(path, marks, store):
     """Write an archive of the pages of feedback, named so that the system which handed the work out takes them back.
 
-    Canvas knows a student by the beginning of the file's name, Moodle and Brightspace by the folder's: a page
-    stands where the notebook stood. Give the number of pages.
+    A name begins with what the system wrote of the name of the work. Canvas reads the first two numbers between
+    underscores, of the student and of the file, takes no page whose last part begins with "link", and looks at no
+    folders. Moodle reads the number of the participant and ``assignsubmission_file``, in the first folder that has
+    them. Brightspace knows its own folders. Give the number of pages.
 
     Raises
     ------
@@ -379,23 +382,22 @@ def write_feedback(path, marks, store):
     pages = {}
     for record in marks.records:
         page = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
-        if not page.exists():
+        if not page.exists() or "reply" not in record:
             raise CannotExport(f"There is no feedback for {record['student']!r}: grade again.")
-        place = PurePosixPath(record["notebooks"][0]["file"])
-        folder = place.parts[:-1]
-        name = str(PurePosixPath(*folder, f"{place.stem}-feedback.html"))
+        name = f"{record['reply']}feedback-{file_name(record['assignment']).replace('_', '-')}.html"
         if name in pages:
-            raise CannotExport(
-                f"Two pages of feedback would be called {name!r}; name one assignment with --assignment."
-            )
-        pages[name] = page.read_bytes()
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in sorted(pages.items()):
-            entry = zipfile.ZipInfo(name)  # with a fixed date: the same pages give the same bytes
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, content)
-    write(path, data.getvalue())
+            raise CannotExport(f"Two pages of feedback would be called {name!r}: grade again, with a --roster.")
+        pages[name] = page
+    half = Path(path).with_name(f".half-{secrets.token_hex(8)}")
+    try:
+        with zipfile.ZipFile(half, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, page in sorted(pages.items()):
+                entry = zipfile.ZipInfo(name)  # with a fixed date: the same pages give the same bytes
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                archive.writestr(entry, page.read_bytes())
+        os.replace(half, path)
+    finally:
+        half.unlink(missing_ok=True)
     return len(pages)
 
 

@@ -48,6 +48,8 @@ class Claim(NamedTuple):
         Whether a learning management system wrote it.
     handed_in : str
         When, by the system's own clock; empty where it does not say.
+    reply : str
+        How the name of a file begins that the system gives back to this student: what it wrote itself.
     """
 
     student: str
@@ -58,6 +60,7 @@ class Claim(NamedTuple):
     late: bool = False
     given_by_system: bool = False
     handed_in: str = ""
+    reply: str = ""
 
 
 class Layout:
@@ -136,6 +139,7 @@ class Layout:
             (number,),
             bool(found["late"]),
             True,
+            reply=_before_the_file(found),
         )
 
     def _moodle(self, parts):
@@ -149,6 +153,7 @@ class Layout:
             f"moodle {user} {name}",
             _inside(parts, found["file"]),
             given_by_system=True,
+            reply=_before_the_file(found) if found["file"] else f"{parts[0]}/",
         )
 
     def _brightspace(self, parts):
@@ -166,6 +171,7 @@ class Layout:
             when,
             given_by_system=True,
             handed_in=_as_time(when),
+            reply=f"{parts[0]}/",
         )
 
     def _blackboard(self, parts):
@@ -174,23 +180,33 @@ class Layout:
             return None
         user = found["who"].removeprefix(self.prefix) if self.prefix else found["who"].rpartition("_")[2]
         when = tuple(map(int, found["when"].split("-")))
-        inside = _inside(parts, found["file"])
-        return Claim(_clean(user), (("own", user),), f"blackboard {user}", inside, when, False, True, _as_time(when))
+        return Claim(
+            _clean(user),
+            (("own", user),),
+            f"blackboard {user}",
+            _inside(parts, found["file"]),
+            when,
+            given_by_system=True,
+            handed_in=_as_time(when),
+            reply=_before_the_file(found) if found["file"] else f"{PurePosixPath(parts[0]).stem}_",
+        )
 
     def _github(self, parts):
         user = parts[0].removeprefix(self.prefix)
-        return Claim(_clean(user), (("github", user), ("own", user)), f"repository {parts[0]}", _inside(parts))
+        keys = (("github", user), ("own", user))
+        return Claim(_clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/")
 
     def _own(self, parts):
         if len(parts) > 1:
-            return Claim(_clean(parts[0]), _own(parts[0]), f"folder {parts[0]}", _inside(parts))
+            return Claim(_clean(parts[0]), _own(parts[0]), f"folder {parts[0]}", _inside(parts), reply=f"{parts[0]}/")
         stem = PurePosixPath(parts[0]).stem
         for assignment in self.assignments:
             rest = stem.replace(assignment, "").strip(" _-.()")
             if assignment in stem and rest:
                 # A second way of writing the same name is a second claim.
-                return Claim(_clean(rest), _own(rest), f"files {stem.replace(assignment, '*')}", parts[0])
-        return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0])
+                source = f"files {stem.replace(assignment, '*')}"
+                return Claim(_clean(rest), _own(rest), source, parts[0], reply=f"{stem}-")
+        return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0], reply=f"{stem}-")
 
 
 def _as_time(numbers):
@@ -199,6 +215,11 @@ def _as_time(numbers):
         return datetime.datetime(*numbers).isoformat()
     except ValueError:
         return ""
+
+
+def _before_the_file(found):
+    """What a system wrote of a file's name, before what the student called it."""
+    return found.string[: found.start("file")]
 
 
 def _inside(parts, first=None):

@@ -15,9 +15,10 @@ import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
-from ..authoring.course import find_course
-from ..authoring.release import KERNEL, exercise_notebook
+from ..authoring.course import edition_of, find_course
+from ..authoring.release import KERNEL, exercise_notebook, shows_variants
 from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
+from ..checking.variants import variant_of
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
 #: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
@@ -59,15 +60,23 @@ class _Exercise:
     def __init__(self, stems, folder):
         import nbformat
 
-        sources = [read_source(Path(folder) / f"{stem}.ipynb") for stem in stems]
-        self.questions = {name: question for source in sources for name, question in source.questions.items()}
+        self.edition = edition_of(folder)
+        paths = [Path(folder) / f"{stem}.ipynb" for stem in stems]
+        sources = [read_source(path, edition=self.edition) for path in paths]
+        self.questions = {name: [question] for source in sources for name, question in source.questions.items()}
+        for path, source in zip(paths, sources, strict=True):
+            for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
+                for name, question in read_source(path, number, self.edition).questions.items():
+                    self.questions[name].append(question)
         self.cells, self.parts, self.solved = [], [], {}
         self.names = {}
         for source in sources:
             notebook = exercise_notebook(source)
             checked = checked_names(source.notebook)
             owners = {variable: name for name, variable in checked.items()}
-            for cell, original in zip(notebook.cells, source.notebook.cells, strict=True):
+            originals = source.notebook.cells
+            handed_out = [cell for number, cell in enumerate(originals) if not shows_variants(originals, number)]
+            for cell, original in zip(notebook.cells, handed_out, strict=True):
                 cell = copy.deepcopy(cell)
                 if cell.cell_type == "code":
                     answered = [owners[variable] for variable in answered_in(original.source, owners)]
@@ -79,6 +88,10 @@ class _Exercise:
         for number, cell in enumerate(self.cells):
             cell["id"] = f"cell-{number}"
         self.metadata = nbformat.v4.new_notebook(metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
+
+    def variant(self, name, identity):
+        """The number of a student's variant of a question."""
+        return variant_of(identity, name, len(self.questions[name]), self.edition)
 
     def notebook(self, cells):
         made = copy.deepcopy(self.metadata)
@@ -196,36 +209,38 @@ def _slip(question):
     return None
 
 
-def _expected(question, known, answer):
-    """What is to come of an answer: its outcome and note."""
-    from .marking import judge
-
-    reply, _ = judge(question.name, known, {"outcome": "recorded", "plain": question.to_plain(answer)})
-    return reply.outcome, reply.note
-
-
 class _Answers:
     """Code for right and wrong answers to every question, with what is to come of each; worked out once."""
 
     def __init__(self, exercise, dice):
-        self.right, self.wrong = {}, {}
-        for name, question in exercise.questions.items():
-            self.right[name] = self._with_code(exercise, question, _forms(question))
-            known = {}
-            for mistake in question.mistakes:
-                known.setdefault((mistake.note, str(mistake.details)), mistake.answer)
-            mistaken = list(known.values())
-            dice.shuffle(mistaken)
-            self.wrong[name] = self._with_code(exercise, question, [*mistaken[:6], _slip(question)])
-
-    def _with_code(self, exercise, question, answers):
         from .marking import about
 
-        found, known = [], about(question, b"any secret: the class is the same with all")
+        self.right, self.wrong = {}, {}
+        for name, variants in exercise.questions.items():
+            known = [about(question, b"any secret: the class is the same with all") for question in variants]
+            order = dice.random()
+            for number, question in enumerate(variants):
+                judged = {**known[number], "siblings": known[:number] + known[number + 1 :]}
+                self.right[name, number] = self._with_code(exercise, question, judged, _forms(question))
+                mistaken = list(
+                    {
+                        (mistake.note, str(mistake.details)): mistake.answer for mistake in reversed(question.mistakes)
+                    }.values()
+                )
+                # A class has its favourite mistakes, also where the numbers of its members differ.
+                random.Random(order).shuffle(mistaken)
+                self.wrong[name, number] = self._with_code(exercise, question, judged, [*mistaken[:6], _slip(question)])
+
+    def _with_code(self, exercise, question, judged, answers):
+        from .marking import mark
+
+        found = []
         for answer in answers:
             code = code_of(answer, exercise.names) if not callable(answer) else None
             if code is not None and len(code) < 1500:
-                found.append((f"{question.variable} = {code}", _expected(question, known, answer)))
+                given = {"outcome": "recorded", "plain": question.to_plain(answer)}
+                expected = mark(question.name, judged, given)
+                found.append((f"{question.variable} = {code}", (expected["outcome"], expected["note"])))
         return found
 
 
@@ -235,9 +250,11 @@ class _Answers:
 class _Student:
     """Works through the exercise and hands it in."""
 
-    def __init__(self, exercise, answers, dice):
-        self.exercise, self.answers, self.dice = exercise, answers, dice
+    def __init__(self, exercise, answers, dice, identity):
+        self.exercise, self.answers, self.dice, self.identity = exercise, answers, dice, identity
         self.cells = copy.deepcopy(exercise.cells)
+        for cell in self.cells:
+            cell.source = cell.source.replace("me('')", f"me({identity!r})")
         self.expected = {name: ["not attempted", ""] for name in exercise.questions}
         self.did = []
         skill = dice.betavariate(4, 1.6)
@@ -246,21 +263,23 @@ class _Student:
 
     def answer(self, part, skill):
         chance = self.dice.random()
+        first = part.questions[0], self.exercise.variant(part.questions[0], self.identity)
         if chance > 0.94 and len(part.questions) == 1:
             return  # left open
-        if chance < skill or len(part.questions) > 1 or not self.answers.wrong[part.questions[0]]:
+        if chance < skill or len(part.questions) > 1 or not self.answers.wrong[first]:
             self.solve(part)
             return
         name = part.questions[0]
-        options = self.answers.wrong[name]
-        # A class has its favourite mistakes.
+        options = self.answers.wrong[first]
         code, outcome = self.dice.choices(options, [2.0**-order for order in range(len(options))])[0]
         self.put(part, code, {name: list(outcome)})
 
     def solve(self, part):
         name = part.questions[0]
-        forms = self.answers.right[name]
-        if len(part.questions) == 1 and forms and self.dice.random() < 0.4:
+        forms = self.answers.right[name, self.exercise.variant(name, self.identity)]
+        # The author's own way may use what says what may vary, which students do not get.
+        share = 0.4 if len(self.exercise.questions[name]) == 1 else 1
+        if len(part.questions) == 1 and forms and self.dice.random() < share:
             code, outcome = self.dice.choice(forms)
             self.put(part, code, {name: list(outcome)})
         else:
@@ -268,7 +287,7 @@ class _Student:
             self.expected.update({name: ["correct", ""] for name in part.questions})
 
     def put(self, part, code, outcomes):
-        variable = self.exercise.questions[part.questions[0]].variable
+        variable = self.exercise.questions[part.questions[0]][0].variable
         lines = self.cells[part.cell].source.split("\n")
         blank = next(
             (order for order, line in enumerate(lines) if line.startswith((f"{variable} = ...", f"def {variable}("))),
@@ -378,7 +397,8 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     )
     for number in range(students):
         student = f"student-{number + 1:03}"
-        work = _Student(exercise, answers, dice)
+        # Moodle's worksheet knows a student by the address.
+        work = _Student(exercise, answers, dice, f"{student}@example.org" if layout == "moodle" else student)
         for name, share, habit in HABITS:
             if dice.random() < share and number not in hostile:
                 habit(work)
@@ -400,7 +420,7 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
         expected[student] = {"did": work.did, "questions": work.expected}
     (out / "expected.json").write_text(json.dumps(expected, indent=1) + "\n", "utf8")
     (out / "gradebook.csv").write_bytes(
-        _gradebook(layout, list(files), len(stems) and sum(question.worth for question in exercise.questions.values()))
+        _gradebook(layout, list(files), sum(variants[0].worth for variants in exercise.questions.values()))
     )
     return LAYOUTS[layout](out, files, "-and-".join(stems))
 
