@@ -21,7 +21,7 @@ from .paths import PACKAGES, REPOSITORY
 
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
 #: Parts of those packages that students do not get.
-LEFT_OUT = ("src/coursework/authoring", "src/coursework/grading")
+LEFT_OUT = ("src/coursework/authoring", "src/coursework/grading", "src/orientation_course/attack.py")
 VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
 
 

@@ -274,17 +274,22 @@ class Question:
             case["numbers"] = [MP.nstr(number, 17) for number in one.numbers]
         return case
 
-    def sealed(self, code=None):
+    def sealed(self, code=None, first=None):
         """What a student receives of the question: its public part, its lockers and its pages.
 
         Parameters
         ----------
         code : str, optional
             What opens the worked solution for those who give up.
+        first : Pages, optional
+            The pages of the first variant, :attr:`pages` of its question when it was sealed: what stands there is
+            not sealed once more.
         """
-        pages = _Pages(self.fingerprint_of(self.plain))
+        pages = self.pages = Pages(
+            sealing.slow_key(self.public["salt"], f"pages {self.fingerprint_of(self.plain)}"), first
+        )
         numbers = {json.dumps(found): place for place, found in enumerate(numbered(self.public))}
-        solution = pages.add({"solution": to_page(self.solution)}) if self.solution else None
+        solution = pages.add_solution(to_page(self.solution), self.public.get("variants")) if self.solution else None
         wanted = []
         for text, entry in self.entries.items():
             notes = [numbers.get(json.dumps(found)) for found in entry.notes[:2]]
@@ -303,7 +308,7 @@ class Question:
             chosen.append((code_text(code), "mistake", [], solution))
         sealed = {**self.public}
         places = pages.seal()
-        if places:
+        if pages.sealed:
             sealed["pages"] = pages.sealed
         lockers = []
         for text, outcome, notes, page in chosen:
@@ -333,25 +338,57 @@ def ladder_of(public, authored, turns, solution):
     return steps
 
 
-class _Pages:
-    """The pages of a question; each has a key of its own, which nobody can make who does not know the answer."""
+class Pages:
+    """The pages of a question; each has a key of its own, which nobody can make who does not know the answer.
 
-    def __init__(self, secret):
-        self.secret, self.contents, self.sealed = hashlib.sha256(secret.encode("utf8")).digest(), {}, []
+    Parameters
+    ----------
+    secret : bytes
+        What keys are made with. It follows from the answer by the slow hash: who guesses at a page has to spend one
+        for each guess, as for a locker.
+    first : Pages, optional
+        Those of the first variant of the question, which all variants share.
+    """
+
+    def __init__(self, secret, first=None):
+        self.secret, self.first, self.contents, self.sealed, self.words = secret, first, {}, [], None
+
+    def _key(self, text):
+        return hashlib.blake2b(text.encode("utf8"), key=self.secret, digest_size=sealing.PAGE_KEY).digest()
 
     def add(self, content, solution=None):
         """Add a page, once; gives its key. The page of the right answer tells where the worked solution stands."""
         text = json.dumps(content, ensure_ascii=False, sort_keys=True)
-        key = hashlib.blake2b(text.encode("utf8"), key=self.secret, digest_size=sealing.PAGE_KEY).digest()
+        if self.first:
+            shared = self.first._key(text)
+            if self.first.contents.get(shared) == (content, solution):
+                return shared
+        key = self._key(text)
         self.contents[key] = (content, solution)
         return key
 
+    def add_solution(self, text, variants):
+        """Add the worked solution, in variants as what differs from words that stand beside the first one."""
+        if self.first and self.first.words:
+            place = self.first.places()[self.first.words]
+            short = sealing.shorten(text, self.first.contents[self.first.words][0]["words"])
+            return self.add({"solution": [place, self.first.words.hex(), short]})
+        if variants:
+            # No number: they are what differs, and those of the first variant are not for everybody.
+            self.words = self.add({"words": re.sub(r"\d+", "", text)})
+        return self.add({"solution": text})
+
+    def places(self):
+        """The place of each page by its key: in an order that tells nothing, after those of the first variant."""
+        before = self.first.places() if self.first else {}
+        return before | {key: place for place, key in enumerate(sorted(self.contents), start=len(before))}
+
     def seal(self):
-        """Seal all pages in an order that tells nothing; gives the place of each by its key."""
-        places = {key: place for place, key in enumerate(sorted(self.contents))}
+        """Seal all pages that are not sealed with the first variant; gives the place of each by its key."""
+        places = self.places()
         if len(places) >= sealing.NO_PAGE:
             raise AuthorError("A question has more mistakes and hints of its own than there is room for.")
-        for key in places:
+        for key in sorted(self.contents):
             content, solution = self.contents[key]
             if solution:
                 content = {**content, "solution": [places[solution], solution.hex()]}

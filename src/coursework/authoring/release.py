@@ -130,11 +130,15 @@ def run_notebook(notebook, folder):
 # --- all of it ----------------------------------------------------------------------------------
 
 
-def sealed_file(source, first=None):
-    """The text of the file with the sealed questions of a notebook; of a variant, what differs from the ``first``."""
+def sealed_file(source, first=None, pages=None):
+    """The text of the file with the sealed questions of a notebook; of a variant, what differs from the ``first``.
+
+    ``pages`` are those of the first variant, by the name of the question.
+    """
     code = solution_code(source.notebook)
     questions = {
-        name: {"answer": question.variable, **question.sealed(code)} for name, question in source.questions.items()
+        name: {"answer": question.variable, **question.sealed(code, pages and pages[name])}
+        for name, question in source.questions.items()
     }
     if first:
         questions = {name: beside(one, first[name]) for name, one in questions.items()}
@@ -142,17 +146,18 @@ def sealed_file(source, first=None):
 
 
 def _release_one(path, course):
-    """Make a notebook and its sealed questions, and give its name and how many variants its questions have."""
+    """Make a notebook and its sealed questions: its name, how many variants there are, the pages that these share."""
     import nbformat
 
     source = read_source(path, edition=course.edition)
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
         nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")
-    return source.name, max((rule.count for rule in source.rules.values()), default=1)
+    pages = {name: source.questions[name].pages for name in source.rules}
+    return source.name, max((rule.count for rule in source.rules.values()), default=1), pages
 
 
-def _release_variant(path, number, course):
+def _release_variant(path, number, pages, course):
     """Solve, try and seal one variant of a notebook's questions.
 
     What came of it is kept beside the archive, under a name that follows from the source and from our code.
@@ -169,7 +174,7 @@ def _release_variant(path, number, course):
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()
         first = json.loads((course.sealed / f"{path.stem}.json").read_text("utf8"))["questions"]
-        kept.write_text(sealed_file(source, first), "utf8")
+        kept.write_text(sealed_file(source, first, pages), "utf8")
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
@@ -221,16 +226,16 @@ def release(course, only=(), run=True, variants=None):
         folder.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
-        names = [name for name, _ in made]
+        names = [name for name, _, _ in made]
         wanted = [
-            (path, number)
-            for path, (_, count) in zip(paths, made, strict=True)
+            (path, number, pages)
+            for path, (_, count, pages) in zip(paths, made, strict=True)
             for number in range(1, count)
             if variants is None or number in variants
         ]
         if wanted:
             list(pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted)))
-        for name, count in made:
+        for name, count, _ in made:
             for path in (course.sealed / "variants").glob(f"{name}-*.json"):
                 if (
                     re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .kinds import calls_for
 from .plain import NotPlain, to_plain
-from .questions import code_text, find_question, judge, notebook_questions, open_page, opened, rung_key
+from .questions import code_text, find_question, judge, notebook_questions, open_page, opened, rung_key, solution_on
 from .reply import Reply
 from .sealing import unseal
 
@@ -53,7 +53,7 @@ def check(name: str, answer: object) -> Reply:
     except NotPlain as error:
         reply, content = Reply(name, "invalid", "unreadable", [str(error)]), {}
     if reply.outcome == "correct" and "solution" in content:
-        reply.solution = open_page(question, *content["solution"])["solution"]
+        reply.solution = solution_on(question, open_page(question, *content["solution"]))
     entry = _remember(name, reply, content)
     if reply.outcome == "wrong" and entry:
         _show_next_hint(question, reply, entry)
@@ -96,7 +96,9 @@ def worked_solution(name: str, code: str) -> Reply:
     if isinstance(entry, dict):
         entry["given up"] = entry.get("outcome") != "correct"
         _write_progress(progress_now)
-    return Reply(name, "hints", "", ["Read it, close it, and write it down by yourself."], content["solution"])
+    return Reply(
+        name, "hints", "", ["Read it, close it, and write it down by yourself."], solution_on(question, content)
+    )
 
 
 def _steps(question, entry):

@@ -20,7 +20,7 @@ from .points import spellings
 from .reply import Reply
 from .variants import own_variant
 
-FORMAT = 2
+FORMAT = 3
 #: Letters and digits of a code that opens worked solutions: none that looks like another.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 #: The outcomes that a locker may hold, by their number in it.
@@ -91,6 +91,8 @@ def find_question(name):
 def beside(question, first):
     """What of a sealed variant differs from the first one: that is all that is kept of it.
 
+    Its pages are those that the first one has not, and follow upon them.
+
     >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, {'kind': 'vector', 'salt': 'a', 'ladder': []})
     {'salt': 'b', 'shown': {'arm': '2'}, 'ladder': None}
     """
@@ -102,7 +104,8 @@ def in_variant(name, number):
     notebook, _, _ = name.partition("/")
     whole = dict(notebook_questions(notebook)[name])
     if number:
-        whole |= notebook_questions(notebook, number)[name]
+        own = notebook_questions(notebook, number)[name]
+        whole |= {**own, "pages": [*whole.get("pages", []), *(own.get("pages") or [])]}
     return {part: about for part, about in whole.items() if about is not None}
 
 
@@ -145,6 +148,18 @@ def opened(question, text):
 def open_page(question, page, key):
     """What stands on a page; ``key`` as bytes or as the digits that another page holds."""
     return sealing.unseal(question["pages"][page], bytes.fromhex(key) if isinstance(key, str) else key)
+
+
+def solution_on(question, content):
+    """The worked solution that a page holds, as HTML.
+
+    That of a variant is what differs from words that all variants have in common, on a page of their own.
+    """
+    solution = content["solution"]
+    if isinstance(solution, str):
+        return solution
+    *place, short = solution
+    return sealing.lengthen(short, open_page(question, *place)["words"])
 
 
 def compare(name, question, plain, find):

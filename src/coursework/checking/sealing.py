@@ -5,6 +5,8 @@ can be looked up, and it opens what lies inside: the numbers of the mistakes in 
 page where there is more to say. Lockers are all of one size, whether they hold the right answer, a mistake or
 the cell beside one, so the data that a student receives tells neither the answer, nor which mistakes are known.
 
+The key of a page follows from the slow hash too: nothing in a file can be tried more quickly.
+
 What can be checked without a server can also be tried without one. The slow hash makes each try cost about
 12 ms; an answer with few possibilities stays guessable, and the author's report says which those are.
 """
@@ -19,8 +21,8 @@ import zlib
 ROUNDS = 40_000
 #: Pages are filled up to a multiple of this, so that their length tells little.
 BLOCK = 48
-#: Bytes of the name of a locker, of what lies in it, of its tag, and of the key of a page.
-NAME, INSIDE, TAG, PAGE_KEY = 7, 14, 3, 8
+#: Bytes of the name of a locker, of what lies in it, of its tag, of the key of a page and of the tag of one.
+NAME, INSIDE, TAG, PAGE_KEY, PAGE_TAG = 4, 10, 2, 8, 8
 LOCKER = NAME + INSIDE + TAG
 #: In place of the number of a mistake, and of a page: there is none.
 NO_MISTAKE, NO_PAGE = 0xFFFF, 0xFF
@@ -67,13 +69,14 @@ else:
     pbkdf2 = portable_pbkdf2
 
 
-# --- lockers: 24 bytes each, 32 characters in the file ------------------------------------------
+# --- lockers: 16 bytes each, 20 characters in the file ------------------------------------------
 
 
-def locker(key, outcome, mistakes=(), page=NO_PAGE, page_key=bytes(PAGE_KEY)):
-    """Make a locker: one of two outcomes, up to two numbers of mistakes, and a page with its key."""
-    first, second = [*mistakes, NO_MISTAKE, NO_MISTAKE][:2]
-    inside = bytes([outcome, page]) + first.to_bytes(2, "big") + second.to_bytes(2, "big") + page_key
+def locker(key, outcome, mistakes=(), page=NO_PAGE, page_key=b""):
+    """Make a locker: one of two outcomes, and up to two numbers of mistakes, or a page with its key."""
+    if page == NO_PAGE:
+        page_key = b"".join(number.to_bytes(2, "big") for number in [*mistakes, *[NO_MISTAKE] * 4][:4])
+    inside = bytes([outcome, page]) + page_key
     hidden = _mask(inside, key, "locker")
     return _name(key) + hidden + _tag(hidden, key, "locker")[:TAG]
 
@@ -86,21 +89,24 @@ def pack(lockers):
 def open_locker(lockers, key):
     """Open the locker of a key: its outcome, its mistakes, its page and the key of that; or give ``None``.
 
+    A page tells the mistakes itself: then the locker names none, and without a page there is no key of one.
+
     Raises
     ------
     ValueError
         The data was changed.
     """
-    data, name = base64.b64decode(lockers), _name(key)
+    data, name = base64.b85decode(lockers), _name(key)
     for start in range(0, len(data), LOCKER):
         if data[start : start + NAME] == name:
             hidden, tag = data[start + NAME : start + NAME + INSIDE], data[start + NAME + INSIDE : start + LOCKER]
             if not hmac.compare_digest(tag, _tag(hidden, key, "locker")[:TAG]):
                 raise ValueError("The sealed data was changed.")
             inside = _mask(hidden, key, "locker")
-            mistakes = [int.from_bytes(inside[2:4], "big"), int.from_bytes(inside[4:6], "big")]
-            page = None if inside[1] == NO_PAGE else inside[1]
-            return inside[0], [number for number in mistakes if number != NO_MISTAKE], page, inside[6:]
+            if inside[1] != NO_PAGE:
+                return inside[0], [], inside[1], inside[2:]
+            mistakes = [int.from_bytes(inside[place : place + 2], "big") for place in (2, 4)]
+            return inside[0], [number for number in mistakes if number != NO_MISTAKE], None, None
     return None
 
 
@@ -117,7 +123,7 @@ def seal(content, key):
     data = len(data).to_bytes(4, "big") + data
     data = data.ljust(-(-len(data) // BLOCK) * BLOCK, b"\0")
     hidden = _mask(data, key, "page")
-    return _text(hidden + _tag(hidden, key, "page"))
+    return _text(hidden + _tag(hidden, key, "page")[:PAGE_TAG])
 
 
 def unseal(sealed, key):
@@ -128,12 +134,29 @@ def unseal(sealed, key):
     ValueError
         The key is another one, or the data was changed.
     """
-    data = base64.b64decode(sealed)
-    hidden, tag = data[:-16], data[-16:]
-    if not hmac.compare_digest(tag, _tag(hidden, key, "page")):
+    data = base64.b85decode(sealed)
+    hidden, tag = data[:-PAGE_TAG], data[-PAGE_TAG:]
+    if not hmac.compare_digest(tag, _tag(hidden, key, "page")[:PAGE_TAG]):
         raise ValueError("The sealed data does not fit this key, or was changed.")
     data = _mask(hidden, key, "page")
     return json.loads(zlib.decompress(data[4 : 4 + int.from_bytes(data[:4], "big")]))
+
+
+def shorten(text, words):
+    """A text as what differs from some words that its reader has, too.
+
+    >>> words = "It is twice the force times the arm."
+    >>> lengthen(shorten("It is twice the force times the arm, 12 N m.", words), words)
+    'It is twice the force times the arm, 12 N m.'
+    """
+    packer = zlib.compressobj(9, zlib.DEFLATED, -15, zdict=words.encode("utf8"))
+    return _text(packer.compress(text.encode("utf8")) + packer.flush())
+
+
+def lengthen(short, words):
+    """The text of which :func:`shorten` made a short one."""
+    unpacker = zlib.decompressobj(-15, zdict=words.encode("utf8"))
+    return (unpacker.decompress(base64.b85decode(short)) + unpacker.flush()).decode("utf8")
 
 
 def _derive(key, purpose):
@@ -150,4 +173,4 @@ def _tag(hidden, key, purpose):
 
 
 def _text(data):
-    return base64.b64encode(data).decode("ascii")
+    return base64.b85encode(data).decode("ascii")
