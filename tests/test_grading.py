@@ -5,6 +5,8 @@ import dataclasses
 import hashlib
 import io
 import json
+import multiprocessing
+import os
 import re
 import shutil
 import signal
@@ -22,12 +24,13 @@ from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
 from coursework.grading import gradebooks, pages, sample_class, term
-from coursework.grading.grade import NothingToGrade, grade, regrade, run_here
+from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.ledger import Ledger
 from coursework.grading.reports import write_all
-from coursework.grading.sandbox import Limits, WeakIsolation, WorkerDied, given_up
+from coursework.grading.sandbox import Limits, Sandbox, WeakIsolation, WorkerDied, given_up
 from coursework.grading.store import InUse, Store, file_name
 from coursework.grading.tables import as_cell, as_written, table
+from coursework.grading.workers import TaskLost, side_by_side
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
 
@@ -384,9 +387,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
 
 
 def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
-    monkeypatch.setattr(
-        "coursework.grading.sandbox.run_notebooks", lambda *arguments, **options: pytest.fail("it was run")
-    )
+    monkeypatch.setattr("coursework.grading.sandbox.Sandbox", lambda *arguments, **options: pytest.fail("it was run"))
     said = grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     assert said == {"graded": 0, "kept": 15, "refused": 3}
     assert contents(copied) == contents(course / "out")
@@ -456,17 +457,14 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
 
 
 def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path, monkeypatch):
-    from coursework.grading import sandbox
-
     few = tmp_path / "few"
     put(few, "right", handed_in(sum="sine = 0"))
 
     def die(*arguments, **options):
         raise WorkerDied("no memory")
-        yield
 
     with monkeypatch.context() as patched:
-        patched.setattr(sandbox, "run_notebooks", die)
+        patched.setattr(Sandbox, "run", die)
         grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     assert {mark["outcome"] for mark in Store(copied).read("right", "turns")["marks"].values()} == {"undecided"}
     again = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
@@ -480,7 +478,7 @@ def test_without_workers_nothing_is_graded_and_it_is_said(course, tmp_path, work
 
 
 def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypatch):
-    monkeypatch.setattr("coursework.grading.sandbox.run_notebooks", lambda *arguments: pytest.fail("it was run"))
+    monkeypatch.setattr("coursework.grading.grade.side_by_side", lambda *arguments: pytest.fail("it was run"))
     (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
     shown = io.StringIO()
     grade(course / "submissions", tmp_path / "out", solutions=course / "solutions", roster=tmp_path / "roster.csv",
@@ -532,23 +530,69 @@ def test_names_lead_nowhere_and_stay_apart():
     assert file_name(file_name("A")) != file_name("A")
 
 
-def test_a_notebook_that_kills_sandbox_after_sandbox_costs_only_itself(course, monkeypatch):
-    from coursework.grading import sandbox
+class Stub:
+    """In place of a sandbox: every notebook is blank, but for those under which something dies."""
 
-    jobs = [{"id": str(number), "cells": [{"source": ""}], "questions": {"q": {}}, "seed": 0} for number in range(9)]
-    done = []
+    def __init__(self, *arguments, **options):
+        pass
 
-    def run(jobs, workers, limits, *, allow_weak_isolation):
-        for job in jobs:
-            if job["id"] == "4":
-                raise WorkerDied("again and again")
-            done.append(job["id"])
-            yield {"id": job["id"]}
+    def __enter__(self):
+        return self
 
-    monkeypatch.setattr(sandbox, "run_notebooks", run)
-    results = {result["id"]: result for result in run_here(jobs, 2, LIMITS, False)}
-    assert sorted(results) == [job["id"] for job in jobs] and sorted(done) == sorted(set(results) - {"4"})
-    assert results["4"] == given_up(jobs[4], "again and again") and results["4"]["finished"] is False
+    def __exit__(self, *error):
+        pass
+
+    def run(self, job):
+        code = job["cells"][-1]["source"]
+        if code == "sandbox":
+            raise WorkerDied("again and again")
+        if code == "process":
+            os._exit(1)
+        blank = {"outcome": "recorded", "plain": {"nodes": [], "value": ["blank"]}, "from": "check", "cell": 0}
+        isolation = {"layers": [], "weak": False, "namespaces made by": None, "not stopped": []}
+        return {**given_up(job, ""), "finished": True, "notes": [], "isolation": isolation,
+                "answers": dict.fromkeys(job["questions"], blank)}  # fmt: skip
+
+
+@pytest.mark.parametrize("victim", ["sandbox", "process"])
+def test_what_dies_under_a_notebook_costs_only_that_one(course, prepared, tmp_path, monkeypatch, victim):
+    for number in range(9):
+        put(tmp_path / "few", f"student-{number}", handed_in(also=[victim if number == 4 else "pass"]))
+    monkeypatch.setattr("coursework.grading.sandbox.Sandbox", Stub)
+    options = {"solutions": course / "solutions", "limits": LIMITS, "workers": 2, "show": io.StringIO()}
+    assert grade(tmp_path / "few", prepared, **options)["graded"] == 9
+    for found in Store(prepared).all():
+        expected = "undecided" if found["student"] == "student-4" else "not attempted"
+        assert {mark["outcome"] for mark in found["marks"].values()} == {expected}
+        assert ("given up" in found["notebooks"][0]["isolation"]) == (expected == "undecided")
+    assert len(graded_lines(prepared)) == len(set(graded_lines(prepared))) == 9
+    # No final record of a machine's failure: it is tried again, and nothing else is.
+    assert grade(tmp_path / "few", prepared, **options)["graded"] == 1
+
+
+def test_no_process_is_left_and_errors_are_told():
+    def prepare(stack):
+        def do(task):
+            if task == "wrong":
+                raise KeyError("some fault")
+            if task == "named":
+                raise WorkerDied("named")
+            return [task, os.getpid()]
+
+        return do
+
+    done = list(side_by_side(range(20), 3, prepare))
+    assert sorted(task for task, _ in done) == list(range(20)) and len({process for _, process in done}) <= 3
+    with pytest.raises(RuntimeError, match="KeyError: 'some fault'"):
+        list(side_by_side(["right", "wrong"], 2, prepare))
+    with pytest.raises(WorkerDied, match="named"):
+        list(side_by_side(["right", "named"], 1, prepare, [WorkerDied]))
+    with pytest.raises(TaskLost, match="'lost'"):
+        list(side_by_side(["lost"], 1, lambda stack: lambda task: os._exit(1)))
+    stopped = side_by_side(range(20), 2, prepare)
+    next(stopped)
+    stopped.close()
+    assert multiprocessing.active_children() == []
 
 
 # ---- the same wherever it is run

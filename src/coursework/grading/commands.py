@@ -101,13 +101,13 @@ def add_commands(commands):
 
 def grade(assignment, **options):
     from .grade import grade as grade_class
-    from .sandbox import WeakIsolation
+    from .sandbox import WeakIsolation, WorkerDied
     from .store import InUse
 
     named = {name: (notebooks or name).split(",") for name, _, notebooks in (one.partition("=") for one in assignment)}
     try:
         grade_class(assignments=named or None, **options)
-    except (InUse, WeakIsolation, ValueError) as error:  # NothingToGrade and BadRoster are such
+    except (InUse, WeakIsolation, WorkerDied, ValueError) as error:  # NothingToGrade and BadRoster are such
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped. The same command goes on from here.")

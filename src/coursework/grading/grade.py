@@ -7,7 +7,6 @@ run that finds a record with the right key leaves it alone, so a run that was ki
 
 import base64
 import hashlib
-import itertools
 import json
 import os
 import platform
@@ -25,6 +24,7 @@ from .secret import secret_beside
 from .store import FORMAT, Store, as_text, write
 from .tables import number, readable, table
 from .versions import software
+from .workers import side_by_side
 
 REFUSED, COURSE, WHOSE, ROSTER = "refused.json", "course.json", "whose.csv", "roster.json"
 
@@ -229,27 +229,26 @@ def grade(
             file=show,
         )
         store.log(f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on {platform.node()}")
-        jobs = _Jobs(waiting, questions, store)
-        if scheduler:
-            from .cluster import run_on_cluster
+        jobs, decisions = _Jobs(waiting, questions, store), ledger.current()
 
-            results = run_on_cluster(jobs, scheduler, limits, allow_weak_isolation=allow_weak_isolation)
-        else:
-            results = run_here(jobs, min(workers, len(jobs)), limits, allow_weak_isolation) if waiting else ()
+        def finish(order, results):
+            """Judge one student's work, and write its record."""
+            one = waiting[order]
+            asked = questions[one.assignment]
+            of_student = marking.of_student(asked, one.student)
+            record = record_of(one, results, keys[one.student, one.assignment], of_student, limits)
+            store.save(marked(record, asked, decisions))
+            return order, record["notebooks"][0]["isolation"]
+
         progress = _Progress(len(waiting), show)
-        decisions = ledger.current()
-        for one, found in jobs.whole(results):
-            record = record_of(
-                one,
-                found,
-                keys[one.student, one.assignment],
-                marking.of_student(questions[one.assignment], one.student),
-                limits,
-            )
-            record = marked(record, questions[one.assignment], decisions)
-            store.save(record)
-            store.log(f"graded: {one.student!r} {one.assignment}")
-            progress.one_more(record)
+        finished = (
+            _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store)
+            if scheduler
+            else _here(jobs, finish, workers, limits, allow_weak_isolation, store)
+        )
+        for order, isolation in finished:
+            store.log(f"graded: {waiting[order].student!r} {waiting[order].assignment}")
+            progress.one_more(isolation)
         # What was kept may have been decided on since.
         for one in kept:
             record = store.read(one.student, one.assignment)
@@ -384,57 +383,84 @@ class _Jobs:
         return sum(len(one.notebooks) for one in self.work)
 
     def __iter__(self):
-        for order, one in enumerate(self.work):
-            asked = marking.asked_of_sandbox(marking.of_student(self.questions[one.assignment], one.student))
-            for part, notebook in enumerate(one.notebooks):
-                cells = notebook.cells
-                self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
-                files = {name: base64.b64encode(data).decode() for name, data in notebook.files.items()}
-                job = {"id": f"{order} {part}", "cells": cells, "questions": asked, "seed": 0}
-                yield {**job, "files": files} if files else job
+        for order in range(len(self.work)):
+            yield from self.of(order)
+
+    def of(self, order):
+        """The jobs of one student's work."""
+        one = self.work[order]
+        asked = marking.asked_of_sandbox(marking.of_student(self.questions[one.assignment], one.student))
+        for part, notebook in enumerate(one.notebooks):
+            cells = notebook.cells
+            self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
+            files = {name: base64.b64encode(data).decode() for name, data in notebook.files.items()}
+            job = {"id": f"{order} {part}", "cells": cells, "questions": asked, "seed": 0}
+            yield {**job, "files": files} if files else job
+
+    def given_up(self, order, why):
+        """The results of work that could not be run."""
+        from .sandbox import given_up
+
+        return [given_up(job, why) for job in self.of(order)]
 
     def whole(self, results):
-        """Give each work with the results of its notebooks, once it has them all."""
+        """Give the order of each work with the results of its notebooks, once it has them all."""
         found = {}
         for result in results:
             order, part = map(int, result["id"].split())
             parts = found.setdefault(order, {})
             parts[part] = result
-            one = self.work[order]
-            if len(parts) == len(one.notebooks):
-                yield one, [found[order][part] for part in range(len(parts))]
+            if len(parts) == len(self.work[order].notebooks):
+                yield order, [found[order][part] for part in range(len(parts))]
                 del found[order]
 
 
-def run_here(jobs, workers, limits, allow_weak_isolation):
-    """Run jobs on this machine. A notebook under which the sandbox dies again and again is given up, alone."""
-    from .sandbox import WorkerDied, given_up, run_notebooks
+MARKING_ENDED = "The process that ran and judged it ended again and again."
 
-    jobs, running = iter(jobs), {}
-    options = {"limits": limits, "allow_weak_isolation": allow_weak_isolation}
 
-    def remembered():
-        # Only what is being run: a class needs no more memory than its workers do.
-        for job in jobs:
-            running[job["id"]] = job
-            yield job
+def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
+    """Run and judge on this machine: each process has a sandbox, and does one student's work after another."""
+    from .sandbox import Sandbox, WeakIsolation, WorkerDied, given_up
 
-    while True:
-        try:
-            for result in run_notebooks(remembered(), workers, **options):
-                del running[result["id"]]
-                yield result
-            return
-        except WorkerDied:
-            # One of those that were being run: each of them gets a sandbox of its own.
-            if not running and not any(True for _ in itertools.islice(remembered(), 1)):
-                return
-            for job in list(running.values()):
-                del running[job["id"]]
-                try:
-                    yield from run_notebooks([job], 1, **options)
-                except WorkerDied as error:
-                    yield given_up(job, str(error))
+    def prepare(stack):
+        store.in_copy_of_process()
+        sandbox = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation))
+
+        def run(job):
+            try:
+                return sandbox.run(job)
+            except WorkerDied as error:  # it costs only the notebook under which the sandbox dies again and again
+                return given_up(job, str(error))
+
+        return lambda order: finish(order, [run(job) for job in jobs.of(order)])
+
+    number = len(jobs.work)
+    return side_by_side(
+        range(number),
+        min(workers, number),
+        prepare,
+        (WeakIsolation, WorkerDied, intake.Unfit),
+        lambda order: finish(order, jobs.given_up(order, MARKING_ENDED)),
+    )
+
+
+def _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store):
+    """Run on a cluster and judge here: right answers do not leave this machine."""
+    from .cluster import run_on_cluster
+
+    def prepare(stack):
+        store.in_copy_of_process()
+        return lambda task: finish(*task)
+
+    def results():
+        # Not before the processes are there, which are to have no part in the connection.
+        if jobs.work:
+            yield from jobs.whole(run_on_cluster(jobs, scheduler, limits, allow_weak_isolation=allow_weak_isolation))
+
+    def lost(task):
+        return finish(task[0], jobs.given_up(task[0], MARKING_ENDED))
+
+    return side_by_side(results(), min(workers, len(jobs.work)), prepare, lost=lost)
 
 
 def record_of(work, results, key, questions, limits):
@@ -532,16 +558,14 @@ class _Progress:
         self.start = self.last = time.monotonic()
         self.told = False
 
-    def one_more(self, record):
+    def one_more(self, isolation):
         self.done += 1
         if not self.told:
             self.told = True
-            for notebook in record["notebooks"][:1]:
-                isolation = notebook["isolation"]
-                kind = "WEAK isolation" if isolation["weak"] else "Isolation"
-                print(f"{kind}: {', '.join(isolation['layers']) or 'none'}.", file=self.show)
-                for line in isolation.get("not stopped", ()):
-                    print(f"  not stopped: {line}", file=self.show)
+            kind = "WEAK isolation" if isolation["weak"] else "Isolation"
+            print(f"{kind}: {', '.join(isolation['layers']) or 'none'}.", file=self.show)
+            for line in isolation.get("not stopped", ()):
+                print(f"  not stopped: {line}", file=self.show)
         now = time.monotonic()
         on_screen = self.show.isatty()
         if self.done == 1:

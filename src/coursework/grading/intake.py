@@ -442,8 +442,37 @@ def _no_more_than(data):
     return data
 
 
+class _OwnPlace(io.RawIOBase):
+    """A file that is read from a place of its own: a copy of this process reads it too, and does not move this one."""
+
+    def __init__(self, path):
+        self.handle, self.place = os.open(path, os.O_RDONLY | os.O_CLOEXEC), 0
+
+    def readable(self):
+        return True
+
+    def seekable(self):
+        return True
+
+    def seek(self, offset, whence=os.SEEK_SET):
+        start = {os.SEEK_SET: 0, os.SEEK_CUR: self.place, os.SEEK_END: os.fstat(self.handle).st_size}[whence]
+        self.place = start + offset
+        return self.place
+
+    def readinto(self, buffer):
+        data = os.pread(self.handle, len(buffer), self.place)
+        buffer[: len(data)] = data
+        self.place += len(data)
+        return len(data)
+
+    def close(self):
+        if not self.closed:
+            os.close(self.handle)
+        super().close()
+
+
 def _files_of_archive(path, refused, repositories):
-    archive = zipfile.ZipFile(path)
+    archive = zipfile.ZipFile(_OwnPlace(path))
     entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
     times = {}
     for entry in entries:

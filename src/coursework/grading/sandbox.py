@@ -20,7 +20,6 @@ import dataclasses
 import fcntl
 import json
 import os
-import queue
 import random
 import secrets
 import select
@@ -30,13 +29,13 @@ import socket
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from pathlib import Path
 
 from coursework.grading import isolation, records, scratch
 from coursework.grading.isolation import LAYERS, NAMESPACES
 from coursework.grading.warm_parent import NOT_CONFINED
+from coursework.grading.workers import side_by_side
 
 WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
 WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
@@ -124,7 +123,6 @@ class Sandbox:
         self.errors = None
         self.base = None
         self.report = None
-        self.abandoned = False
         self.start()
 
     def __enter__(self):
@@ -314,12 +312,6 @@ class Sandbox:
                 scratch.remove_folder(self.base)
             self.base = None
 
-    def abandon(self):
-        """Stop at once what another thread is running here."""
-        self.abandoned = True
-        with contextlib.suppress(AttributeError, OSError):
-            self.control.shutdown(socket.SHUT_RDWR)
-
     # -- one notebook
 
     def run(self, job):
@@ -330,8 +322,6 @@ class Sandbox:
                     self.start()
                 return _Run(self, job).result()
             except WorkerDied:
-                if self.abandoned:
-                    raise
                 self.close()
         raise WorkerDied(f"the worker died {ATTEMPTS_OF_A_JOB} times while it ran notebook {job['id']!r}")
 
@@ -694,7 +684,7 @@ def threads_of(user):
 
 
 def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, without=()):
-    """Run notebooks on several workers; give the results as they come.
+    """Run notebooks on several workers, each a process of its own; give the results as they come.
 
     Parameters
     ----------
@@ -724,41 +714,8 @@ def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, w
     WeakIsolation
         Before any student code is run.
     """
-    jobs = iter(jobs)
-    taking, stop = threading.Lock(), threading.Event()
-    results = queue.Queue()
-    sandboxes = []
 
-    def work():
-        try:
-            with Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without) as sandbox:
-                sandboxes.append(sandbox)
-                while not stop.is_set():
-                    with taking:
-                        job = next(jobs, None)
-                    if job is None:
-                        break
-                    results.put(sandbox.run(job))
-            results.put(None)
-        except BaseException as error:  # handed to the one who waits
-            results.put(error)
+    def prepare(stack):
+        return stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without)).run
 
-    threads = [threading.Thread(target=work, daemon=True) for _ in range(workers)]
-    for thread in threads:
-        thread.start()
-    try:
-        running = len(threads)
-        while running:
-            result = results.get()
-            if isinstance(result, BaseException):
-                raise result
-            if result is None:
-                running -= 1
-            else:
-                yield result
-    finally:
-        stop.set()
-        for sandbox in sandboxes:
-            sandbox.abandon()
-        for thread in threads:
-            thread.join()
+    yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))

@@ -36,14 +36,18 @@ class Store:
     def locked(self):
         """Keep other runs away; what a run that was killed left half done is removed."""
         self.records.mkdir(parents=True, exist_ok=True)
-        with open(self.folder / "lock", "w") as lock:
+        with open(self.folder / "lock", "w") as self.lock:
             try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 raise InUse(f"Another run is at work in {self.folder}.") from None
             for path in self.folder.rglob(".half-*"):
                 path.unlink()
             yield
+
+    def in_copy_of_process(self):
+        """Leave the lock to the process that has it: when that one ends, nobody is kept away any more."""
+        self.lock.close()
 
     def place(self, student, assignment):
         return self.records / file_name(student) / f"{file_name(assignment)}.json"
