@@ -3,7 +3,8 @@
 The class is the sample class: 200 notebooks of ten questions with their mistakes, broken cells and attacks. The
 whole of it goes through ``coursework grade`` with two workers, from an empty folder to the report. The others are
 given the first honest notebooks of it, one after the other, as they work; nbclient runs the cells and grades
-nothing. Processor times count all processes, and do not depend on what else the machine does; times by the clock do.
+nothing. What one notebook more costs is without the start. Processor times count all processes, and do not depend on
+what else the machine does; times by the clock do.
 """
 
 import argparse
@@ -60,8 +61,9 @@ def main():
             ("coursework grade: the honest ones", *ours),
             ("their cells alone, each in a copy of one warm process", *alone),
             ("nbclient, which grades nothing", *of_nbclient(sample)),
-            ("nbgrader autograde", *of_nbgrader(sample, place)),
+            ("nbgrader autograde", *(theirs := of_nbgrader(sample, place))),
         )
+        first = of_nbgrader(sample[:1], place / "one")
         print(f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n")
         print(
             "| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times "
@@ -74,6 +76,15 @@ def main():
                 f"| {what} | {count} | {clock:.1f} s | {1000 * clock / count:.0f} ms | "
                 f"{1000 * processor / count:.0f} ms "
                 f"| {clock / count / own[0]:.2g} | {processor / count / own[1]:.2g} |"
+            )
+        print()
+        for what, number in ("by the clock", 1), ("of processor time", 2):
+            mine = (ours[number] - start[number]) / (ours[0] - start[0])
+            other = (theirs[number] - first[number]) / (theirs[0] - 1)
+            cold = (first[number] + 39 * other) / (start[number] + (40 - start[0]) * mine)
+            print(
+                f"{what.capitalize()}, nbgrader takes {other / mine:.0f} times as long for one notebook more "
+                f"({1000 * other:.0f} and {1000 * mine:.0f} ms), and {cold:.0f} times as long for 40 from a cold start."
             )
         each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
         print(

@@ -86,6 +86,11 @@ def add_commands(commands):
         "--gradescope", metavar="results.json", help="write the results of a Gradescope autograder, for one student"
     )
     export.add_argument("--student", help="the student for --gradescope, if there are several")
+    gradescope = commands.add_parser("gradescope", help="make an autograder of one assignment for Gradescope")
+    gradescope.add_argument("--out", required=True, metavar="FILE.zip")
+    gradescope.add_argument("--solutions", help="folder of the notebooks with solutions")
+    gradescope.add_argument("--assignment", required=True, metavar="NAME[=NOTEBOOK,...]")
+    gradescope.add_argument("--roster", metavar="FILE.csv", help="who is in the course, with their addresses")
     sample = commands.add_parser("sample-class", help="make a class to try grading on")
     sample.add_argument("--out", required=True, help="folder for the class")
     sample.add_argument("--students", type=int, default=200)
@@ -99,14 +104,19 @@ def add_commands(commands):
     )
 
 
+def _named(assignments):
+    """The notebooks that make up each assignment, from ``NAME`` and ``NAME=NOTEBOOK,...``."""
+    parts = [one.partition("=") for one in assignments]
+    return {name: (notebooks or name).split(",") for name, _, notebooks in parts} or None
+
+
 def grade(assignment, **options):
     from .grade import grade as grade_class
     from .sandbox import WeakIsolation, WorkerDied
     from .store import InUse
 
-    named = {name: (notebooks or name).split(",") for name, _, notebooks in (one.partition("=") for one in assignment)}
     try:
-        grade_class(assignments=named or None, **options)
+        grade_class(assignments=_named(assignment), **options)
     except (InUse, WeakIsolation, WorkerDied, ValueError) as error:  # NothingToGrade and BadRoster are such
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
@@ -217,6 +227,16 @@ def export(out, lms, filled, column, name, overwrite, assignment, feedback, nbgr
         sys.exit(f"coursework export: {error}")
 
 
+def gradescope(out, solutions, assignment, roster):
+    from .gradescope import write_autograder
+
+    try:
+        stems = write_autograder(out, _named([assignment]), solutions=solutions, roster=roster)
+    except (OSError, ValueError) as error:
+        sys.exit(f"coursework gradescope: {error}")
+    print(f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and show it to nobody.")
+
+
 def sample_class(out, students, seed, notebooks, solutions, layout):
     from .sample_class import make_class
 
@@ -231,5 +251,6 @@ COMMANDS = {
     "merge": merge,
     "term": term,
     "export": export,
+    "gradescope": gradescope,
     "sample-class": sample_class,
 }

@@ -423,6 +423,9 @@ def write_nbgrader(path, marks):
     write(path, table(NBGRADER, rows))
 
 
+STATUS = {"correct": "passed", "decided": "passed"}
+
+
 def write_gradescope(path, marks, student=None):
     """Write what Gradescope reads of an autograder: the results of one student."""
     if student is None and len(marks.students) != 1:
@@ -441,7 +444,8 @@ def write_gradescope(path, marks, student=None):
                     "number": str(len(tests) + 1),
                     "score": mark["points"],
                     "max_score": mark["worth"],
-                    "status": "passed" if mark["outcome"] == "correct" else "failed",
+                    # Neither one nor the other, where a person has still to decide.
+                    **({} if mark["outcome"] == "undecided" else {"status": STATUS.get(mark["outcome"], "failed")}),
                     "visibility": "visible",
                     "output_format": "text",
                     "output": readable("\n".join([mark["outcome"], *map(plain_text, mark["messages"])])),
