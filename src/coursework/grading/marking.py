@@ -8,9 +8,11 @@ as wrong; nothing is earned by default.
 
 import hashlib
 import json
+import os
 from pathlib import Path
 from types import SimpleNamespace
 
+from ..authoring.author import AuthorError
 from ..authoring.source import DECLARED, checked_names, declared_strengths, read_source
 from ..checking.evaluate import MP
 from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
@@ -21,6 +23,7 @@ from ..checking.variants import variant_of
 from . import secret as in_secret
 from .store import write
 from .versions import software
+from .workers import side_by_side
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
@@ -112,17 +115,25 @@ def load_questions(paths, kept, secret, edition=""):
     What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
     notebook and from the versions of the software.
     """
-    found = {}
+    places = {}
     for path in map(Path, paths):
         declared = path.with_name(DECLARED)
         declared = declared.read_bytes() if declared.is_file() else b""
         ours = hashlib.sha256(json.dumps(software()).encode() + secret + declared).digest()
-        place = (
-            Path(kept)
-            / f"{path.stem}-{hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]}.json"
-        )
-        if not place.exists():
-            write(place, json.dumps(questions_of(path, secret, edition), ensure_ascii=False))
+        depends = hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]
+        places[path] = Path(kept) / f"{path.stem}-{depends}.json"
+
+    def work_out(path):
+        write(places[path], json.dumps(questions_of(path, secret, edition), ensure_ascii=False))
+
+    missing = [path for path, place in places.items() if not place.exists()]
+    if len(missing) == 1:
+        work_out(missing[0])
+    else:
+        number = min(len(missing), len(os.sched_getaffinity(0)))
+        list(side_by_side(map(str, missing), number, lambda stack: lambda path: work_out(Path(path)), [AuthorError]))
+    found = {}
+    for place in places.values():
         found.update(json.loads(place.read_text("utf8")))
     return found
 
