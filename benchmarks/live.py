@@ -9,7 +9,6 @@ exercise until its first cell, which imports SymPy and ``coursework``, has run.
 """
 
 import gzip
-import shutil
 import statistics
 import sys
 import tempfile
@@ -20,22 +19,17 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
+from website.browser import FLAGS, find
 from website.serve import server
+
+from .pages import ALONE
 
 PAGE = "chapters/direction-cosine-matrices"
 NOTEBOOK = "lite/notebooks/index.html?path=exercises/direction-cosine-matrices.ipynb"
 SITE = Path("_build/html")
 ROUNDS = 5
 CELLS = 30
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-FLAGS = [
-    "--no-sandbox",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
-]
+ARGUMENTS = [*FLAGS, ALONE]
 
 # Milliseconds from the press on a cell's Run until the cell has run and the page is painted.
 PRESS = """
@@ -137,7 +131,7 @@ def weight(urls):
 
 
 def main():
-    executable = next(filter(None, map(shutil.which, BROWSERS)), None)
+    executable = find()
     if executable is None:
         sys.exit("There is no Chromium on this machine to open the pages with.")
     if not (SITE / f"{PAGE}.html").is_file():
@@ -150,12 +144,16 @@ def main():
     with sync_playwright() as playwright:
         for _ in range(ROUNDS):
             with tempfile.TemporaryDirectory() as profile:
-                context = playwright.chromium.launch_persistent_context(profile, executable_path=executable, args=FLAGS)
+                context = playwright.chromium.launch_persistent_context(
+                    profile, executable_path=executable, args=ARGUMENTS
+                )
                 bare_cold.append(bare(context, site))
                 bare_warm.append(bare(context, site))
                 context.close()
             with tempfile.TemporaryDirectory() as profile:
-                context = playwright.chromium.launch_persistent_context(profile, executable_path=executable, args=FLAGS)
+                context = playwright.chromium.launch_persistent_context(
+                    profile, executable_path=executable, args=ARGUMENTS
+                )
                 page, number, seconds, asked = visit(context, address)
                 cold.append(seconds)
                 overheads.append(cell_overhead(page, number))
@@ -165,7 +163,9 @@ def main():
                 warm.append(seconds)
                 context.close()
             with tempfile.TemporaryDirectory() as profile:
-                context = playwright.chromium.launch_persistent_context(profile, executable_path=executable, args=FLAGS)
+                context = playwright.chromium.launch_persistent_context(
+                    profile, executable_path=executable, args=ARGUMENTS
+                )
                 seconds, lite_asked = open_notebook(context, site)
                 lite_cold.append(seconds)
                 lite_warm.append(open_notebook(context, site)[0])

@@ -10,7 +10,6 @@ Weight is that of the scripts that a page loads, after gzip.
 
 import gzip
 import platform
-import shutil
 import statistics
 import sys
 import tempfile
@@ -20,8 +19,7 @@ from playwright.sync_api import sync_playwright
 
 from orientation_figures import moving
 from orientation_figures.moving import bundle
-
-from .pages import BROWSERS
+from website.browser import FLAGS, find
 
 FIGURES = [figure for figure in (getattr(moving, name) for name in moving.__all__) if getattr(figure, "kind", "")]
 SLOWED, FRAME, HEAVIEST = 4, 16, 60_000  # times, milliseconds, bytes
@@ -76,20 +74,11 @@ def milliseconds(browser, figure, folder):
 
 
 def main():
-    executable = next(filter(None, map(shutil.which, BROWSERS)), None)
+    executable = find()
     if executable is None:
         sys.exit("There is no Chromium on this machine to open the figures with.")
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
-        browser = playwright.chromium.launch(
-            executable_path=executable,
-            args=[
-                "--no-sandbox",
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--disable-sync",
-                "--no-first-run",
-            ],
-        )
+        browser = playwright.chromium.launch(executable_path=executable, args=list(FLAGS))
         print(
             f"Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as slow; a picture has "
             f"{FRAME} ms.\n"

@@ -23,6 +23,7 @@ from pathlib import Path
 import yaml
 from playwright.sync_api import sync_playwright
 
+from website.browser import FLAGS, find
 from website.serve import server
 
 PAGE = "chapters/euler-angles"
@@ -30,7 +31,8 @@ OURS, SCRATCH = Path("_build/html"), Path("_build/benchmark")
 MATHJAX = "mathjax@3.2.2"
 ROUNDS = 7
 SLOWED = (1, 4)  # how many times as slow a processor the browser is to pretend
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+# The browser finds nobody but this machine.
+ALONE = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
 
 CLOCK = """
 document.addEventListener('DOMContentLoaded', async () => {
@@ -95,17 +97,7 @@ def stock_book():
 
 def visit(playwright, executable, address, slowed=1):
     """Open a page in a fresh browser, and return it when its mathematics is shown, with its responses."""
-    browser = playwright.chromium.launch(
-        executable_path=executable,
-        args=[
-            "--no-sandbox",
-            "--disable-background-networking",
-            "--disable-component-update",
-            "--disable-sync",
-            "--no-first-run",
-            "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
-        ],
-    )
+    browser = playwright.chromium.launch(executable_path=executable, args=[*FLAGS, ALONE])
     page = browser.new_context(viewport={"width": 1300, "height": 900}).new_page()
     page.add_init_script(CLOCK)
     page.context.new_cdp_session(page).send("Emulation.setCPUThrottlingRate", {"rate": slowed})
@@ -139,7 +131,7 @@ def seconds(*visited):
 
 
 def main():
-    executable = next(filter(None, map(shutil.which, BROWSERS)), None)
+    executable = find()
     if executable is None:
         sys.exit("There is no Chromium on this machine to open the pages with.")
     if not (OURS / f"{PAGE}.html").is_file():
