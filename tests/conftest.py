@@ -8,11 +8,12 @@ from collections import defaultdict
 from importlib import metadata
 from pathlib import Path
 
+import nbval.kernel
 import pytest
 import times
-import warm_kernels
 from xdist.scheduler import LoadFileScheduling
 
+from website import warm_kernels
 from website.browser import FLAGS, MISSING, find
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -57,7 +58,7 @@ def pytest_configure(config):
     # What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata.
     if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
         raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
-    warm_kernels.use()
+    nbval.kernel.KernelManager = warm_kernels.WarmKernelManager
     config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(
         "markers",

@@ -10,10 +10,12 @@ from pathlib import Path
 
 import nbformat
 from jupyter_cache import get_cache
-from jupyter_cache.executors import load_executor
+from jupyter_cache.executors.basic import ExecutionWorkerLocalMProc, JupyterExecutorLocalMproc
+from jupyter_cache.executors.utils import single_nb_execution
 
 from .paths import REPOSITORY, WEBSITE, fingerprint
 from .used import fingerprint_of_used
+from .warm_kernels import WarmAsyncKernelManager
 
 #: Notebooks that are shown as they were released and run by the tests; see ``execute`` in _config.yml.
 STORED = "exercises/"
@@ -54,6 +56,24 @@ def pages_to_read_again(app, env, added, changed, removed):
     return [names[path] for path in throw_away_old_runs(notebooks, env.mystnb_config.execution_cache_path)]
 
 
+class Worker(ExecutionWorkerLocalMProc):
+    """As jupyter-cache runs a notebook, in a kernel that is there at once."""
+
+    @staticmethod
+    def execute(project_nb, data):
+        return single_nb_execution(
+            project_nb.nb,
+            cwd=str(Path(project_nb.uri).parent),
+            timeout=data.timeout,
+            allow_errors=data.allow_errors,
+            kernel_manager_class=WarmAsyncKernelManager,
+        )
+
+
+class Executor(JupyterExecutorLocalMproc):
+    _EXECUTION_WORKER = Worker
+
+
 def run_side_by_side(app, env, docnames):
     """Fill the cache with one kernel per core before MyST-NB reads page by page."""
     if env.mystnb_config.execution_mode != "cache":
@@ -67,7 +87,7 @@ def run_side_by_side(app, env, docnames):
                 records.append(record)
     if len(records) > 1:
         # A cell that fails is not cached: MyST-NB meets it again and reports it.
-        load_executor("local-parallel", cache).run_and_cache(
+        Executor(cache).run_and_cache(
             filter_pks=[record.pk for record in records],
             timeout=env.mystnb_config.execution_timeout,
         )

@@ -1,8 +1,9 @@
-"""Kernels for nbval that are forked from a process which has loaded what nearly every notebook imports.
+"""Kernels that are forked from a process which has loaded what nearly every notebook imports.
 
-Each kernel is as fresh as one that was started by itself, has its own process and its own names, and is there
-at once. Loaded beforehand is only what others wrote: a notebook's imports of our own packages are its own. That a
-notebook imports all that it uses is seen where it is run for its page, by `make book`, in a kernel that was started.
+The build and nbval take theirs from here. Each kernel is as fresh as one that was started by itself, has its own
+process and its own names, and is there at once. Loaded beforehand is only what others wrote: a notebook's imports of
+our own packages are its own. That a notebook imports all that it uses is seen where it is stored, by ``python -m
+website.notebooks``, in a kernel that was started.
 """
 
 import contextlib
@@ -16,9 +17,8 @@ import sys
 import threading
 import uuid
 
-import nbval.kernel
 import psutil
-from jupyter_client.manager import KernelManager
+from jupyter_client.manager import AsyncKernelManager, KernelManager
 from jupyter_client.provisioning import LocalProvisioner
 
 LOADED = ("ipykernel.kernelapp", "ipykernel.ipkernel", "sympy.physics.mechanics", "matplotlib.pyplot", "anywidget")
@@ -66,7 +66,7 @@ def become_kernel(command, folder, environment):
         os._exit(0)
 
 
-# ---- in the process of the tests
+# ---- in the process that runs notebooks
 
 
 class WarmProcess:
@@ -108,19 +108,23 @@ class WarmProvisioner(LocalProvisioner):
         return self.connection_info
 
 
-class WarmKernelManager(KernelManager):
+class FromWarmProcess:
     def start_kernel(self, **settings):
-        self.kernel_id = str(uuid.uuid4())
-        self.provisioner = WarmProvisioner(kernel_id=self.kernel_id, kernel_spec=self.kernel_spec, parent=self)
+        if sys.platform == "linux":  # elsewhere a process that has loaded NumPy may not fork: a kernel is started
+            self.kernel_id = str(uuid.uuid4())
+            self.provisioner = WarmProvisioner(kernel_id=self.kernel_id, kernel_spec=self.kernel_spec, parent=self)
         return super().start_kernel(**settings)
 
 
+class WarmKernelManager(FromWarmProcess, KernelManager):
+    """A manager as nbval uses it."""
+
+
+class WarmAsyncKernelManager(FromWarmProcess, AsyncKernelManager):
+    """A manager as nbclient uses it."""
+
+
 warm = WarmProcess()
-
-
-def use():
-    """Let nbval take its kernels from here."""
-    nbval.kernel.KernelManager = WarmKernelManager
 
 
 if __name__ == "__main__":
