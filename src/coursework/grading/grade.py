@@ -8,7 +8,6 @@ run that finds a record with the right key leaves it alone, so a run that was ki
 import base64
 import hashlib
 import json
-import os
 import platform
 import sys
 import time
@@ -24,7 +23,7 @@ from .secret import secret_beside
 from .store import FORMAT, Store, as_text, write
 from .tables import number, readable, table
 from .versions import software
-from .workers import side_by_side
+from .workers import processors, side_by_side
 
 REFUSED, COURSE, WHOSE, ROSTER = "refused.json", "course.json", "whose.csv", "roster.json"
 
@@ -190,7 +189,7 @@ def grade(
     from . import reports
     from .sandbox import Limits
 
-    workers = len(os.sched_getaffinity(0)) if workers is None else workers
+    workers = processors() if workers is None else workers
     if workers < 1:
         raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
     store, limits, show = Store(out), limits or Limits(), show or sys.stderr

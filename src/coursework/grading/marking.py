@@ -8,7 +8,6 @@ as wrong; nothing is earned by default.
 
 import hashlib
 import json
-import os
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -23,7 +22,7 @@ from ..checking.variants import variant_of
 from . import secret as in_secret
 from .store import write
 from .versions import software
-from .workers import side_by_side
+from .workers import processors, side_by_side
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
@@ -130,7 +129,7 @@ def load_questions(paths, kept, secret, edition=""):
     if len(missing) == 1:
         work_out(missing[0])
     else:
-        number = min(len(missing), len(os.sched_getaffinity(0)))
+        number = min(len(missing), processors())
         list(side_by_side(map(str, missing), number, lambda stack: lambda path: work_out(Path(path)), [AuthorError]))
     found = {}
     for place in places.values():

@@ -10,6 +10,7 @@ import json
 import multiprocessing
 import os
 import signal
+import sys
 import traceback
 import warnings
 from multiprocessing.connection import wait
@@ -17,6 +18,11 @@ from multiprocessing.connection import wait
 PR_SET_PDEATHSIG = 1
 WAIT_FOR_END = 30  # seconds for a process to end what it started
 ATTEMPTS_OF_A_TASK = 3  # how often a task is given out when a process ends under it
+
+
+def processors():
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
 
 
 class TaskLost(RuntimeError):
@@ -127,7 +133,8 @@ class _Worker:
 
 
 def _work(connection, prepare, asking):
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if sys.platform.startswith("linux"):
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != asking:
         return  # it ended before it could be said that this one ends with it
     # Ctrl+C is for the one that asks; what is started here is to hear it again.
