@@ -19,7 +19,7 @@ body { margin: 0; background: var(--paper); color: var(--ink); font: 17px/1.55 G
 main { max-width: 52rem; margin: 0 auto; padding: 2rem 1.1rem 4rem; }
 h1 { font-size: 1.75rem; line-height: 1.2; margin: 0 0 .2em; font-weight: 600; }
 h2 { font-size: 1.25rem; margin: 2.4rem 0 .6rem; font-weight: 600; }
-h3 { font-size: 1.05rem; margin: 1.9rem 0 .5rem; font-weight: 600; } .head h3 { margin: 0; }
+h3 { font-size: 1.05rem; margin: 1.9rem 0 .5rem; font-weight: 600; } .head .title { margin: 0; font-size: 1.05rem; }
 p { margin: .5em 0; }
 a { color: var(--open); }
 .soft, figcaption, th, .key { color: var(--soft); font-family: "Segoe UI", system-ui, sans-serif; font-size: .88rem; }
@@ -100,16 +100,6 @@ ATTRIBUTES = {
     "scriptlevel",
     "linethickness",
 }
-
-
-def page(title, body):
-    """A whole page; ``body`` is HTML, ``title`` is text."""
-    return (
-        f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{text(title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
-    )
 
 
 def text(value, most=400):

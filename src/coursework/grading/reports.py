@@ -12,10 +12,9 @@ from ..checking.plugins import plugins
 from ..checking.reply import OUTCOMES
 from . import pages
 from .ledger import stable_id
-from .mathematics import answer_as_mathematics
-from .pages import text
 from .store import file_name, write
-from .tables import lines, number, table
+from .tables import lines, table
+from .templates_of_pages import page
 
 DECIDED = ("✓", "Decided by a person")
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
@@ -52,6 +51,7 @@ DEEDS = {
     "right only where it is checked": "gave something that is right only where the check looks",
 }
 MOST_UNDECIDED, MOST_NAMES = 200, 200  # that the report names; all are in the tables
+MOST_STOPPED = 10  # cells of a notebook that did not come to their end, which feedback names
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
     "works only out of order": "It works only if its cells are run in another order than they stand in. The answers "
@@ -182,82 +182,37 @@ def _grades_of(record, names):
 
 
 def feedback(record):
-    """The page that a student gets."""
-    open_ = record["undecided"]
-    pending = (
-        f'<p class="soft">{_count(open_, "answer is", "answers are")} still to be looked at by a person.</p>'
-        if open_
-        else ""
-    )
-    body = [
-        f'<header><p class="soft">{text(record["student"])}</p><h1>{text(record["assignment"])}</h1>'
-        f'<p class="big">{number(record["points"])} of {number(record["worth"])} points</p>{pending}</header>'
-    ]
-    body += [
-        _question(order, name, mark, record["answers"].get(name))
-        for order, (name, mark) in enumerate(record["marks"].items(), 1)
-    ]
-    body.append(_about_notebooks(record))
-    return pages.page(f"{record['assignment']}: {record['student']}", "\n".join(body))
-
-
-def _question(order, name, mark, plain):
-    sign, word = DECIDED if mark["outcome"] == "decided" else OUTCOMES[mark["outcome"]][:2]
-    paragraphs = "".join(f"<p>{pages.message(said)}</p>" for said in mark["messages"])
-    # What a function returned is not repeated: a list of it would do for a friend's answer.
-    is_shown = plain and mark["outcome"] != "not attempted" and plain["value"][0] != "function"
-    read = pages.answer_as_text(plain) if is_shown else ""
-    drawn = answer_as_mathematics(plain) if is_shown else ""
-    shown = f'<div class="scroll" tabindex="0" role="region" aria-label="Your answer">{drawn}</div>' if drawn else ""
-    shown = shown or f"<pre>{text(read, 2_000)}</pre>"
-    answer = f'<p class="soft">Your answer, as it was read:</p>{shown}' if read else ""
-    return (
-        f'<section class="question {mark["outcome"].replace(" ", "-")}"><div class="head"><h3>{order}. {text(_capital(mark["title"]))}</h3>'
-        f'<span class="verdict"><span aria-hidden="true">{sign}</span> {word} · {_points(mark)}</span></div>'
-        f'<p class="soft"><code>{text(name)}</code></p>{paragraphs}{answer}</section>'
-    )
-
-
-def _capital(title):
-    return title[:1].upper() + title[1:]
-
-
-def _points(mark):
-    earned = "–" if mark["outcome"] == "undecided" else number(mark["points"])
-    return f"{earned} of {number(mark['worth'])}"
-
-
-def _about_notebooks(record):
-    items = []
-    for notebook in record["notebooks"]:
-        name = f"<code>{text(notebook['file'])}</code>"
-        items += [f"<li>{name}: {pages.message(NOTES.get(note, note))}</li>" for note in notebook["notes"]]
-        failed = [
-            (order, cell)
-            for order, cell in enumerate(notebook["cells"], 1)
-            if cell["outcome"] not in ("done", "not run")
-        ]
-        items += [
-            f"<li>{name}: code cell {order} stopped{_line(cell)}. <code>{text(cell.get('error', cell['outcome']))}</code></li>"
-            for order, cell in failed[:10]
-        ]
-        if notebook["unknown questions"]:
-            items.append(
-                f"<li>{name}: no question is called {', '.join(f'<code>{text(one)}</code>' for one in notebook['unknown questions'][:5])}.</li>"
+    """The page that a student gets; ``answers`` of the record are plain data."""
+    return page(
+        "feedback.html",
+        record=record,
+        questions=[
+            (
+                name,
+                mark,
+                DECIDED if mark["outcome"] == "decided" else OUTCOMES[mark["outcome"]][:2],
+                _shown(record, name),
             )
-    items += [
-        f"<li><code>{text(notebook['file'])}</code> was not counted: a newer notebook answers the same questions.</li>"
-        for notebook in record["superseded"]
-    ]
-    return f"<h2>Your notebook</h2><ul>{''.join(items)}</ul>" if items else ""
+            for name, mark in record["marks"].items()
+        ],
+        notebooks=[(notebook, _stopped(notebook)) for notebook in record["notebooks"]],
+        notes=NOTES,
+    )
 
 
-def _line(cell):
-    return f" in line {cell['line']}" if "line" in cell else ""
+def _shown(record, name):
+    """An answer as it was read, as mathematics and as text; nothing where there is nothing to show."""
+    plain = record["answers"].get(name)
+    # What a function returned is not repeated: a list of it would do for a friend's answer.
+    if not plain or record["marks"][name]["outcome"] == "not attempted" or plain["value"][0] == "function":
+        return None
+    return plain, pages.answer_as_text(plain)
 
 
-def _count(how_many, one, more):
-    return f"{how_many} {one if how_many == 1 else more}"
+def _stopped(notebook):
+    """The cells of a notebook that did not come to their end, with their numbers."""
+    cells = enumerate(notebook["cells"], 1)
+    return [(order, cell) for order, cell in cells if cell["outcome"] not in ("done", "not run")][:MOST_STOPPED]
 
 
 # --- for the instructor -------------------------------------------------------------------------
@@ -289,71 +244,54 @@ def _deeds():
 
 def report(classes, refused):
     """The page on the class."""
-    body = ["<h1>How the class did</h1>"]
-    if not classes:
-        body.append("<p>Nothing has been graded.</p>")
-    for assignment, found in sorted(classes.items()):
-        body.append(_assignment(assignment, found))
-    if refused:
-        rows = "".join(f"<tr><td><code>{text(file)}</code></td><td>{text(why)}</td></tr>" for file, _, why in refused)
-        body.append(
-            f'<h2 id="refused">Files that were not graded</h2><p>{_count(len(refused), "file was", "files were")} refused. '
-            "Whoever handed one in may not know.</p>"
-            f'<div class="scroll"><table><thead><tr><th>File</th><th>Why</th></tr></thead><tbody>{rows}</tbody></table></div>'
-        )
-    body.append(_how(classes))
-    return pages.page("How the class did", "\n".join(body))
+    ways = sum((found.ways for found in classes.values()), Counter())
+    versions = sum((found.versions for found in classes.values()), Counter())
+    return page(
+        "report.html",
+        classes=[(name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())],
+        refused=refused,
+        ways=sorted(ways.items()),
+        versions=sorted(versions.items()),
+        parts=PARTS,
+        feedback_of=feedback_of,
+    )
 
 
-def _assignment(assignment, found):
+def _about(found):
+    """What the report shows of an assignment, worked out."""
     points = list(found.points.elements())
-    said = (
-        f'<section><h2 id="{file_name(assignment)}">{text(assignment)}</h2>'
-        f"<p>{_count(found.students, 'student', 'students')}. The mean is {mean(points):.1f} of {number(found.worth)} "
-        f"points, the median {number(median(points))}.</p>"
-    )
-    return (
-        said
-        + _histogram(found.points, found.worth)
-        + _success(found)
-        + _mixups(found)
-        + _clusters(found)
-        + _undecided(assignment, found)
-        + _odd(found)
-        + "</section>"
-    )
+    return {
+        "mean": f"{mean(points):.1f}",
+        "median": median(points),
+        "bars": _histogram(found.points, found.worth),
+        "success": [_success(name, counts) for name, counts in found.parts.items()],
+        "mixups": _mixups(found),
+        "same": _same(found),
+        "odd": sorted(found.odd.items()),
+    }
+
+
+WIDTH, HEIGHT, LEFT, BASE, TALLEST = 660, 190, 34, 158, 120  # of the histogram
 
 
 def _histogram(points, worth):
+    """The bars: where each begins, how wide and tall it is, the students in it, and its points."""
     bins = min(10, max(1, round(worth)))
     counts = [0] * bins
     for value, students in points.items():
         counts[min(bins - 1, int(value / worth * bins)) if worth else 0] += students
-    width, height, left, base = 660, 190, 34, 158
-    step, top = (width - 2 * left) / bins, max(counts)
-    bars = []
-    for order, count in enumerate(counts):
-        tall = count / top * 120 if top else 0
-        x = left + order * step
-        low, high = worth * order / bins, worth * (order + 1) / bins
-        bars.append(
-            f'<rect class="bar" x="{x + 3:.1f}" y="{base - tall:.1f}" width="{step - 6:.1f}" height="{tall:.1f}"/>'
-            f'<text x="{x + step / 2:.1f}" y="{base - tall - 6:.1f}" text-anchor="middle">{count or ""}</text>'
-            f'<text x="{x:.1f}" y="{base + 17}" text-anchor="middle">{number(round(low, 1))}</text>'
-        )
-        if order == bins - 1:
-            bars.append(
-                f'<text x="{x + step:.1f}" y="{base + 17}" text-anchor="middle">{number(round(high, 1))}</text>'
-            )
-    spoken = "; ".join(
-        f"{number(round(worth * order / bins, 1))} to {number(round(worth * (order + 1) / bins, 1))} points: {count}"
+    step, top = (WIDTH - 2 * LEFT) / bins, max(counts)
+    return [
+        {
+            "x": LEFT + order * step,
+            "step": step,
+            "tall": count / top * TALLEST if top else 0,
+            "count": count,
+            "low": round(worth * order / bins, 1),
+            "high": round(worth * (order + 1) / bins, 1),
+        }
         for order, count in enumerate(counts)
-    )
-    return (
-        f'<figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="Number of students by points. {spoken}.">'
-        f'<line class="axis" x1="{left}" y1="{base}" x2="{width - left}" y2="{base}"/>{"".join(bars)}</svg>'
-        "<figcaption>Number of students by points.</figcaption></figure>"
-    )
+    ]
 
 
 #: What a bar is made of, in order: outcomes, and what they are called.
@@ -366,32 +304,15 @@ PARTS = (
 )
 
 
-def _success(found):
-    rows = []
-    for order, (name, counts) in enumerate(found.parts.items(), 1):
-        total = sum(counts.values())
-        x, bars = 0.0, []
-        for part, _ in PARTS:
-            if counts[part]:
-                wide = 300 * counts[part] / total
-                bars.append(f'<rect class="edge of-{part}" x="{x:.1f}" y="0" width="{wide:.1f}" height="18"/>')
-                x += wide
-        spoken = ", ".join(f"{counts[part]} {word}" for part, word in PARTS if counts[part])
-        rows.append(
-            f'<tr><td class="number">{order}</td><td>{text(_capital(found.titles[name]))}<br><span class="soft">{spoken}</span></td>'
-            f'<td><svg viewBox="0 0 300 18" width="300" height="18" role="img" aria-label="{spoken}">{"".join(bars)}</svg></td>'
-            f'<td class="number">{_percent(counts["correct"], total)}</td></tr>'
-        )
-    key = "".join(
-        f'<span><svg width="11" height="11" viewBox="0 0 11 11" aria-hidden="true"><rect class="of-{part}" width="11" height="11"/></svg>'
-        f"{word}</span>"
-        for part, word in PARTS
-    )
-    return (
-        '<h3>Question by question</h3><div class="scroll"><table><thead><tr><th class="number">No.</th><th>Question</th>'
-        '<th>The class</th><th class="number">Right</th></tr></thead>'
-        f'<tbody>{"".join(rows)}</tbody></table></div><p class="key">{key}</p>'
-    )
+def _success(name, counts):
+    total, x, bars = sum(counts.values()), 0.0, []
+    for part, _ in PARTS:
+        if counts[part]:
+            wide = 300 * counts[part] / total
+            bars.append((part, x, wide))
+            x += wide
+    spoken = ", ".join(f"{counts[part]} {word}" for part, word in PARTS if counts[part])
+    return name, bars, spoken, _percent(counts["correct"], total)
 
 
 def _part(mark):
@@ -406,67 +327,20 @@ def _percent(part, whole):
 
 
 def _mixups(found):
-    numbers, titles = found.numbers, found.titles
-    shown = sorted(found.mixups.items(), key=lambda entry: (-entry[1], numbers[entry[0][0]], entry[0][1]))[:20]
-    rows = "".join(
-        f'<tr><td class="number"><strong>{_percent(count, found.students)}</strong></td>'
-        f'<td><svg viewBox="0 0 120 12" width="120" height="12" role="img" aria-label="{count} of {found.students}">'
-        f'<rect class="of-none" width="120" height="12"/><rect class="of-wrong" width="{120 * count / found.students:.1f}" height="12"/></svg></td>'
-        f'<td>{pages.message(what)} in question {numbers[name]}, <em>{text(titles[name])}</em> <span class="soft">({count} of {found.students})</span></td></tr>'
+    shown = sorted(found.mixups.items(), key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1]))[:20]
+    return [
+        (name, what, count, _percent(count, found.students), 120 * count / found.students)
         for (name, what), count in shown
         if count > 1 or found.students < 30
-    )
-    return (
-        (
-            '<h3>What was mixed up</h3><p>Of the class,</p><div class="scroll"><table><thead><tr><th class="number">Share</th><th></th>'
-            f"<th>did this</th></tr></thead><tbody>{rows}</tbody></table></div>"
-        )
-        if rows
-        else ""
-    )
+    ]
 
 
-def _clusters(found):
-    numbers = found.numbers
+def _same(found):
     shown = sorted(
         (entry for entry in found.same.items() if entry[1][0] > 1),
-        key=lambda entry: (-entry[1][0], numbers[entry[0][0]], entry[0][1]),
+        key=lambda entry: (-entry[1][0], found.numbers[entry[0][0]], entry[0][1]),
     )[:15]
-    rows = "".join(
-        f'<tr><td class="number">{students}</td><td class="number">{numbers[name]}</td><td><code>{text(answer)}</code></td></tr>'
-        for (name, _), (students, answer) in shown
-    )
-    return (
-        (
-            "<h3>The same wrong answer, without a name</h3><p>These answers were given more than once and no mistake that is "
-            'known leads to them. A look may show one that should be.</p><div class="scroll"><table><thead><tr>'
-            '<th class="number">Students</th><th class="number">Question</th><th>One of these answers</th></tr></thead>'
-            f"<tbody>{rows}</tbody></table></div>"
-        )
-        if rows
-        else ""
-    )
-
-
-def _undecided(assignment, found):
-    rows = "".join(
-        f'<tr><td><a href="{feedback_of(student, assignment)}">{text(student)}</a></td>'
-        f'<td class="number">{found.numbers[name]}</td>'
-        f"<td>{' '.join(map(pages.message, messages))}</td><td><code>{text(answer)}</code></td></tr>"
-        for student, name, messages, answer in found.undecided
-    )
-    left = found.waiting - len(found.undecided)
-    more = f"<p>And {left} more, in <code>undecided.csv</code>.</p>" if left else ""
-    return (
-        (
-            "<h3>For you to decide</h3><p>Copy <code>undecided.csv</code> to <code>decisions.csv</code>, write a credit "
-            "from 0 to 1 into its lines, and run <code>coursework regrade</code>. Until then these answers earn nothing and "
-            'are counted nowhere as wrong.</p><div class="scroll"><table><thead><tr><th>Student</th><th class="number">Question</th>'
-            f"<th>Why</th><th>The answer</th></tr></thead><tbody>{rows}</tbody></table></div>{more}"
-        )
-        if rows
-        else ""
-    )
+    return [(name, students, answer) for (name, _), (students, answer) in shown]
 
 
 def _oddities(record):
@@ -480,33 +354,3 @@ def _oddities(record):
     if record["superseded"]:
         found["handed in more than once; the newest counts"] = None
     return found
-
-
-def _odd(found):
-    rows = "".join(
-        f'<tr><td>{text(kind)}</td><td class="number">{students}</td><td>{text(", ".join(names), 4_000)}'
-        f"{' and others' if students > len(names) else ''}</td></tr>"
-        for kind, (students, names) in sorted(found.odd.items())
-    )
-    return (
-        (
-            '<h3>Notebooks worth a look</h3><div class="scroll"><table><thead><tr><th>What</th><th class="number">How many</th><th>Whose</th></tr></thead>'
-            f"<tbody>{rows}</tbody></table></div>"
-        )
-        if rows
-        else ""
-    )
-
-
-def _how(classes):
-    ways = sum((found.ways for found in classes.values()), Counter())
-    versions = sum((found.versions for found in classes.values()), Counter())
-    items = [
-        f"<li>{_count(count, 'notebook', 'notebooks')} isolated by {text(way)}.</li>"
-        for way, count in sorted(ways.items())
-    ]
-    items += [
-        f"<li>{_count(count, 'record', 'records')} made with {text(version)}.</li>"
-        for version, count in sorted(versions.items())
-    ]
-    return f'<h2>How it was graded</h2><ul class="soft">{"".join(items)}</ul>' if items else ""

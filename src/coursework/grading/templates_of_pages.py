@@ -20,10 +20,11 @@ ENVIRONMENT.filters |= {
     "message": lambda said: Markup(pages.message(said)),
     "capital": lambda text: text[:1].upper() + text[1:],
     "mathematics": lambda plain: Markup(answer_as_mathematics(plain)),
+    "count": lambda how_many, one, more: f"{how_many} {one if how_many == 1 else more}",
     "percent": lambda share: f"{100 * share:.0f} %",
 }
 
 
 def page(template, **about):
     """A page that is complete in one file, by the template of a name."""
-    return ENVIRONMENT.get_template(template).render(style=Markup(pages.STYLE), policy=pages.POLICY, **about)
+    return ENVIRONMENT.get_template(template).render(style=Markup(pages.STYLE), policy=Markup(pages.POLICY), **about)
