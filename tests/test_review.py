@@ -274,8 +274,14 @@ def test_pages_are_accessible_and_fit_a_telephone(out, browser, scheme):
         # The page's own policy lets no script in; it is tested elsewhere, and set aside for this one.
         context = browser.new_context(color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True)
         page = context.new_page()
-        for path in ("?show=all", f"answer/{first_of(served, 'hints')}?show=hints"):
-            page.goto(served.address + path)
+        written = [out / "report.html", *(out / "feedback").glob("[hb]*/turns.html")]
+        assert len(written) == 3
+        for place in (
+            f"{served.address}?show=all",
+            f"{served.address}answer/{first_of(served, 'hints')}?show=hints",
+            *(path.as_uri() for path in written),
+        ):
+            page.goto(place)
             page.evaluate(axe)
             found = page.evaluate("async () => (await axe.run()).violations.map(v => v.id + ': ' + v.nodes[0].html)")
             assert found == []

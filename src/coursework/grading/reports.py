@@ -16,7 +16,8 @@ from .store import file_name, write
 from .tables import lines, table
 from .templates_of_pages import page
 
-DECIDED = ("✓", "Decided by a person")
+#: What is said of an outcome once there is no "yet" any more.
+FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
 DEEDS = {
     "transposed": "gave the transpose",
@@ -187,12 +188,7 @@ def feedback(record):
         "feedback.html",
         record=record,
         questions=[
-            (
-                name,
-                mark,
-                DECIDED if mark["outcome"] == "decided" else OUTCOMES[mark["outcome"]][:2],
-                _shown(record, name),
-            )
+            (name, mark, FINAL.get(mark["outcome"]) or OUTCOMES[mark["outcome"]][:2], _shown(record, name))
             for name, mark in record["marks"].items()
         ],
         notebooks=[(notebook, _stopped(notebook)) for notebook in record["notebooks"]],
