@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -16,14 +17,21 @@ from jupyter_client import BlockingKernelClient  # noqa: E402
 
 TOKEN = "figures"
 PATIENCE = 120  # seconds, for a busy machine; nothing waits longer than it must
-# What Python sets, and where the figure then shows it.
+# What Python sets, and where the figure then shows it, if it has a field for that.
 SET = {
-    "triad": ("angle", 0.3, "theta in degrees", 17.19),
+    "belt": ("angle", 0.3, "theta, turn of the plate in degrees", 17.19),
+    "challenge": ("turns", (("z", 0.3),), "Angle of the last turn in degrees", 17.19),
+    "converter": ("quaternion", (1.0, 0.0, 0.0, 0.0), None, None),
     "gimbal": ("angles", (0.3, 0.2, 0.1), "psi in degrees", 17.19),
-    "nine_numbers": ("matrix", ((0, 1, 0), (-1, 0, 0), (0, 0, 1)), "row x, column y", 1),
-    "successive": ("turns", (("z", 0.3),), "Turn 1, to frame A in degrees", 17.19),
-    "quaternion": ("angle", 0.3, "theta in degrees", 17.19),
+    "graph": ("edges", (("A", "N", "z", 0.5), ("B", "N", "z", 0.4), ("C", "B", "x", 0.3)), None, None),
+    "hands": ("quaternion", (0.6, 0.0, 0.8, 0.0), None, None),
     "motion": ("time", 3.0, "Time in seconds", 3),
+    "nine_numbers": ("matrix", ((0, 1, 0), (-1, 0, 0), (0, 0, 1)), "row x, column y", 1),
+    "phone": ("angles", (0.3, 0.2, 0.1), "alpha in degrees", 17.19),
+    "quaternion": ("angle", 0.3, "theta in degrees", 17.19),
+    "simple": ("angle", 0.3, "theta in degrees", 17.19),
+    "successive": ("turns", (("z", 0.3),), "Turn 1, to frame A in degrees", 17.19),
+    "triad": ("angle", 0.3, "theta in degrees", 17.19),
 }
 FIRST_CELL = f"""
 from orientation_figures import moving
@@ -125,7 +133,9 @@ RUN_ALL = """async () => {
   while (sessionContext.session?.kernel?.status !== 'idle') await picture();
   commands.execute('notebook:run-all-cells');
 }"""
-DRAWN = "cell => [...cell.querySelectorAll('.marks path')].map(mark => mark.getAttribute('d')).join()"
+# The picture and the numbers.
+SHOWN = """cell => [...cell.querySelectorAll('.marks path, .number')]
+  .map((one) => one.getAttribute('d') ?? one.textContent).join()"""
 
 
 @pytest.mark.long
@@ -154,32 +164,39 @@ def test_python_and_every_figure_move_together(browser, laboratory):
     for number, kind in enumerate(KINDS, start=1):
         cell, (name, value, label, shown) = cells.nth(number), SET[kind]
         element = cell.element_handle()
-        cell.locator(".sheet").first.scroll_into_view_if_needed()
-        before = page.evaluate(DRAWN, element)
+        cell.locator(".moving").first.scroll_into_view_if_needed()
+        before = page.evaluate(SHOWN, element)
         # Python moves the figure.
         kernel.run(f"figures[{kind!r}].{name} = {value!r}")
-        field = cell.get_by_label(label, exact=True).first
-        page.wait_for_function(
-            "([field, value]) => Math.abs(field.value - value) < 0.01", arg=[field.element_handle(), shown]
-        )
-        page.wait_for_function(f"([cell, before]) => ({DRAWN})(cell) !== before", arg=[element, before])
+        if label:
+            page.wait_for_function(
+                "([field, value]) => Math.abs(field.value - value) < 0.01",
+                arg=[cell.get_by_label(label, exact=True).first.element_handle(), shown],
+            )
+        page.wait_for_function(f"([cell, before]) => ({SHOWN})(cell) !== before", arg=[element, before])
         assert kernel.value("heard[-1][:2]") == [kind, name]
         # Keys move Python, and nothing else of the notebook.
         count = kernel.value("len(heard)")
-        control = cell.locator("input[type=range]:visible, .entries input").first
-        control.focus()
-        page.keyboard.press("ArrowDown")
+        slider = cell.locator("input[type=range]:visible, .entries input")
+        if slider.count():
+            slider.first.focus()
+            page.keyboard.press("ArrowDown")
+        else:
+            cell.get_by_text(re.compile(r"^(\+15°|Exchange the two sides)$")).first.focus()
+            page.keyboard.press("Enter")
         count = until("len(heard)", count)
         assert kernel.value("heard[-1][0]") == kind
         assert page.evaluate("document.activeElement.closest('.jp-CodeCell') !== null")
         # A drag turns the view by itself, and moves Python where it takes hold of a part.
-        state, drawn = kernel.value(f"figures[{kind!r}].state()"), page.evaluate(DRAWN, element)
+        part = cell.locator(".plot" if kind == "motion" else ".grip:not([visibility=hidden])")
+        if not part.count():
+            continue
+        state, drawn = kernel.value(f"figures[{kind!r}].state()"), page.evaluate(SHOWN, element)
         box = cell.locator(".sheet").first.bounding_box()
         drag(page, (box["x"] + 8, box["y"] + box["height"] - 8), (60, 0))
-        page.wait_for_function(f"([cell, before]) => ({DRAWN})(cell) !== before", arg=[element, drawn])
+        page.wait_for_function(f"([cell, before]) => ({SHOWN})(cell) !== before", arg=[element, drawn])
         assert kernel.value(f"figures[{kind!r}].state()") == state
-        part = cell.locator(".plot" if kind == "motion" else ".grip:not([visibility=hidden])").last
-        box = part.bounding_box()
+        box = part.last.bounding_box()
         drag(page, (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2), (-30, 24))
         until("len(heard)", count)
         assert kernel.value("heard[-1][0]") == kind

@@ -56,9 +56,11 @@ export class Sensors {
 
   // An event of kind devicemotion. At rest an accelerometer is pushed up; phones of one maker report the opposite.
   // The angles tell where up is, so the sign is found rather than believed.
+  // Returns whether anything was told: where there is no sensor, browsers send an empty event.
   motion(event) {
     const felt = event.accelerationIncludingGravity, turning = event.rotationRate;
-    if (felt && felt.x !== null) {
+    const feels = felt && felt.x !== null, turns = turning && turning.alpha !== null;
+    if (feels) {
       const force = [felt.x, felt.y, felt.z];
       if (this.sign === null && this.angles && Math.abs(length(force) / GRAVITY - 1) < 0.1) {
         const up = transpose(dcmFromBodyFixed(this.angles, 'zxy'))[2];
@@ -68,7 +70,8 @@ export class Sensors {
       this.force = this.sign === null ? null : scale(this.sign, force);
     }
     // By the standard, and in every browser, alpha turns about x here, beta about y and gamma about z.
-    if (turning && turning.alpha !== null) this.rate = [turning.alpha, turning.beta, turning.gamma].map(radians);
+    if (turns) this.rate = [turning.alpha, turning.beta, turning.gamma].map(radians);
+    return Boolean(feels || turns);
   }
 }
 
@@ -164,7 +167,7 @@ export function render({ model, el }) {
   }
 
   function moved(event) {
-    sensors.motion(event);
+    if (!sensors.motion(event)) return;
     if (alive) redraw();
     if (!recording || !alive) return;
     began ??= event.timeStamp;
