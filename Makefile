@@ -14,12 +14,13 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-all times take-away notebooks release renew-pins benchmark clean
+.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark clean
 
 help:
 	@echo "make book       build the site into _build/html"
 	@echo "make serve      build it, serve it on a local address and print that"
-	@echo "make take-away  build it with the whole book as a PDF and as a zip to read offline"
+	@echo "make take-away  build it with the whole book as a PDF, as an EPUB and as a zip"
+	@echo "make numpy      fetch NumPy and Matplotlib for browsers; BOOK_NUMPY=_build/numpy make book then puts them beside the pages"
 	@echo "make new-chapter NAME=belt-trick TITLE='The belt trick'   a chapter with all its parts"
 	@echo "make new-question NAME=belt-trick/twist TITLE='A twist' KIND='quaternion'   a question for it"
 	@echo "make check      style, types, pins and links (a minute at most, no browser)"
@@ -79,6 +80,10 @@ serve: book
 
 take-away: $(VENV)/ready-print book
 	@$(RUN) -m website.whole_book
+
+# Built with BOOK_NUMPY=_build/numpy, the pages ask nobody else for anything. Each file is compared with its fingerprint.
+numpy: setup
+	@$(RUN) -m website.live.fetch _build/numpy
 
 # What an author begins with. AFTER names the chapter that the new one follows; it is released, so that the book builds.
 new-chapter: $(VENV)/ready-release setup

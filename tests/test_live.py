@@ -322,6 +322,17 @@ def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_pat
     assert not (target / numpy).exists()
 
 
+def test_one_setting_puts_them_beside_the_pages(monkeypatch):
+    """As the workflow that publishes sets it: the makefile's command and its folder are the same."""
+    monkeypatch.setenv("BOOK_NUMPY", "_build/numpy")
+    assert runtime.numpy_setting("official") == "_build/numpy"
+    monkeypatch.setenv("BOOK_NUMPY", "")
+    assert runtime.numpy_setting("official") == "official"
+    assert "website.live.fetch _build/numpy" in (REPOSITORY / "Makefile").read_text("utf8")
+    steps = (REPOSITORY / ".github" / "workflows" / "publish.yml").read_text("utf8")
+    assert steps.index("run: make numpy") < steps.index("run: make take-away") < steps.index("BOOK_NUMPY: _build/numpy")
+
+
 @pytest.mark.parametrize("setting", ["off", False])
 def test_numpy_off(setting, tmp_path):
     assert runtime.numerical_packages(setting, tmp_path, runtime.official_lock(), "unused") == {}

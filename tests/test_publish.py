@@ -8,9 +8,11 @@ from urllib.parse import parse_qs, urlsplit
 
 import pytest
 import yaml
+from bs4 import BeautifulSoup
 from conftest import HTML, REPOSITORY
 from test_website import build, chapter
 
+import orientation
 from website.finish import pages_of
 from website.paths import pages
 from website.publish import LICENCE, LONGEST
@@ -51,6 +53,23 @@ def test_files_for_machines():
     assert all((HTML / address).is_file() for address in re.findall(r"\]\(([^)]*)\)", outline))
     missing = (HTML / "404.html").read_text("utf8")
     assert 'href="/index.html"' in missing and "_static" not in missing, "it stands in for an address in any folder"
+
+
+def test_index_names_every_term_symbol_and_function():
+    """And leads from each of them to where it is explained, and to pages that speak of it."""
+    page = BeautifulSoup((HTML / "appendix" / "subject-index.html").read_text("utf8"), "lxml").article
+    terms, symbols, functions = (page.select(f"#{name} li") for name in ("terms", "symbols", "functions-and-classes"))
+    first = [item.a.get_text() for item in terms]
+    glossary = BeautifulSoup((HTML / "appendix" / "glossary.html").read_text("utf8"), "lxml").article
+    assert set(first) == {entry.find(string=True).strip() for entry in glossary.select("dl.glossary > dt")}
+    assert first == sorted(first, key=str.casefold) and len(first) > 30
+    assert all(item.a["href"].startswith("glossary.html#") for item in terms)
+    assert sum(len(item.select("a")) > 1 for item in terms) > 0.8 * len(terms), "most terms are in a chapter"
+    assert len(symbols) >= 8 and all(item.select_one(".katex") for item in symbols)
+    names = {item.a.get_text() for item in functions}
+    assert names >= {name for name in orientation.__all__ if callable(getattr(orientation, name))}
+    (slerp,) = [item for item in functions if item.a.get_text() == "interpolate_quaternions"]
+    assert any("quaternions-in-full.html" in link["href"] for link in slerp.select("a"))
 
 
 def test_title_is_said_once():

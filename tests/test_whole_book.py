@@ -1,6 +1,7 @@
 """The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk without a network."""
 
 import re
+import shutil
 import subprocess
 import sys
 import unicodedata
@@ -21,7 +22,7 @@ from website.paths import pages, parts
 pikepdf = pytest.importorskip("pikepdf")
 pdfium = pytest.importorskip("pypdfium2")
 
-PDF, ZIP = (REPOSITORY / path for path in (whole_book.PDF, whole_book.ZIP))
+PDF, EPUB, ZIP = (REPOSITORY / path for path in (whole_book.PDF, whole_book.EPUB, whole_book.ZIP))
 TITLE = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))["title"]
 CHAPTERS = [page for page in pages() if page.startswith("chapters/")]
 MARGIN = 20  # millimetres at either side that nothing may enter
@@ -30,8 +31,8 @@ MILLIMETRE = 72 / 25.4
 
 @pytest.fixture(autouse=True)
 def made(request):
-    """Both files, made by `make take-away` from the site as it stands; `make test` does not look at them."""
-    if request.node.get_closest_marker("long") and not (PDF.exists() and ZIP.exists()):
+    """All files, made by `make take-away` from the site as it stands; `make test` does not look at them."""
+    if request.node.get_closest_marker("long") and not all(path.exists() for path in (PDF, EPUB, ZIP)):
         reason = "the whole book was not made: run `make take-away`"
         pytest.fail(reason) if browser_module.find() or BROWSER_REQUIRED else pytest.skip(reason)
 
@@ -235,10 +236,10 @@ def test_without_a_browser_it_says_so(monkeypatch):
 
 
 @pytest.mark.long
-def test_front_page_offers_both():
+def test_front_page_offers_all():
     front = (HTML / "index.html").read_text("utf8")
     (place,) = whole_book.PLACE.findall(front)
-    for path in (PDF, ZIP):
+    for path in (PDF, EPUB, ZIP):
         assert f'href="take-away/{path.name}"' in place
         assert f"{path.stat().st_size / 1e6:.1f} MB" in place
 
@@ -251,6 +252,40 @@ def test_offer_is_written_and_withdrawn():
     assert whole_book.with_offer(offered, []) == front
     with pytest.raises(RuntimeError, match="one place"):
         whole_book.with_offer("<h1>Book</h1>", [])
+
+
+# ---- the EPUB -------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def chapters_of_epub():
+    with zipfile.ZipFile(EPUB) as archive:
+        return {name.removeprefix("book/"): archive.read(name).decode() for name in archive.namelist()}  # all is text
+
+
+@pytest.mark.long
+def test_epub_is_valid():
+    """By the checker of those who write the standard."""
+    checker = shutil.which("epubcheck")
+    if not checker:
+        pytest.fail("epubcheck is not installed") if BROWSER_REQUIRED else pytest.skip("epubcheck is not installed")
+    # Debian's command is the archive of Java itself.
+    done = subprocess.run(["java", "-jar", checker, "--failonwarnings", EPUB], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+
+
+@pytest.mark.long
+def test_epub_holds_every_formula_and_every_figure(chapters_of_epub):
+    for page in pages():
+        site = BeautifulSoup((HTML / f"{page}.html").read_text("utf8"), "lxml").article
+        text = BeautifulSoup(chapters_of_epub[f"{page.replace('/', '-')}.xhtml"], "xml")
+        for fold in site.select("details.hide, button, script, .whole-book, .sd-container-fluid"):
+            fold.decompose()
+        assert len(text.find_all("math")) == len(site.select(".katex")), page
+        assert all(math["alttext"] for math in text.find_all("math"))
+        assert not text.select("script, button, input, .katex, details.hide")
+        for drawing in text.select("figure > svg[role=img]"):
+            assert drawing.get("aria-label") or drawing.get("aria-labelledby"), page
 
 
 # ---- the zip -------------------------------------------------------------------
@@ -285,10 +320,10 @@ def test_same_files_give_the_same_zip(monkeypatch):
 
 
 @pytest.mark.long
-def test_front_page_in_the_zip_offers_the_pdf_alone(unpacked):
+def test_front_page_in_the_zip_offers_what_is_not_the_zip(unpacked):
     front = (unpacked / "index.html").read_text("utf8")
     (place,) = whole_book.PLACE.findall(front)
-    assert re.findall(r'href="([^"]*)"', place) == [f"take-away/{PDF.name}"]
+    assert re.findall(r'href="([^"]*)"', place) == [f"take-away/{path.name}" for path in (PDF, EPUB)]
     assert (unpacked / "take-away" / PDF.name).read_bytes() == PDF.read_bytes()
     assert "python serve.py" in (unpacked / "README.txt").read_text("utf8")
 

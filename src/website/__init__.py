@@ -20,12 +20,13 @@ from . import (
     progress,
     publish,
     questions,
+    subject_index,
     take_away,
 )
 
 
 def setup(app):
-    pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress)
+    pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress, subject_index)
     for module in (*pages, take_away, page, publish, moving, live, lite, install, finish):
         module.setup(app)
     return {"version": "1.0", "parallel_read_safe": True, "parallel_write_safe": True}

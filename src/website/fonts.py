@@ -1,68 +1,174 @@
-"""The style sheet that carries the typefaces and KaTeX's rules.
+"""The typefaces, cut down to what pages use, and the rules by which pages find them.
 
-The fonts every page needs ride inside it: a style sheet is there before the
-first paint, so no line of text or mathematics moves when its font arrives.
+Each face is a file of its own, with its fingerprint in its name. The rules stand in the page itself, so that the files
+are asked for at once, and no style sheet waits for them. What a face lacks comes from the whole of it, fetched only
+when a page has such a sign. Until the typefaces are there, which layout.html awaits for a moment, the text stands in
+the reader's own, made as wide as the book's.
 """
 
-import base64
+import io
 import re
 import shutil
+from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
-from .paths import NODE_MODULES
+from fontTools.ttLib import TTFont
+
+from .paths import NODE_MODULES, fingerprint
 
 KATEX = NODE_MODULES / "katex" / "dist"
-INLINE_KATEX = {
-    "Main-Regular", "Main-Bold", "Math-Italic",
-    "Size1-Regular", "Size2-Regular", "Size3-Regular", "Size4-Regular",
-}  # fmt: skip
 SERIF = NODE_MODULES / "@fontsource" / "source-serif-4" / "files"
 SANS = NODE_MODULES / "@fontsource-variable" / "source-sans-3" / "files"
-TEXT_FACES = (
-    # family, weight, style, file
-    ("Source Serif 4", "400", "normal", SERIF / "source-serif-4-latin-400-normal.woff2"),
-    ("Source Serif 4", "400", "italic", SERIF / "source-serif-4-latin-400-italic.woff2"),
-    ("Source Serif 4", "600", "normal", SERIF / "source-serif-4-latin-600-normal.woff2"),
-    ("Source Sans 3", "200 900", "normal", SANS / "source-sans-3-latin-wght-normal.woff2"),
+#: Signs of the text; the files of fontsource hold hardly more.
+LATIN = "U+20-7E,U+A0-FF,U+131,U+152-153,U+2BC,U+2C6,U+2DA,U+2DC,U+2009-200B,U+2010-2026,U+202F,U+2032,U+20AC,U+2212"
+#: Signs of formulas: letters, Greek, operators, brackets and accents.
+GREEK = "U+391-3A9,U+3B1-3C9,U+3D1,U+3D5-3D6,U+3F1,U+3F5"
+FORMULAS = (
+    "U+20-7E,U+A0,U+A8,U+AF-B1,U+B4,U+B7,U+D7,U+F7,U+131,U+2C6-2DC,U+391-3A9,U+2013-2026,U+2032,U+20D7,"
+    "U+2190-2193,U+21A6,U+21D2,U+21D4,U+2200-2208,U+2211-221E,U+2223-222B,U+223C,U+2245-2248,U+2260-226B,U+22A4-22A5,"
+    "U+22C5,U+22EE-22F1,U+27E8-27E9,U+27F6,U+27FA"
 )
+FACES = (
+    # family, weight, style, file, signs, whether the whole file stands by
+    ("Source Serif 4", "400", "normal", SERIF / "source-serif-4-latin-400-normal.woff2", LATIN, False),
+    ("Source Serif 4", "400", "italic", SERIF / "source-serif-4-latin-400-italic.woff2", LATIN, False),
+    ("Source Serif 4", "600", "normal", SERIF / "source-serif-4-latin-600-normal.woff2", LATIN, False),
+    ("Source Sans 3", "400 600", "normal", SANS / "source-sans-3-latin-wght-normal.woff2", LATIN, False),
+    ("KaTeX_Main", "400", "normal", KATEX / "fonts" / "KaTeX_Main-Regular.woff2", FORMULAS, True),
+    ("KaTeX_Main", "700", "normal", KATEX / "fonts" / "KaTeX_Main-Bold.woff2", "U+20-7E,U+A0,U+2C6-2DC,U+D7", True),
+    ("KaTeX_Math", "400", "italic", KATEX / "fonts" / "KaTeX_Math-Italic.woff2", f"U+20-7E,U+A0,{GREEK}", True),
+    *((f"KaTeX_Size{n}", "400", "normal", KATEX / "fonts" / f"KaTeX_Size{n}-Regular.woff2", None, False)
+      for n in (1, 2, 3, 4)),
+)  # fmt: skip
+#: The reader's own typefaces until the book's are there: each as wide, on the average of English text.
+UNTIL_THEN = {
+    "Georgia": 106.7, "Noto Serif": 98.9, "DejaVu Serif": 92.9, "Times New Roman": 117,
+    "Roboto": 94, "Arial": 93.8, "DejaVu Sans": 82.5,
+}  # fmt: skip
+FOLDER = Path("_static", "fonts")
+FEATURES = ["kern", "liga", "mark", "mkmk", "ccmp", "locl", "tnum"]
 
 
-def inline(font):
-    data = base64.b64encode(font.read_bytes()).decode()
-    return f'src:url(data:font/woff2;base64,{data}) format("woff2")'
+def codes(signs):
+    """The numbers that a ``unicode-range`` names."""
+    for part in re.findall(r"U\+([0-9A-F]+(?:-[0-9A-F]+)?)", signs):
+        first, _, last = part.partition("-")
+        yield from range(int(first, 16), int(last or first, 16) + 1)
 
 
-def text_faces():
-    return "".join(
-        f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};{inline(file)}}}\n'
-        for family, weight, style, file in TEXT_FACES
-    )
+def beyond(file, signs):
+    """The ``unicode-range`` of what the face ``file`` has beyond ``signs``."""
+    left = sorted(set(TTFont(file).getBestCmap()) - set(codes(signs)))
+    starts = [code for code in left if code - 1 not in left]
+    ends = [code for code in left if code + 1 not in left]
+    return ",".join(f"U+{a:X}" if a == b else f"U+{a:X}-{b:X}" for a, b in zip(starts, ends))
+
+
+def cut(file, signs, weights):
+    """The bytes of the face ``file`` with ``signs`` alone; of one that varies, with those ``weights``."""
+    from fontTools import subset
+    from fontTools.varLib import instancer
+
+    font = TTFont(file)
+    options = subset.Options(layout_features=FEATURES, hinting=False, notdef_outline=True)
+    cutter = subset.Subsetter(options)
+    cutter.populate(unicodes=list(codes(signs)) if signs else list(font.getBestCmap()))
+    cutter.subset(font)
+    if "fvar" in font:
+        whole = io.BytesIO()
+        font.flavor = None
+        font.save(whole)
+        font = instancer.instantiateVariableFont(TTFont(whole), {"wght": tuple(map(int, weights.split()))})
+    font["head"].modified = font["head"].created  # the same bytes each time
+    font.recalcTimestamp = False
+    font.flavor = "woff2"
+    made = io.BytesIO()
+    font.save(made)
+    return made.getvalue()
+
+
+@cache
+def cut_faces():
+    """The folder with all faces cut; made once for each version of them, for it takes seconds."""
+    folder = NODE_MODULES / ".cache" / f"fonts-{fingerprint(Path(__file__), *(face[3] for face in FACES))}"
+    folder.mkdir(parents=True, exist_ok=True)
+    for _, weight, _, file, signs, _ in FACES:
+        if not (folder / file.name).exists():
+            part = folder / f"{file.name}.part"
+            part.write_bytes(cut(file, signs, weight))
+            part.replace(folder / file.name)
+    return folder
+
+
+@cache
+def files():
+    """What is to stand in the folder of fonts: for each name there, the file that it is a copy of."""
+    found = {}
+    for _, _, _, file, _, whole in FACES:
+        for source in (cut_faces() / file.name, *([file] if whole else [])):
+            found[f"{file.stem}-{sha256(source.read_bytes()).hexdigest()[:8]}.woff2"] = source
+    return found
+
+
+def name_of(source):
+    return next(name for name, known in files().items() if known == source)
+
+
+@cache
+def face_rules(folder):
+    """The rules for the page, whose fonts stand in ``folder``."""
+    rules = []
+    for family, weight, style, file, signs, whole in FACES:
+        rule = f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};font-display:swap;src:url('
+        parts = [(cut_faces() / file.name, f";unicode-range:{signs}" if whole else "")]
+        if whole:
+            parts.append((file, f";unicode-range:{beyond(file, signs)}"))
+        rules += [f'{rule}{folder}/{name_of(source)}) format("woff2"){reach}}}' for source, reach in parts]
+    for name, width in UNTIL_THEN.items():
+        rules.append(f'@font-face{{font-family:"{name} for now";src:local("{name}");size-adjust:{width}%}}')
+    return "\n".join(rules)
 
 
 def katex_rules(folder):
-    """KaTeX's style sheet; fonts that few pages need go to ``folder`` as files."""
+    """KaTeX's rules, without those that the page itself has; the fonts that few pages need go to ``folder``."""
+    known = {face[3].name for face in FACES}
 
-    def source(match):
-        name = match["name"]
-        font = KATEX / "fonts" / f"KaTeX_{name}.woff2"
-        if name in INLINE_KATEX:
-            return inline(font)
+    def rule(match):
+        font = KATEX / "fonts" / re.search(r"KaTeX_[\w-]+\.woff2", match[0])[0]
+        if font.name in known:
+            known.remove(font.name)
+            return ""
         shutil.copyfile(font, folder / font.name)
-        return f'src:url({font.name}) format("woff2")'
+        return re.sub(r"src:url\([^}]*", f'src:url(fonts/{font.name}) format("woff2")', match[0])
 
-    rules = (KATEX / "katex.min.css").read_text("utf8")
-    rules, count = re.subn(r"src:url\(fonts/KaTeX_(?P<name>[\w-]+)\.woff2\)[^}]*", source, rules)
-    if count < len(INLINE_KATEX):
+    rules = re.sub(r"@font-face\{[^}]*\}", rule, (KATEX / "katex.min.css").read_text("utf8"))
+    if any(name.startswith("KaTeX") for name in known):
         raise RuntimeError("KaTeX's style sheet no longer names its fonts as expected")
     return rules
 
 
 def write(app):
     if app.builder.format == "html":
-        folder = Path(app.outdir) / "_static" / "fonts"
+        folder = Path(app.outdir, FOLDER)
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "fonts.css").write_text(text_faces() + katex_rules(folder), "utf8")
+        for outdated in folder.iterdir():
+            if outdated.name not in files():
+                outdated.unlink()
+        for name, source in files().items():
+            shutil.copyfile(source, folder / name)
+
+
+def add_to_head(app, pagename, templatename, context, doctree):
+    """Give the page its rules, and what is to be fetched at once: of KaTeX's faces nothing, if it has no formula."""
+    folder = context["pathto"](str(FOLDER), 1)
+    context["font_faces"] = face_rules(folder)
+    used = [face for face in FACES if 'class="katex' in context.get("body", "") or not face[0].startswith("KaTeX")]
+    context["first_fonts"] = [f"{folder}/{name_of(cut_faces() / file.name)}" for _, _, _, file, *_ in used]
+    # As a style sheet says it, so that a script can ask for it.
+    context["first_faces"] = [f'{style} {weight.split()[0]} 1em "{family}"' for family, weight, style, *_ in used]
 
 
 def setup(app):
     app.connect("builder-inited", write)
+    app.connect("html-page-context", add_to_head)

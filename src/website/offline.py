@@ -9,6 +9,7 @@ import zipfile
 from .paths import WEBSITE, moment_of_sources
 
 SERVER = WEBSITE / "serve.py"
+LICENCES = "Text: CC BY 4.0. Code: BSD 3-Clause."
 README = """{title}
 {line}
 
@@ -27,13 +28,13 @@ and open the address that it prints. It answers to your computer alone, and
 needs no network either. (Cells that use NumPy or Matplotlib may fetch these
 two from the network the first time, and say so.)
 
-Text: CC BY 4.0. Code: BSD 3-Clause.
+{licences}
 """
 
 
 def pack(files, name, title):
     """The zip of ``files``, contents by path, in a folder called ``name``."""
-    readme = README.format(title=title, line="=" * len(title))
+    readme = README.format(title=title, line="=" * len(title), licences=LICENCES)
     files = {"README.txt": readme.encode(), "serve.py": SERVER.read_bytes(), **files}
     date = moment_of_sources().timetuple()[:6]
     packed = io.BytesIO()

@@ -6,9 +6,11 @@ from pathlib import Path
 
 from docutils import nodes
 
+from .fonts import katex_rules
 from .paths import NODE, NODE_MODULES, WEBSITE
 
-PURGE = NODE_MODULES / "purgecss" / "bin" / "purgecss.js"
+PURGE = WEBSITE / "purge.mjs"
+ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 # The style sheets of the theme and of the other extensions, in their order.
 # They become one file in one cascade layer, so that every rule of book.css
@@ -22,7 +24,7 @@ THEME_STYLES = (
     "mystnb.*.css",
     "exercise.css",
 )
-STYLES = ("theme.css", "fonts/fonts.css", "book.css")
+STYLES = ("theme.css", "book.css")
 # Scripts that some extension would put on every page although no page uses them.
 UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS")
 UNUSED_FILES = (
@@ -85,35 +87,48 @@ def trim_page(app, pagename, templatename, context, doctree):
         return not any(word in name or word in body for word in UNUSED_SCRIPTS)
 
     context["script_files"][:] = filter(is_used, context["script_files"])
+    for script in context["script_files"]:
+        script.attributes.setdefault("defer", "defer")  # no script is awaited before the text is shown
     context["styles"] = STYLES
     if "body" in context:
         context["body"] = lighten(context["body"])
 
 
+def theme_styles(static):
+    return [path for name in THEME_STYLES for path in sorted(static.glob(name))]
+
+
 def bundle_styles(site):
-    """Write the theme's style sheets as one layer: no icon font, no rule that no page uses."""
+    """Write the theme's style sheets as one layer, and KaTeX's: no icon font, no rule that no page uses, no blank."""
     static = site / "_static"
-    parts = [path for name in THEME_STYLES for path in sorted(static.glob(name))]
+    parts = theme_styles(static)
     if (static / "basic.css").exists():  # else Sphinx had nothing to build and copied nothing
         rules = "\n".join(path.read_text("utf8") for path in parts)
         rules = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", rules, flags=re.DOTALL)
         theme = static / "theme.css"
         theme.write_text("@layer theme {\n" + rules + "\n}\n", "utf8")
-        users = [str(site / "**/*.html"), str(static / "**/*.js")]
-        subprocess.run([NODE, PURGE, "--css", theme, "--content", *users, "--output", theme], check=True)
+        others = [static / "book.css", *static.glob("**/*.js"), *static.glob("moving/*.css")]
+        subprocess.run([NODE, PURGE, NODE_MODULES, site, theme, *others], check=True)
+        with theme.open("a", encoding="utf8") as file:
+            file.write(katex_rules(static / "fonts"))
     for path in parts:
         path.unlink()
+    for sheet in [*static.glob("*.css"), *static.glob("moving/*.css")]:
+        command = [NODE, ESBUILD, "--minify", "--log-level=warning", "--allow-overwrite", f"--outfile={sheet}", sheet]
+        subprocess.run(command, check=True)
 
 
 def finish(app, exception):
     if exception or app.builder.format != "html":
         return
     static = Path(app.outdir) / "_static"
-    bundle_styles(Path(app.outdir))
+    # First what no page uses goes: the words of a script may be names of styles.
+    kept = theme_styles(static)
     for pattern in UNUSED_FILES:
         for path in static.glob(pattern):
-            if path.is_file():
+            if path.is_file() and path not in kept:
                 path.unlink()
+    bundle_styles(Path(app.outdir))
     for folder in sorted(static.rglob("*"), reverse=True):
         if folder.is_dir() and not any(folder.iterdir()):
             folder.rmdir()

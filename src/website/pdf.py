@@ -17,6 +17,7 @@ from bs4 import BeautifulSoup, Comment
 
 import orientation
 
+from . import fonts
 from .browser import open_browser
 from .paths import NODE_MODULES, WEBSITE, moment_of_sources, parts
 
@@ -105,7 +106,15 @@ def move_answers(text):
     text.section.append(answers)
 
 
-def article(site, page):
+def as_picture(formula):
+    """A PDF has no MathML: screen readers get the formula as it is written in TeX."""
+    tex = formula.select_one("annotation").get_text()
+    formula.select_one(".katex-mathml").decompose()
+    del formula.select_one(".katex-html")["aria-hidden"]
+    formula["role"], formula["aria-label"] = "img", re.sub(r"\s+", " ", tex)
+
+
+def article(site, page, set_formula=as_picture):
     """The text of a page, ready to stand in one document with the others."""
     soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
     text = soup.select_one("article")
@@ -114,12 +123,8 @@ def article(site, page):
     for heading in text.select("section > :is(h2, h3):only-child"):
         heading.parent.decompose()  # all that stood under it was for the screen
     move_answers(text)
-    # A PDF has no MathML: screen readers get the formula as it is written in TeX.
     for formula in text.select(".katex"):
-        tex = formula.select_one("annotation").get_text()
-        formula.select_one(".katex-mathml").decompose()
-        del formula.select_one(".katex-html")["aria-hidden"]
-        formula["role"], formula["aria-label"] = "img", re.sub(r"\s+", " ", tex)
+        set_formula(formula)
     for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
         comment.extract()
     for paragraph in text.find_all("p"):
@@ -244,12 +249,13 @@ def document(site, title):
             text.insert(0, BeautifulSoup(f'<h1 class="part">{escape(caption)}</h1>', "html.parser"))
         body.append(str(text))
     static = (site / "_static").resolve().as_uri()
-    styles = ["theme.css", "fonts/fonts.css", "book.css", "moving/moving.css"]
+    styles = ["theme.css", "book.css", "moving/moving.css"]
     links = "".join(f'<link rel="stylesheet" href="{static}/{name}">' for name in styles)
     own = (WEBSITE / "print.css").read_text("utf8")
     return (
         f'<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f"{links}<style>{faces()}{own}{running_heads(chapters)}</style></head><body>{''.join(body)}</body></html>"
+        f"{links}<style>{fonts.face_rules(static + '/fonts')}{faces()}{own}{running_heads(chapters)}</style></head>"
+        f"<body>{''.join(body)}</body></html>"
     )
 
 

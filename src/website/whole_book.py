@@ -1,6 +1,6 @@
-"""``python -m website.whole_book``: the whole book to take away, as a PDF and as a zip.
+"""``python -m website.whole_book``: the whole book to take away, as a PDF, as an EPUB and as a zip.
 
-Both are made from the built site and put into it, and the front page offers them. Each is made
+All are made from the built site and put into it, and the front page offers them. Each is made
 again only when something that goes into it has changed; `make book` withdraws what has become old.
 """
 
@@ -19,8 +19,8 @@ from .paths import BUILD, HTML, WEBSITE, fingerprint, package, pages
 
 NAME = package()["name"]
 FOLDER = HTML / "take-away"
-PDF, ZIP = FOLDER / f"{NAME}.pdf", FOLDER / f"{NAME}.zip"
-STAMPS = BUILD / "whole-book.json"  # what the two were made from
+PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
+STAMPS = BUILD / "whole-book.json"  # what they were made from
 FRONT = "index.html"
 # The place on the front page: a comment in its source, and what stands between it and the second mark.
 PLACE = re.compile(r"<!-- whole-book -->(?:.*?<!-- /whole-book -->)?", re.DOTALL)
@@ -37,11 +37,11 @@ def with_offer(front, links):
 
 
 def site_files():
-    """What is in the site, contents by path, without the PDF, the zip and the offer of them."""
+    """What is in the site, contents by path, without the PDF, the EPUB, the zip and the offer of them."""
     files = {
         str(path.relative_to(HTML)): path.read_bytes()
         for path in sorted(HTML.rglob("*"))
-        if path.is_file() and path not in (PDF, ZIP, HTML / install.LIST)
+        if path.is_file() and path not in (PDF, EPUB, ZIP, HTML / install.LIST)
     }
     files[FRONT] = with_offer(files[FRONT].decode(), []).encode()
     return files
@@ -54,13 +54,16 @@ def digest(files, *programs):
 
 
 def stamps():
-    """What the PDF and the zip would be made from now."""
+    """What each of them would be made from now."""
     files = site_files()
     kinds = tuple(f"{page}.html" for page in pages())
     printed = {path: text for path, text in files.items() if path in kinds or path.endswith((".css", ".woff2"))}
     found = {PDF.name: digest(printed, *(WEBSITE / name for name in ("pdf.py", "print.css", "browser.py")))}
-    if PDF.exists():
-        files[PDF.name] = PDF.read_bytes()
+    texts = {path: text for path, text in files.items() if path in kinds}
+    found[EPUB.name] = digest(texts, *(WEBSITE / name for name in ("epub.py", "epub.css", "pdf.py")))
+    for path in (PDF, EPUB):
+        if path.exists():
+            files[path.name] = path.read_bytes()
     return found | {ZIP.name: digest(files, WEBSITE / "offline.py", offline.SERVER)}
 
 
@@ -72,13 +75,17 @@ def link_to_pdf():
     return LINK.format(name=PDF.name, title="PDF", note=note, size=PDF.stat().st_size / 1e6)
 
 
+def link_to_epub():
+    return LINK.format(name=EPUB.name, title="EPUB", note="for reading programs", size=EPUB.stat().st_size / 1e6)
+
+
 def link_to_zip():
     return LINK.format(name=ZIP.name, title="Offline pages", note="a zip", size=ZIP.stat().st_size / 1e6)
 
 
 def write_front_page():
     """Offer on the front page what is there."""
-    links = [link() for path, link in ((PDF, link_to_pdf), (ZIP, link_to_zip)) if path.exists()]
+    links = [link() for path, link in ((PDF, link_to_pdf), (EPUB, link_to_epub), (ZIP, link_to_zip)) if path.exists()]
     before = (HTML / FRONT).read_text("utf8")
     after = with_offer(before, links)
     if after != before:
@@ -88,9 +95,9 @@ def write_front_page():
 
 
 def withdraw_outdated():
-    """Take from the site a PDF or a zip that was made of something else, and the offer of it."""
+    """Take from the site what was made of something else, and the offer of it."""
     made_from = json.loads(STAMPS.read_text("utf8")) if STAMPS.exists() else {}
-    for path in (PDF, ZIP):
+    for path in (PDF, EPUB, ZIP):
         if path.exists() and made_from.get(path.name) != stamps()[path.name]:
             path.unlink()
     write_front_page()
@@ -98,7 +105,7 @@ def withdraw_outdated():
 
 def note_stamps():
     found = stamps()
-    STAMPS.write_text(json.dumps({path.name: found[path.name] for path in (PDF, ZIP) if path.exists()}), "utf8")
+    STAMPS.write_text(json.dumps({path.name: found[path.name] for path in (PDF, EPUB, ZIP) if path.exists()}), "utf8")
 
 
 def make_pdf(settings):
@@ -107,10 +114,17 @@ def make_pdf(settings):
     PDF.write_bytes(pdf.make(HTML, BUILD / "print" / "book.html", settings["title"], settings["author"]))
 
 
+def make_epub(settings):
+    from . import epub
+
+    EPUB.write_bytes(epub.make(HTML, settings["title"], settings["author"]))
+
+
 def make_zip(settings):
     files = site_files()
-    files[f"take-away/{PDF.name}"] = PDF.read_bytes()
-    files[FRONT] = with_offer(files[FRONT].decode(), [link_to_pdf()]).encode()
+    for path in (PDF, EPUB):
+        files[f"take-away/{path.name}"] = path.read_bytes()
+    files[FRONT] = with_offer(files[FRONT].decode(), [link_to_pdf(), link_to_epub()]).encode()
     ZIP.write_bytes(offline.pack(files, NAME, settings["title"]))
 
 
@@ -119,7 +133,7 @@ def main():
         sys.exit("There is no book yet to take away: run `make book` first.")
     settings = yaml.safe_load(Path("_config.yml").read_text("utf8"))
     withdraw_outdated()
-    for path, make in ((PDF, make_pdf), (ZIP, make_zip)):
+    for path, make in ((PDF, make_pdf), (EPUB, make_epub), (ZIP, make_zip)):
         if not path.exists():
             start = time.monotonic()
             print(f"Making {path.name} ...", flush=True)

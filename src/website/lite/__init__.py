@@ -124,7 +124,7 @@ def notebook_for(site, page, settings):
     if len(notes) != 1:
         raise RuntimeError(f"the notebook of {page} does not say how to run it, or says it in other words")
     first.source = first.source.replace(notes[0], NOTE.format(title=settings["title"]))
-    setting = settings["sphinx"]["config"]["numpy_in_the_page"]
+    setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
     if setting not in (False, "off"):
         announce_numpy(notebook, kinds_of_cells()[page], PLACES.get(setting, PLACES["folder"]))
     return nbformat.writes(notebook)

@@ -72,15 +72,16 @@ def add_live_code(app, pagename, templatename, context, doctree):
     app.add_js_file("live.js", loading_method="defer")
 
 
-def note_folders(app, config):
-    """Write every page anew that names the folders of scripts and of Pyodide, when these have another version."""
+def take_settings(app, config):
+    """Ask the environment for NumPy; have every page written anew whose scripts or Pyodide have another version."""
+    config.numpy_in_the_page = runtime.numpy_setting(config.numpy_in_the_page)
     config.runtime_folders = f"{scripts.folder_name()} {runtime.pyodide_folder()}"
 
 
 def setup(app):
     app.add_config_value("numpy_in_the_page", "official", "html", (str, bool))
     app.add_config_value("runtime_folders", "", "html", str)
-    app.connect("config-inited", note_folders)
+    app.connect("config-inited", take_settings)
     app.add_directive("cells-that-need-more", NeedsMore)
     app.connect("builder-inited", write_scripts)
     app.connect("html-page-context", add_live_code, priority=970)  # after page.py has set the styles

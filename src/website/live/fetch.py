@@ -1,7 +1,7 @@
-"""``python -m website.live.fetch FOLDER``: the official wheels of NumPy and Matplotlib, to come with the site.
+"""``make numpy``: the official wheels of NumPy and Matplotlib, to come with the site.
 
-Each is fetched from Pyodide's makers, once, and compared with the fingerprint that their own list names. With
-``numpy_in_the_page: FOLDER`` in ``_config.yml`` the pages then ask nobody else for anything.
+Each is fetched from Pyodide's makers, once, and compared with the fingerprint that their own list names. Where
+BOOK_NUMPY (or ``numpy_in_the_page`` in ``_config.yml``) names their folder, the pages ask nobody else for anything.
 """
 
 import sys
@@ -39,7 +39,7 @@ def main():
         sys.exit(f"Not all wheels could be fetched from {address}: {error}")
     size = sum(path.stat().st_size for path in folder.glob("*.whl")) / 1e6
     print(f"{len(fetched)} wheels fetched; {folder} holds {size:.0f} MB, each file as its makers name it.")
-    print(f"Write `numpy_in_the_page: {folder}` into _config.yml, and run `make book`.")
+    print(f"`BOOK_NUMPY={folder} make book` puts them beside the pages.")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ put in place. A wheel is compiled once: the result is kept under its contents' h
 import fcntl
 import hashlib
 import json
+import os
 import shutil
 import subprocess
 import tempfile
@@ -138,6 +139,11 @@ def own_packages(wheels, target):
         path = str((place / wheel.name).relative_to(target))
         packages[name] = entry(name, version, imports, path, sha256(content))
     return packages
+
+
+def numpy_setting(stated):
+    """The setting numpy_in_the_page: as ``_config.yml`` has ``stated`` it, unless BOOK_NUMPY names a folder."""
+    return os.environ.get("BOOK_NUMPY") or stated
 
 
 def numerical_packages(setting, target, official, address):

@@ -46,14 +46,3 @@ document.querySelector("button.print-page")?.addEventListener("click", () => pri
 if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined") {
   DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
 }
-
-// Excerpts on the search page show the text only, and each formula once.
-if (typeof Search !== "undefined") {
-  const toText = Search.htmlToText;
-  Search.htmlToText = (html, anchor) => {
-    const page = new DOMParser().parseFromString(html, "text/html");
-    const skipped = ".katex-mathml, .bd-header-article, .bd-sidebar-secondary, footer";
-    page.querySelectorAll(skipped).forEach((element) => element.remove());
-    return toText(page.documentElement.outerHTML, anchor);
-  };
-}

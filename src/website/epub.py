@@ -1,0 +1,188 @@
+"""The whole book as an EPUB 3: pages that flow, formulas in MathML, drawings with their words.
+
+It is made from the built pages, as the PDF is, by the same steps; a reading program sets the formulas itself.
+"""
+
+import io
+import re
+import zipfile
+from html import escape
+from uuid import NAMESPACE_URL, uuid5
+from xml.etree import ElementTree
+
+import orientation
+
+from .offline import LICENCES
+from .paths import WEBSITE, moment_of_sources, parts
+from .pdf import article, heading, place
+
+STYLE = WEBSITE / "epub.css"
+MATHML, SVG = "http://www.w3.org/1998/Math/MathML", "http://www.w3.org/2000/svg"
+#: A parser of HTML writes all names in small letters; in XML these have capitals.
+CAPITALS = {
+    name.lower(): name
+    for name in ("viewBox", "preserveAspectRatio", "clipPath", "clipPathUnits", "gradientUnits", "gradientTransform",
+                 "linearGradient", "radialGradient", "textLength", "lengthAdjust", "markerWidth", "markerHeight",
+                 "markerUnits", "attributeName", "attributeType", "animateTransform", "animateMotion", "keyTimes",
+                 "keySplines", "keyPoints", "calcMode", "repeatCount", "repeatDur", "refX", "refY", "pathLength",
+                 "patternUnits", "patternTransform", "textPath")
+}  # fmt: skip
+#: What needs a script or a form.
+ALIVE = "input, select, textarea, button, .dial, .number, .actions, label.done, .cover-note, .progress-bar"
+PAGE = """<?xml version="1.0" encoding="utf-8"?>
+<html xmlns="http://www.w3.org/1999/xhtml" xmlns:epub="http://www.idpf.org/2007/ops" lang="en" xml:lang="en">
+<head><title>{title}</title><link rel="stylesheet" type="text/css" href="book.css"/></head>
+<body>{body}</body>
+</html>
+"""
+CONTAINER = """<?xml version="1.0" encoding="utf-8"?>
+<container version="1.0" xmlns="urn:oasis:names:tc:opendocument:xmlns:container">
+<rootfiles><rootfile full-path="book/package.opf" media-type="application/oebps-package+xml"/></rootfiles>
+</container>
+"""
+PACKAGE = """<?xml version="1.0" encoding="utf-8"?>
+<package xmlns="http://www.idpf.org/2007/opf" version="3.0" unique-identifier="identifier" xml:lang="en">
+<metadata xmlns:dc="http://purl.org/dc/elements/1.1/">
+<dc:identifier id="identifier">{identifier}</dc:identifier>
+<dc:title>{title}</dc:title>
+<dc:creator>{author}</dc:creator>
+<dc:language>en</dc:language>
+<dc:rights>{licences}</dc:rights>
+<dc:description>Version {version}</dc:description>
+<meta property="dcterms:modified">{moment}</meta>
+<meta property="schema:accessMode">textual</meta>
+<meta property="schema:accessMode">visual</meta>
+<meta property="schema:accessModeSufficient">textual</meta>
+<meta property="schema:accessibilityFeature">MathML</meta>
+<meta property="schema:accessibilityFeature">alternativeText</meta>
+<meta property="schema:accessibilityFeature">structuralNavigation</meta>
+<meta property="schema:accessibilityFeature">tableOfContents</meta>
+<meta property="schema:accessibilityHazard">none</meta>
+<meta property="schema:accessibilitySummary">Formulas are MathML; every figure says in words what it shows.</meta>
+</metadata>
+<manifest>
+<item id="nav" href="nav.xhtml" media-type="application/xhtml+xml" properties="nav"/>
+<item id="style" href="book.css" media-type="text/css"/>
+{items}
+</manifest>
+<spine>
+<itemref idref="nav"/>
+{spine}
+</spine>
+</package>
+"""
+
+
+def as_mathml(formula):
+    """A formula for reading programs: its MathML, and what it is in TeX as its words."""
+    math = formula.select_one("math").extract()
+    annotation = math.select_one("annotation")
+    math["alttext"] = re.sub(r"\s+", " ", annotation.get_text())
+    annotation.decompose()
+    semantics = math.select_one("semantics")
+    semantics.unwrap()
+    formula.replace_with(math)
+
+
+def in_xml(text):
+    """What HTML allows and XML does not, put right."""
+    for element in text.find_all(ALIVE.split(", ")[:5]):
+        element.decompose()
+    for element in text.select(ALIVE):
+        element.decompose()
+    for style in text.find_all("style"):
+        style.decompose()  # book.css has it
+    for path in text.find_all("path"):
+        if not path.get("d"):
+            path.decompose()  # a line that a script would draw
+    seen = set()
+    for element in text.find_all(id=True):
+        if element["id"] in seen:
+            del element["id"]  # each exercise says again where its text begins
+        else:
+            seen.add(element["id"])
+    for label in text.find_all("label"):
+        label.name, label.attrs = "span", {}
+    for element in text.find_all(True):
+        element.name = CAPITALS.get(element.name, element.name)
+        if element.name in ("svg", "math"):
+            element["xmlns"] = SVG if element.name == "svg" else MATHML
+        kept = {}
+        for name, value in element.attrs.items():
+            words = " ".join(value) if isinstance(value, list) else value
+            # What scripts and the styles of the site ask for.
+            if name.startswith(("data-", "on")) or name in ("tabindex", "translate", "valign", "align", "focusable"):
+                continue
+            if name in ("width", "height") and element.name in ("col", "table", "td", "th"):
+                continue
+            kept[CAPITALS.get(name, name)] = words
+        element.attrs = kept
+    return text
+
+
+def files(site, title, author):
+    """What is in the book, by name: text or bytes."""
+    pages = ["index", *(page for _, names in parts() for page in names)]
+    texts = {page: article(site, page, as_mathml) for page in pages}
+    styles = {style.string for text in texts.values() for style in text.find_all("style") if style.string}
+    home = {element["id"]: page for page, text in texts.items() for element in [text, *text.find_all(id=True)]}
+    written, items, spine = {}, [], []
+    for page, text in texts.items():
+        in_xml(text)
+        here = {element["id"] for element in [text, *text.find_all(id=True)] if element.get("id")}
+        for link in text.find_all("a", href=re.compile("^#")):
+            name = link["href"][1:]
+            if name not in home:
+                link.unwrap()
+            elif home[name] != page:
+                link["href"] = f"{place(home[name])}.xhtml#{name}"
+            elif name not in here:
+                link.unwrap()  # what it led to was for a screen
+        body = str(text)
+        properties = [kind for kind, mark in (("mathml", "<math "), ("svg", "<svg ")) if mark in body]
+        properties = f' properties="{" ".join(properties)}"' if properties else ""
+        name = place(page)
+        written[f"{name}.xhtml"] = PAGE.format(title=escape(heading(text.h1)), body=body)
+        items.append(f'<item id="{name}" href="{name}.xhtml" media-type="application/xhtml+xml"{properties}/>')
+        spine.append(f'<itemref idref="{name}"/>')
+    entries = "".join(
+        f"<li><span>{escape(caption)}</span><ol>"
+        + "".join(f'<li><a href="{place(page)}.xhtml">{escape(heading(texts[page].h1))}</a></li>' for page in names)
+        + "</ol></li>"
+        for caption, names in parts()
+    )
+    entries = f'<li><a href="index.xhtml">About this book</a></li>{entries}'
+    contents = f'<nav epub:type="toc" id="toc"><h1>Contents</h1><ol>{entries}</ol></nav>'
+    written["nav.xhtml"] = PAGE.format(title="Contents", body=contents)
+    written["book.css"] = STYLE.read_text("utf8") + "\n".join(sorted(styles))
+    for name, text in written.items():
+        if name.endswith(".xhtml"):
+            try:
+                ElementTree.fromstring(text)
+            except ElementTree.ParseError as error:
+                raise RuntimeError(f"{name} is not XML: {error}") from None
+    identity = f"urn:uuid:{uuid5(NAMESPACE_URL, f'{title} {orientation.__version__}')}"
+    written["package.opf"] = PACKAGE.format(
+        identifier=identity, title=escape(title), author=escape(author), licences=LICENCES,
+        version=orientation.__version__, moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}",
+        items="\n".join(items), spine="\n".join(spine),
+    )  # fmt: skip
+    return written
+
+
+def make(site, title, author):
+    """The bytes of the EPUB of the built book in ``site``; the same for the same book."""
+    date = moment_of_sources().timetuple()[:6]
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+
+        def add(name, text, kind=zipfile.ZIP_DEFLATED):
+            entry = zipfile.ZipInfo(name, date)
+            entry.compress_type, entry.create_system, entry.external_attr = kind, 3, 0o644 << 16
+            archive.writestr(entry, text)
+
+        add("mimetype", "application/epub+zip", zipfile.ZIP_STORED)  # first, and as it is
+        add("META-INF/container.xml", CONTAINER)
+        for name, text in sorted(files(site, title, author).items()):
+            add(f"book/{name}", text)
+    return packed.getvalue()

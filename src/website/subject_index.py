@@ -1,0 +1,185 @@
+"""The directive ``subject-index``: where the book speaks of each term, and uses each symbol and function.
+
+Nothing is marked for it. Terms are those of the glossary, found where the text refers to them, or else where it says
+them; symbols are the rows of the notation page; functions are those of the reference, found where code or text names
+them.
+"""
+
+import re
+from collections import defaultdict
+
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.util.docutils import SphinxDirective
+
+from .publish import in_order
+
+GLOSSARY, NOTATION, REFERENCE = "appendix/glossary", "appendix/notation", "appendix/reference"
+#: Pages that speak of everything.
+NOT_LISTED = (GLOSSARY, NOTATION, REFERENCE, "index")
+MOST = 6  # pages of a term that is said and nowhere referred to
+
+
+class subject_index(nodes.General, nodes.Element):
+    """Stands on its page until all pages are read."""
+
+
+class SubjectIndex(SphinxDirective):
+    def run(self):
+        self.env.subject_index_page = self.env.docname
+        return [subject_index()]
+
+
+def section_of(node):
+    """The name of the section in which ``node`` stands."""
+    while node is not None and not (isinstance(node, nodes.section) and node["ids"]):
+        node = node.parent
+    return node["ids"][0] if node is not None else ""
+
+
+def note_uses(app, doctree):
+    """Keep, for a page, the first section that speaks of each term and names each function."""
+    terms, names, words = {}, {}, {}
+    for reference in doctree.findall(addnodes.pending_xref):
+        if reference.get("reftype") == "term":
+            terms.setdefault(reference["reftarget"].casefold(), section_of(reference))
+    for code in doctree.findall(lambda node: isinstance(node, (nodes.literal, nodes.literal_block))):
+        for name in re.findall(r"[A-Za-z_]\w+", code.astext()):
+            names.setdefault(name, section_of(code))
+    for text in doctree.findall(lambda node: isinstance(node, (nodes.paragraph, nodes.title))):
+        section = section_of(text)
+        words[section] = f"{words.get(section, '')} {text.astext().casefold()}"
+    app.env.subject_uses[app.env.docname] = (terms, names, words)
+
+
+def said(app, order, term):
+    """The pages of ``order`` that say ``term``, each with the first section that does."""
+    stem = re.escape(term.casefold().removesuffix("s"))
+    pattern = re.compile(rf"(?<!\w){stem}s?(?!\w)")
+    found = []
+    for page in order:
+        sections = app.env.subject_uses[page][2].items()
+        found += [(page, section) for section, words in sections if pattern.search(words)][:1]
+    return found[:MOST]
+
+
+def begin(app, env, docnames):
+    if not hasattr(env, "subject_uses"):
+        env.subject_uses = {}
+
+
+def forget(app, env, docname):
+    env.subject_uses.pop(docname, None)
+
+
+def merge(app, env, docnames, other):
+    env.subject_uses.update({name: other.subject_uses[name] for name in docnames if name in other.subject_uses})
+    if page := getattr(other, "subject_index_page", None):
+        env.subject_index_page = page
+
+
+def write_anew(app, env):
+    """The page depends on all others."""
+    page = getattr(env, "subject_index_page", None)
+    return [page] if page in env.found_docs else []
+
+
+def link(app, page, target, anchor, words):
+    address = app.builder.get_relative_uri(page, target) + (f"#{anchor}" if anchor else "")
+    return nodes.reference("", "", *words, internal=True, refuri=address)
+
+
+def places(app, page, uses):
+    """The links to the places of ``uses``, a list of pages with sections, in the order of the book."""
+    made = []
+    for target, section in uses:
+        made += [nodes.Text(", "), link(app, page, target, section, [nodes.Text(app.env.titles[target].astext())])]
+    return made[1:]
+
+
+def entry(app, page, name, main, uses, words=()):
+    """One line: what it is, leading to where it is explained, and where else it stands."""
+    paragraph = nodes.paragraph("", "", link(app, page, *main, name))
+    if words:
+        paragraph += [nodes.Text(" "), *words]
+    if uses:
+        paragraph += [nodes.Text(": "), *places(app, page, uses)]
+    return nodes.list_item("", paragraph)
+
+
+def terms(app):
+    """The terms of the glossary: as they are written, with their anchors."""
+    domain = app.env.domains["std"]
+    return {
+        written: anchor
+        for (kind, written), (page, anchor) in domain.objects.items()
+        if kind == "term" and page == GLOSSARY
+    }
+
+
+def functions(app):
+    """What the reference explains: functions, classes and such, by their short names, with their anchors."""
+    return {
+        name.rpartition(".")[2]: entry.node_id
+        for name, entry in app.env.domains["py"].objects.items()
+        if entry.docname == REFERENCE and entry.objtype in ("function", "class", "exception", "data")
+    }
+
+
+def symbols(app):
+    """The rows of the notation page that begin with a name and a formula: both, as nodes."""
+    doctree = app.env.get_doctree(NOTATION)
+    for row in doctree.findall(nodes.row):
+        cells = list(row.findall(nodes.entry))
+        formula = next((cell.next_node(nodes.math) for cell in cells[1:2] if cell.next_node(nodes.math)), None)
+        if formula is not None:
+            name = [
+                node.deepcopy() if isinstance(node, nodes.math) else nodes.Text(node.astext())
+                for node in cells[0].next_node(nodes.paragraph)
+            ]
+            yield name, formula, section_of(row)
+
+
+def fill(app, doctree, docname):
+    for stand_in in list(doctree.findall(subject_index)):
+        order = [name for name in in_order(app.env) if name in app.env.subject_uses and name not in NOT_LISTED]
+        uses = defaultdict(list)
+        for page in order:
+            if page == docname:
+                continue
+            for kind, found in zip(("term", "name"), app.env.subject_uses[page]):
+                for name, section in found.items():
+                    uses[kind, name].append((page, section))
+        texts = [page for page in order if page.startswith("chapters/")]
+        made = []
+
+        def part(title, items):
+            section = nodes.section(ids=[nodes.make_id(title)], names=[])
+            section += [nodes.title("", title), nodes.bullet_list("", *items, classes=["subject-index"])]
+            made.append(section)
+
+        found = sorted(terms(app).items(), key=lambda item: item[0].casefold())
+        part("Terms", [
+            entry(app, docname, [nodes.Text(name)], (GLOSSARY, anchor), uses["term", key] or said(app, texts, name))
+            for name, anchor in found for key in [name.casefold()]
+        ])  # fmt: skip
+        part("Symbols", [
+            entry(app, docname, [formula.deepcopy()], (NOTATION, section), [], name)
+            for name, formula, section in symbols(app)
+        ])  # fmt: skip
+        part("Functions and classes", [
+            entry(app, docname, [nodes.literal("", name)], (REFERENCE, anchor), uses["name", name])
+            for name, anchor in sorted(functions(app).items(), key=lambda item: item[0].casefold())
+        ])  # fmt: skip
+        stand_in.replace_self(made)
+
+
+def setup(app):
+    app.add_node(subject_index)
+    app.add_directive("subject-index", SubjectIndex)
+    app.connect("env-before-read-docs", begin)
+    app.connect("env-purge-doc", forget)
+    app.connect("env-merge-info", merge)
+    app.connect("doctree-read", note_uses)
+    app.connect("env-updated", write_anew)
+    app.connect("doctree-resolved", fill)
