@@ -7,6 +7,7 @@ import io
 import re
 import zipfile
 from html import escape
+from string import ascii_lowercase, ascii_uppercase, digits
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree import ElementTree
 
@@ -27,6 +28,8 @@ CAPITALS = {
                  "keySplines", "keyPoints", "calcMode", "repeatCount", "repeatDur", "refX", "refY", "pathLength",
                  "patternUnits", "patternTransform", "textPath")
 }  # fmt: skip
+BOLD = {ord(sign): 0x1D400 + k for k, sign in enumerate(ascii_uppercase + ascii_lowercase)}
+BOLD |= {ord(sign): 0x1D7CE + k for k, sign in enumerate(digits)}
 #: What needs a script or a form.
 ALIVE = "input, select, textarea, button, .dial, .number, .actions, label.done, .cover-note, .progress-bar"
 PAGE = """<?xml version="1.0" encoding="utf-8"?>
@@ -79,8 +82,11 @@ def as_mathml(formula):
     annotation = math.select_one("annotation")
     math["alttext"] = re.sub(r"\s+", " ", annotation.get_text())
     annotation.decompose()
-    semantics = math.select_one("semantics")
-    semantics.unwrap()
+    math.select_one("semantics").unwrap()
+    # Of bold letters reading programs know those that are signs of their own.
+    for letter in math.select("[mathvariant=bold]"):
+        letter.string = letter.get_text().translate(BOLD)
+        del letter["mathvariant"]
     formula.replace_with(math)
 
 

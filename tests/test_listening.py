@@ -1,0 +1,72 @@
+"""Two chapters and an exercise as a screen reader walks through them: what the browser tells it, in its order."""
+
+import re
+
+import pytest
+from test_site import WIDE, Visit
+
+WALKED = ("exercises/simple-orientations.html", "chapters/simple-orientations.html", "chapters/unit-quaternions.html")
+#: What a reader acts on, or is told of by its name alone.
+NAMED = {
+    "button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "radio", "combobox", "img", "image",
+    "listbox", "figure", "navigation", "DisclosureTriangle",
+}  # fmt: skip
+pytestmark = pytest.mark.sampled(1)
+
+
+def told(page):
+    """What is there for a screen reader: role, name and level, from the first to the last."""
+    nodes = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
+    by_id = {node["nodeId"]: node for node in nodes}
+    found = []
+
+    def walk(node):
+        if not node["ignored"]:
+            level = next((one["value"]["value"] for one in node.get("properties", []) if one["name"] == "level"), None)
+            found.append((node["role"]["value"], node.get("name", {}).get("value", "").strip(), level))
+        for child in node.get("childIds", []):
+            if child in by_id:
+                walk(by_id[child])
+
+    walk(nodes[0])
+    return found
+
+
+@pytest.mark.parametrize("name", WALKED)
+def test_a_walk_through_the_page(browser, site, name):
+    with Visit(browser, site, name, "light", WIDE) as visit:
+        page = visit.page
+        page.evaluate("document.querySelectorAll('article details').forEach((details) => { details.open = true; })")
+        seen = page.evaluate("""() => ({
+          title: document.querySelector('h1').textContent,
+          formulas: document.querySelectorAll('article .katex').length,
+          cells: document.querySelectorAll('article div.cell .cell_input').length,
+        })""")
+        tree = told(page)
+    roles = [role for role, _, _ in tree]
+    nameless = sorted({role for role, words, _ in tree if role in NAMED and not words})
+    assert nameless == [], f"{name}: they have no name"
+    assert roles.count("main") == 1 and "navigation" in roles
+    # Headings: one above all, and no step is left out on the way down.
+    inside = tree[roles.index("main") :]
+    levels = [level for role, _, level in inside if role == "heading"]
+    assert levels.count(1) == 1 and levels[0] == 1
+    assert all(below <= above + 1 for above, below in zip(levels, levels[1:])), levels
+    # Formulas come as mathematics, each once, and nothing of how they are drawn, or of their source.
+    mathematics = [place for place, (role, _, _) in enumerate(inside) if role in ("math", "MathMLMath")]
+    assert len(mathematics) >= seen["formulas"] > 5
+    words = [text for role, text, _ in inside if role == "StaticText"]
+    assert not [text for text in words if re.search(r"\\(?:hat|mathbf|frac|begin)", text)]
+    # Every piece of code can be run, by a button that says which.
+    runs = [text for role, text, _ in inside if role == "button" and text.startswith("Run cell")]
+    assert len(runs) == seen["cells"] > 2
+    assert [int(re.match(r"Run cell (\d+)", text)[1]) for text in runs] == list(range(1, len(runs) + 1))
+    # A figure says more than that it is one.
+    pictures = [text for role, text, _ in inside if role in ("img", "image") and text]
+    assert all(len(text) > 15 for text in pictures), [text for text in pictures if len(text) <= 15]
+    # The page begins with its title and ends with the way to the next one.
+    assert next(text for role, text, _ in inside if role == "heading") in seen["title"]
+    links = [text for role, text, _ in tree if role == "link"]
+    assert links[0] == "Skip to main content"
+    assert {"previous", "next"} <= {text.lower().partition(" ")[0] for text in links}
+    assert visit.faults == []
