@@ -380,6 +380,30 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
     assert bytes_of(run_notebooks(killing(class_of_notebooks()), workers=2, limits=LIMITS)) == bytes_of(once)
 
 
+def test_a_busy_machine_costs_nobody_an_answer():
+    """What a notebook waits for while others compute is not its own time: three share one processor here."""
+    start = "import time\nbegun = time.process_time()"
+    source = "while time.process_time() - begun < 1.2:\n    pass\ncheck('q', 1)"
+    jobs = [notebook(start, source, questions={"q": None}) | {"id": str(number)} for number in range(3)]
+    limits = Limits(cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5)
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(before)})
+    try:
+        results = list(run_notebooks(jobs, workers=3, limits=limits))
+    finally:
+        os.sched_setaffinity(0, before)
+    assert [result["answers"]["q"]["outcome"] for result in results] == ["recorded"] * 3, results
+
+
+def test_addresses_are_the_same_each_time():
+    """Some of what a notebook works out depends on them. After bubblewrap the system chooses them anew."""
+    asked, answers = notebook("check('q', id(object))", questions={"q": None}), []
+    for _ in range(2):
+        with Sandbox(LIMITS, namespaces_by=("unshare",), allow_weak_isolation=True) as sandbox:
+            answers.append(sandbox.run(asked)["answers"]["q"])
+    assert answers[0]["outcome"] == "recorded" and answers[0] == answers[1]
+
+
 def warm_parents():
     """The processes of the workers, oldest first."""
     found = []
