@@ -4,6 +4,7 @@ import re
 
 import pytest
 import sympy as sm
+from traitlets import TraitError
 
 from orientation import PROPER_EULER, SEQUENCES, dcm_from_body_fixed, dcm_from_space_fixed, simple_dcm
 from orientation_figures.moving import SequenceExplorer
@@ -15,8 +16,13 @@ PSI, THETA, PHI = sm.symbols("psi, theta, varphi")
 
 def shown_matrices(explorer):
     """The entries of every matrix that is shown, as TeX."""
-    blocks = re.findall(r"\\begin\{matrix\}(.*?)\\end\{matrix\}", explorer.result.value)
+    blocks = re.findall(r"\\begin\{matrix\}(.*?)\\end\{matrix\}", explorer.tex)
     return [[row.split("&") for row in block.split(r"\\")] for block in blocks]
+
+
+def typed(explorer, place, text):
+    """Type an angle, as the front end tells it."""
+    explorer.set_state({"angles": [text if k == place else angle for k, angle in enumerate(explorer.angles)]})
 
 
 def tex_of(matrix):
@@ -27,7 +33,7 @@ def tex_of(matrix):
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_it_shows_the_factors_their_product_and_what_lock_leaves(sequence, fixed, build):
     explorer = SequenceExplorer()
-    explorer.sequence.value, explorer.fixed.value = sequence, fixed
+    explorer.sequence, explorer.fixed = sequence, fixed
     turns = [simple_dcm(axis, angle) for axis, angle in zip(sequence, (PSI, THETA, PHI))]
     order = turns[::-1] if fixed == "body" else turns
     dcm = build((PSI, THETA, PHI), sequence)
@@ -39,22 +45,26 @@ def test_it_shows_the_factors_their_product_and_what_lock_leaves(sequence, fixed
     lock = 0 if sequence in PROPER_EULER else sm.pi / 2
     left = sm.trigsimp(dcm.subs(THETA, lock))
     assert locked == tex_of(left)
+    # A browser is given as many matrices, each of nine entries.
+    assert explorer.result.count("<mtable>") == 5 and explorer.result.count("<mtd>") == 45
+    assert "varphi" not in explorer.result
     # Only the sum or the difference of the two other angles is left.
     assert any((left.diff(PSI) + sign * left.diff(PHI)).subs(somewhere).norm() < 1e-15 for sign in (1, -1))
     where = "θ = 0 and θ = π" if sequence in PROPER_EULER else "θ = π/2 and θ = −π/2"
-    assert f"{'-'.join(sequence)} locks at {where}" in explorer.message.value
+    assert f"{'-'.join(sequence)} locks at {where}" in explorer.message
 
 
 def test_numbers_and_expressions_can_be_typed():
     explorer = SequenceExplorer("zyx", angles=(0, "pi/6", "alpha"))
-    explorer.angles[0].value = "0.25"
+    typed(explorer, 0, "0.25")
     alpha = sm.Symbol("alpha")
     assert explorer.values == (sm.Float(0.25), sm.pi / 6, alpha)
     assert explorer.dcm == dcm_from_body_fixed((sm.Float(0.25), sm.pi / 6, alpha), "zyx")
-    assert "0.2474" in explorer.result.value and "0.2474039" not in explorer.result.value
-    assert "1.05 rad away" in explorer.message.value
-    explorer.angles[1].value = "-pi/2"
-    assert "Here it is locked" in explorer.message.value
+    for shown in (explorer.result, explorer.tex):
+        assert "0.2474" in shown and "0.2474039" not in shown
+    assert "1.05 rad away" in explorer.message
+    typed(explorer, 1, "-pi/2")
+    assert "Here it is locked" in explorer.message
 
 
 @pytest.mark.parametrize("text", ["3 0", "", "sin", "x == y", "(1, 2)", "__import__('os')", "psi.diff()", "9**9**9",
@@ -62,12 +72,12 @@ def test_numbers_and_expressions_can_be_typed():
                                   "open('x')", "phi(2)"])  # fmt: skip
 def test_what_is_no_angle_is_refused_by_name(text):
     explorer = SequenceExplorer()
-    before = explorer.result.value
-    explorer.angles[1].value = text
-    assert explorer.result.value == "" and "theta is" in explorer.message.value
-    assert re.search("expected|one real angle", explorer.message.value)
-    explorer.angles[1].value = "theta"
-    assert explorer.result.value == before
+    before = explorer.result
+    typed(explorer, 1, text)
+    assert explorer.result == "" and "theta is" in explorer.message
+    assert re.search("expected|one real angle", explorer.message)
+    typed(explorer, 1, "theta")
+    assert explorer.result == before
     with pytest.raises(ValueError, match="psi is"):
         SequenceExplorer(angles=(text, 0, 0))
 
@@ -81,13 +91,15 @@ def test_greek_and_other_names_are_symbols(text, angle):
 
 def test_degrees_are_suspected():
     explorer = SequenceExplorer(angles=(30, "theta", "phi"))
-    assert "psi is taken as 30 radians" in explorer.message.value and "(30)*pi/180" in explorer.message.value
+    assert "psi is taken as 30 radians" in explorer.message and "(30)*pi/180" in explorer.message
 
 
 def test_what_is_typed_is_shown_as_text():
     explorer = SequenceExplorer()
-    explorer.angles[0].value = "<img src=x>"
-    assert "<img" not in explorer.message.value and "&lt;img" in explorer.message.value
+    typed(explorer, 0, "<img src=x>")
+    assert "<img" in explorer.message and explorer.result == "", (
+        "the message is set as text, the formulas are not there"
+    )
 
 
 def test_bad_arguments():
@@ -95,11 +107,15 @@ def test_bad_arguments():
         SequenceExplorer("zzx")
     with pytest.raises(ValueError):
         SequenceExplorer(angles=("psi", "theta"))
+    explorer = SequenceExplorer()
+    for name, wrong in (("sequence", "zzx"), ("fixed", "earth"), ("angles", ["psi", "theta"])):
+        with pytest.raises(TraitError):
+            setattr(explorer, name, wrong)
 
 
 def test_where_there_is_no_kernel_the_page_shows_what_it_began_with():
     explorer = SequenceExplorer("zxy")
-    data = explorer._repr_mimebundle_()
-    assert WIDGET in data and data["text/latex"] == explorer.result.value
+    data, _ = explorer._repr_mimebundle_()
+    assert WIDGET in data and data["text/latex"] == f"$${explorer.tex}$$"
     assert data["text/plain"] == "SequenceExplorer: z-x-y, body fixed"
-    assert SequenceExplorer("zxy")._repr_mimebundle_()["text/latex"] == data["text/latex"]
+    assert SequenceExplorer("zxy")._repr_mimebundle_()[0]["text/latex"] == data["text/latex"]

@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 import sympy as sm
 from bs4 import BeautifulSoup
+from scipy.spatial.transform import Rotation
 from traitlets import TraitError
 
 import orientation as module
+from orientation import dcm_from_quaternion
 from orientation_figures import moving
 from orientation_figures.moving import (
     GimbalFigure,
@@ -65,7 +67,7 @@ SET = {
     "graph": ("edges", (("A", "N", "x", 0.2), ("C", "A", "y", 0.4))), "challenge": ("turns", (("z", 0.3),)),
     "converter": ("quaternion", (0.6, 0.8, 0.0, 0.0)),
 }
-NEEDS_NUMPY = {"nine_numbers": "nearest", "motion": "dcm", "successive": "dcm", "challenge": "dcm", "graph": "dcm"}
+NEEDS_NUMPY = {"nine_numbers": "nearest", "motion": "dcm", "successive": "dcms", "graph": "dcm"}
 figures = [getattr(moving, name) for name in moving.__all__ if name not in ("MovingFigure", "SequenceExplorer")]
 assert sorted(SET) == sorted(figure.kind for figure in figures)
 for kind in figures:
@@ -89,12 +91,16 @@ for kind in figures:
         assert refused(ImportError, lambda: getattr(figure, NEEDS_NUMPY[figure.kind])).name == "numpy"
     else:
         assert figure.dcm.shape == (3, 3)
+cycle = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
+assert abs(moving.TriadFigure(dcm=cycle).angle - 2.0943951023931953) < 1e-12
+assert abs(moving.ChallengeFigure(goal=cycle).remaining - 2.0943951023931953) < 1e-12
+assert abs(moving.GimbalFigure(dcm=cycle, sequence="zxz").dcm - cycle).max() < 1e-12
 gimbal = moving.GimbalFigure(angles=(0.1, 0.2, 0.3))
 assert round(gimbal.margin, 6) == 1.370796
 explorer = moving.SequenceExplorer("zxz")
-explorer.angles[1].value = "pi/6"
-assert "0.524 rad away" in explorer.message.value and "frac" in explorer.result.value
-assert explorer.dcm.shape == (3, 3) and "text/latex" in explorer._repr_mimebundle_()
+explorer.angles = ["psi", "pi/6", "phi"]
+assert "0.524 rad away" in explorer.message and "<mfrac>" in explorer.result
+assert explorer.dcm.shape == (3, 3) and "text/latex" in explorer._repr_mimebundle_()[0]
 print(gimbal)
 """
 
@@ -208,6 +214,32 @@ def test_a_misspelt_attribute_is_an_error(figure):
     with pytest.raises(AttributeError, match=f"{figure.__name__} has no xyzzy; what"):
         one.xyzzy = 1
     assert one.state() == before and not hasattr(one, misspelt)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_matrix_and_a_quaternion_of_ones_own(seed):
+    """What is set is what is given back, and what is none is refused with nothing changed."""
+    quaternion = Rotation.random(random_state=seed).as_quat(scalar_first=True)
+    dcm = dcm_from_quaternion(quaternion)
+    for figure in (
+        moving.TriadFigure(dcm=dcm),
+        moving.TriadFigure(quaternion=-quaternion),
+        moving.TriadFigure(dcm=sm.Matrix(dcm)),
+        *(moving.GimbalFigure(dcm=dcm, sequence=sequence) for sequence in ("zxy", "zyz")),
+    ):
+        assert np.abs(figure.dcm - dcm).max() < 1e-12
+        before = figure.state()
+        for wrong in (2 * dcm, -dcm, dcm[:2]):
+            with pytest.raises(ValueError, match="dcm"):
+                figure.dcm = wrong
+        assert figure.state() == before
+    challenge = moving.ChallengeFigure(goal=dcm)
+    assert np.abs(challenge.goal - dcm).max() < 1e-12
+    assert challenge.remaining == pytest.approx(moving.TriadFigure(dcm=dcm).angle)
+    with pytest.raises(ValueError, match="not orthogonal"):
+        challenge.goal = 1.1 * dcm
+    with pytest.raises(ValueError, match="the goal of the task 'undo' follows from given"):
+        moving.ChallengeFigure(task="undo", goal=dcm)
 
 
 def test_angel_is_not_angle():

@@ -10,7 +10,7 @@ import operator
 
 def _leave_out(name):
     # Others ask by such names what kind of thing this is; an array of NumPy has none of them.
-    if name.startswith("_") or name == "free_symbols":
+    if name.startswith("_") or name in ("filled", "free_symbols"):
         raise AttributeError(name)
 
 
@@ -23,6 +23,9 @@ class Number(float):
         return f"np.float64({float(self)!r})"
 
     __str__ = float.__repr__
+
+    def tolist(self):
+        return float(self)
 
     def __getattr__(self, name):
         _leave_out(name)

@@ -5,6 +5,8 @@ import math
 import traitlets
 
 from orientation.axis_angle import axis_angle_from_dcm
+from orientation.direction_cosines import check_dcm
+from orientation.euler_angles import body_fixed_from_dcm
 
 from .figure import MovingFigure
 from .state import Turns
@@ -26,6 +28,14 @@ class ChallengeFigure(MovingFigure):
         'ghost', and in 'undo' those that are to be undone.
     turns : tuple of no to twenty pairs
         The reader's own turns, each about a unit vector of the box (body fixed).
+    goal : array_like, shape (3, 3)
+        Direction cosine matrix of the goal with respect to N. In 'match' it can be set, which makes ``given`` three
+        turns that lead there.
+
+    Raises
+    ------
+    ValueError
+        If a goal that is set is no direction cosine matrix, or the task is not 'match'.
 
     Examples
     --------
@@ -34,13 +44,11 @@ class ChallengeFigure(MovingFigure):
     >>> round(figure.remaining, 6)
     0.5
 
-    A matrix of one's own becomes a challenge by its Euler angles.
+    A matrix of one's own as the goal:
 
-    >>> from orientation import body_fixed_from_dcm
-    >>> own = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]]
-    >>> figure = ChallengeFigure(given=list(zip('zxy', body_fixed_from_dcm(own, 'zxy'))))
-    >>> bool(abs(figure.goal - own).max() < 1e-12)
-    True
+    >>> figure = ChallengeFigure(goal=[[0, 1, 0], [0, 0, 1], [1, 0, 0]])
+    >>> round(figure.remaining, 6)
+    2.094395
     """
 
     kind = "challenge"
@@ -59,6 +67,13 @@ class ChallengeFigure(MovingFigure):
     def goal(self):
         """Direction cosine matrix of the goal with respect to N, shape ``(3, 3)``."""
         return chain(() if self.task == "undo" else self.given, "body")[-1]
+
+    @goal.setter
+    def goal(self, dcm):
+        if self.task != "match":
+            raise ValueError(f"the goal of the task {self.task!r} follows from given; it can be set in 'match'")
+        check_dcm(dcm)
+        self.given = tuple(zip("zxy", body_fixed_from_dcm(dcm, "zxy")))
 
     @property
     def remaining(self):

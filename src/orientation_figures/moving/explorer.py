@@ -1,14 +1,16 @@
-"""An explorer for Jupyter: choose a sequence, type angles, and read what the three turns multiply out to.
+"""An explorer of the twelve sequences: choose one, type angles, and read what the three turns multiply out to.
 
-The algebra is done by SymPy, so that this needs a kernel.
+SymPy does the algebra, so this needs Python: a kernel's, or that of the page.
 """
 
 import re
 from keyword import iskeyword
 
-import ipywidgets as widgets
+import anywidget
 import sympy as sm
+import traitlets
 from sympy.parsing.sympy_parser import parse_expr
+from sympy.printing.mathml import mathml
 
 from orientation._numbers_and_symbols import NUMBERS
 from orientation.direction_cosines import simple_dcm
@@ -21,14 +23,23 @@ from orientation.euler_angles import (
     lock_margin_formula,
 )
 
+from ..style import STYLE
+from . import bundle
+from .state import Sequence
+
 NAMES = ("psi", "theta", "phi")
 #: What an angle may be made of besides numbers and symbols.
 FUNCTIONS = {name: getattr(sm, name) for name in ("pi", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan")}
 KINDS_OF_NUMBERS = {name: getattr(sm, name) for name in ("Integer", "Float", "Rational")}
 TURN = 2 * sm.pi  # beyond it, degrees may have been meant
+#: The symbol of the matrix, with its frames around it.
+SYMBOL = (
+    '<mmultiscripts><mi mathvariant="normal" class="matrix">C</mi><mrow></mrow><mi>A</mi><mprescripts></mprescripts>'
+    "<mrow></mrow><mi>D</mi></mmultiscripts>"
+)
 
 
-class SequenceExplorer(widgets.VBox):
+class SequenceExplorer(anywidget.AnyWidget):
     r"""The direction cosine matrix of any of the twelve sequences, with its factors, as the reader changes them.
 
     Shows :math:`{}^D\mathbf{C}^A` as the product of its three simple matrices and multiplied out, and what
@@ -39,7 +50,7 @@ class SequenceExplorer(widgets.VBox):
     sequence : str
         One of the twelve sequences.
     angles : three strings, numbers or SymPy expressions
-        Radians: symbols, numbers, or expressions such as ``'pi/6'``.
+        Radians: symbols, numbers, or expressions such as ``'pi/6'``. They are kept as they are typed.
     fixed : {'body', 'space'}
         Whether the turns are about axes of the turned frame or of the frame that stays.
 
@@ -54,43 +65,45 @@ class SequenceExplorer(widgets.VBox):
     >>> explorer = SequenceExplorer('zxy', angles=('psi', 'pi/6', 0))
     >>> explorer.dcm[1, 2], explorer.factors[0][0, 1]
     (1/2, sin(psi))
+    >>> explorer.sequence = 'zyx'
+    >>> explorer.dcm[0, 2]
+    -1/2
     """
+
+    _esm = traitlets.Unicode().tag(sync=True)
+    _css = traitlets.Unicode().tag(sync=True)
+    sequence = Sequence("zxy").tag(sync=True)
+    fixed = traitlets.Enum(("body", "space"), "body").tag(sync=True)
+    angles = traitlets.List(traitlets.Unicode(), list(NAMES), minlen=3, maxlen=3).tag(sync=True)
+    sequences = traitlets.List(SEQUENCES, read_only=True).tag(sync=True)
+    result = traitlets.Unicode(read_only=True).tag(sync=True)
+    message = traitlets.Unicode(read_only=True).tag(sync=True)
+
+    @traitlets.default("_esm")
+    def _default_esm(self):
+        return bundle.esm("explorer")
+
+    @traitlets.default("_css")
+    def _default_css(self):
+        return STYLE + bundle.style()
 
     def __init__(self, sequence="zxy", angles=NAMES, fixed="body"):
         layout_of(sequence)  # its message says more than that of the list
         for name, angle in zip(NAMES, angles, strict=True):
             angle_from_text(str(angle), name)
-        label = {"description_width": "5rem"}
-        self.sequence = widgets.Dropdown(
-            options=[("-".join(one), one) for one in SEQUENCES], value=sequence, description="Sequence", style=label
-        )
-        self.fixed = widgets.Dropdown(
-            options=[("body fixed", "body"), ("space fixed", "space")],
-            value=fixed,
-            description="Turns are",
-            style=label,
-        )
-        self.angles = tuple(
-            widgets.Text(value=str(angle), description=name, style=label, placeholder="a symbol or radians")
-            for name, angle in zip(NAMES, angles)
-        )
-        self.message, self.result = widgets.HTML(), widgets.HTMLMath()
-        super().__init__(
-            [widgets.HBox([self.sequence, self.fixed]), widgets.HBox(self.angles), self.message, self.result]
-        )
-        for control in (self.sequence, self.fixed, *self.angles):
-            control.observe(self._show, "value")
+        super().__init__(sequence=sequence, angles=[str(angle) for angle in angles], fixed=fixed)
+        self.observe(self._show, ["sequence", "angles", "fixed"])
         self._show()
 
     @property
     def values(self):
         """The three angles as SymPy expressions."""
-        return tuple(angle_from_text(field.value, name) for name, field in zip(NAMES, self.angles))
+        return tuple(angle_from_text(text, name) for name, text in zip(NAMES, self.angles))
 
     @property
     def factors(self):
         """The matrices of the three simple turns, in the order in which they are made."""
-        return tuple(simple_dcm(axis, angle) for axis, angle in zip(self.sequence.value, self.values))
+        return tuple(simple_dcm(axis, angle) for axis, angle in zip(self.sequence, self.values))
 
     @property
     def dcm(self):
@@ -98,54 +111,74 @@ class SequenceExplorer(widgets.VBox):
         return self._dcm(self.values)
 
     @property
+    def matrices(self):
+        """All that is shown: the factors as they are multiplied, their product, and that at gimbal lock."""
+        psi, _, phi = self.values
+        factors = self.factors[::-1] if self.fixed == "body" else self.factors
+        return [*factors, self.dcm, sm.trigsimp(self._dcm((psi, self._locked, phi)))]
+
+    @property
+    def _locked(self):
+        return sm.Integer(0) if self.sequence in PROPER_EULER else sm.pi / 2
+
+    @property
     def tex(self):
         """All that is shown, as TeX."""
-        psi, _, phi = self.values
-        lock = sm.Integer(0) if self.sequence.value in PROPER_EULER else sm.pi / 2
-        order = reversed(self.factors) if self.fixed.value == "body" else self.factors
+        *factors, product, left = map(_tex, self.matrices)
         lines = [
-            r"{}^D\mathbf{C}^A &= " + "".join(map(_tex, order)),
-            "&= " + _tex(self.dcm),
-            rf"\left.{{}}^D\mathbf{{C}}^A\right|_{{\theta={_tex(lock)}}} &= "
-            + _tex(sm.trigsimp(self._dcm((psi, lock, phi)))),
+            r"{}^D\mathbf{C}^A &= " + "".join(factors),
+            "&= " + product,
+            rf"\left.{{}}^D\mathbf{{C}}^A\right|_{{\theta={_tex(self._locked)}}} &= " + left,
         ]
         return r"\begin{aligned}" + r" \\ ".join(lines) + r"\end{aligned}"
 
+    def _mathml(self):
+        """The same as formulas that a browser sets by itself, each of which may begin a line."""
+        *factors, product, left = map(_mathml, self.matrices)
+        locked = f"<msub><mrow>{SYMBOL}<mo>|</mo></mrow><mrow><mi>θ</mi><mo>=</mo>{_mathml(self._locked)}</mrow></msub>"
+        lines = [[SYMBOL + "<mo>=</mo>" + factors[0], *factors[1:]], ["<mo>=</mo>" + product]]
+        lines.append([locked + "<mo>=</mo>" + left])
+        return "".join(
+            f'<div class="line">{"".join(f"<math><mrow>{part}</mrow></math>" for part in parts)}</div>'
+            for parts in lines
+        )
+
     def lock(self):
         """Return a sentence that says where the sequence locks, and how far from there it stands."""
-        proper = self.sequence.value in PROPER_EULER
+        proper = self.sequence in PROPER_EULER
         where = "θ = 0 and θ = π" if proper else "θ = π/2 and θ = −π/2"
         axes = "the first and the third turn are about one line"
-        said = f"{'-'.join(self.sequence.value)} locks at {where}: there {axes}."
+        said = f"{'-'.join(self.sequence)} locks at {where}: there {axes}."
         theta = self.values[1]
         if not theta.is_number:
             return said
-        [margin] = lock_margin_formula(self.sequence.value)(NUMBERS, 0, float(theta), 0)
+        [margin] = lock_margin_formula(self.sequence)(NUMBERS, 0, float(theta), 0)
         return f"{said} Here it is {margin:.3g} rad away from that." if margin > 1e-12 else f"{said} Here it is locked."
 
     def _dcm(self, angles):
-        build = dcm_from_body_fixed if self.fixed.value == "body" else dcm_from_space_fixed
-        return build(angles, self.sequence.value)
+        build = dcm_from_body_fixed if self.fixed == "body" else dcm_from_space_fixed
+        return build(angles, self.sequence)
 
     def _show(self, change=None):
         try:
-            tex, said = f"$${self.tex}$$", [self.lock()]
+            result, said = self._mathml(), [self.lock()]
             said += [
-                f"{name} is taken as {field.value} radians. {field.value} degrees would be ({field.value})*pi/180."
-                for name, field, angle in zip(NAMES, self.angles, self.values)
+                f"{name} is taken as {text} radians. {text} degrees would be ({text})*pi/180."
+                for name, text, angle in zip(NAMES, self.angles, self.values)
                 if angle.is_number and abs(angle) > TURN
             ]
         except ValueError as error:
-            tex, said = "", [f"{error}."]
-        self.result.value = tex
-        self.message.value = f'<p role="status">{"<br>".join(map(_escaped, said))}</p>'
+            result, said = "", [f"{error}."]
+        with self.hold_sync():
+            self.set_trait("result", result)
+            self.set_trait("message", " ".join(said))
 
     def _repr_mimebundle_(self, **kwargs):
-        data = super()._repr_mimebundle_(**kwargs)
-        return data | {"text/latex": self.result.value, "text/plain": repr(self)}
+        data, metadata = super()._repr_mimebundle_(**kwargs)
+        return data | {"text/latex": f"$${self.tex}$$"}, metadata
 
     def __repr__(self):
-        return f"SequenceExplorer: {'-'.join(self.sequence.value)}, {self.fixed.value} fixed"
+        return f"SequenceExplorer: {'-'.join(self.sequence)}, {self.fixed} fixed"
 
 
 def angle_from_text(text, name="angle"):
@@ -184,11 +217,13 @@ def angle_from_text(text, name="angle"):
 
 
 def _tex(value):
-    """Return TeX with four digits for each decimal number."""
-    return sm.latex(
-        value.xreplace({number: sm.Float(number, 4) for number in value.atoms(sm.Float)}), fold_func_brackets=True
-    )
+    return sm.latex(_rounded(value), fold_func_brackets=True)
 
 
-def _escaped(text):
-    return text.replace("&", "&amp;").replace("<", "&lt;")
+def _mathml(value):
+    return mathml(_rounded(value), printer="presentation").replace("<mi>varphi</mi>", "<mi>φ</mi>")
+
+
+def _rounded(value):
+    """Four digits for each decimal number."""
+    return value.xreplace({number: sm.Float(number, 4) for number in value.atoms(sm.Float)})

@@ -43,10 +43,13 @@ class MovingFigure(anywidget.AnyWidget):
         return STYLE + bundle.style()
 
     def __init__(self, **attributes):
+        computed = {name: attributes.pop(name) for name in self._settable() & set(attributes)}
         unknown = sorted(set(attributes) - set(self.trait_names()))
         if unknown:  # a widget would take a misspelt name in silence
             raise TypeError(self._without(unknown[0]))
         super().__init__(**attributes)
+        for name, value in computed.items():
+            setattr(self, name, value)
 
     def __setattr__(self, name, value):
         # The same once it is made: a misspelt name would become an attribute that nothing shows.
@@ -56,9 +59,15 @@ class MovingFigure(anywidget.AnyWidget):
 
     def _without(self, name):
         """Return the message for a name that cannot be set, with the one that was probably meant."""
-        names = sorted(self.trait_names(state=True))
+        names = sorted({*self.trait_names(state=True), *self._settable()})
         near = "".join(f" (did you mean {close}?)" for close in get_close_matches(name, names, 1))
         return f"{type(self).__name__} has no {name}{near}; what can be set is {', '.join(names)}"
+
+    @classmethod
+    def _settable(cls):
+        """The names of what is computed from the state and can be set all the same, such as a matrix."""
+        own = [vars(one) for one in cls.__mro__ if issubclass(one, MovingFigure)]
+        return {name for found in own for name, value in found.items() if isinstance(value, property) and value.fset}
 
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
@@ -95,7 +104,10 @@ def stills_can_be_drawn():
     """Return whether NumPy and Matplotlib are there."""
     # They are looked for, not imported in vain: where they are missing, as in a browser, a figure is shown by
     # its front end and needs no still; where they are there, no error of a still must be lost.
-    return all(map(find_spec, ("numpy", "matplotlib")))
+    try:
+        return all(map(find_spec, ("numpy", "matplotlib")))
+    except ModuleNotFoundError:  # so answers the Python of a page, which could fetch them: a still is no reason to
+        return False
 
 
 def svg_on(sheet, drawing):

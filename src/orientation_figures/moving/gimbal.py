@@ -3,7 +3,8 @@
 import math
 
 from orientation._numbers_and_symbols import NUMBERS
-from orientation.euler_angles import dcm_from_body_fixed, lock_margin_formula
+from orientation.direction_cosines import check_dcm
+from orientation.euler_angles import body_fixed_from_dcm, dcm_from_body_fixed, lock_margin_formula
 
 from .figure import MovingFigure
 from .state import Numbers, Sequence
@@ -21,6 +22,13 @@ class GimbalFigure(MovingFigure):
         :math:`(\psi, \theta, \varphi)` in radians, each from :math:`-\pi` to :math:`\pi`.
     sequence : str
         One of the twelve sequences.
+    dcm : array_like, shape (3, 3)
+        The matrix of the camera; setting it sets the angles, for the sequence that there is.
+
+    Raises
+    ------
+    ValueError
+        If a matrix that is set is no direction cosine matrix.
 
     Examples
     --------
@@ -40,6 +48,11 @@ class GimbalFigure(MovingFigure):
     def dcm(self):
         r""":math:`{}^D\mathbf{C}^A`, shape ``(3, 3)``."""
         return dcm_from_body_fixed(self.angles, self.sequence)
+
+    @dcm.setter
+    def dcm(self, dcm):
+        check_dcm(dcm)
+        self.angles = body_fixed_from_dcm(dcm, self.sequence)
 
     @property
     def margin(self):

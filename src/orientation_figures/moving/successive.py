@@ -77,12 +77,14 @@ class SuccessiveFigure(MovingFigure):
     @property
     def dcms(self):
         """Direction cosine matrices of N and of every further frame with respect to N, shape ``(n + 1, 3, 3)``."""
-        return chain(self.turns, self.fixed)
+        import numpy as np  # only now: the figure itself does without
+
+        return np.array(chain(self.turns, self.fixed))
 
     @property
     def dcm(self):
         """Direction cosine matrix of the end of the chain with respect to N, shape ``(3, 3)``."""
-        return self.dcms[-1]
+        return chain(self.turns, self.fixed)[-1]
 
     @property
     def other(self):
@@ -106,12 +108,10 @@ def second_chain(turns, kind, compare):
 
 
 def chain(turns, kind):
-    """Return the direction cosine matrices of N and of every further frame with respect to N."""
-    import numpy as np  # only now: the figure itself does without
-
-    frames = [np.eye(3)]
+    """Return the direction cosine matrices of N and of every further frame with respect to N, as a list."""
+    frames = [simple_dcm("z", 0.0)]
     for axis, angle in turns:
         turn = simple_dcm(axis, angle)
         # A turn about the frame's own unit vector multiplies from the left, one about N's from the right.
         frames.append(turn @ frames[-1] if kind == "body" else frames[-1] @ turn)
-    return np.array(frames)
+    return frames

@@ -2,8 +2,10 @@
 
 import math
 
-from orientation.axis_angle import dcm_from_axis_angle, quaternion_from_axis_angle
+from orientation.axis_angle import axis_angle_from_dcm, dcm_from_axis_angle, quaternion_from_axis_angle
+from orientation.direction_cosines import check_dcm
 from orientation.euler_angles import body_fixed_from_dcm
+from orientation.quaternions import dcm_from_quaternion
 
 from .figure import MovingFigure
 from .state import Direction, Numbers, Sequence
@@ -24,6 +26,13 @@ class TriadFigure(MovingFigure):
         Radians, from :math:`-\pi` to :math:`\pi`.
     sequence : str
         Which of the twelve sequences the Euler angles belong to.
+    dcm, quaternion
+        The same orientation in other words; setting one sets ``axis`` and ``angle``.
+
+    Raises
+    ------
+    ValueError
+        If a matrix that is set is no direction cosine matrix, or a quaternion not of unit length.
 
     Examples
     --------
@@ -32,6 +41,12 @@ class TriadFigure(MovingFigure):
     >>> figure.angle = 0.5
     >>> figure.axis, figure.dcm[0, 1].round(6).item()
     ((0.0, 0.0, 1.0), 0.479426)
+
+    A matrix of one's own:
+
+    >>> figure.dcm = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
+    >>> round(figure.angle, 6)
+    2.094395
     """
 
     kind = "triad"
@@ -46,10 +61,21 @@ class TriadFigure(MovingFigure):
         r""":math:`{}^A\mathbf{C}^N`, shape ``(3, 3)``."""
         return dcm_from_axis_angle(self.axis, self.angle)
 
+    @dcm.setter
+    def dcm(self, dcm):
+        check_dcm(dcm)
+        axis, angle = axis_angle_from_dcm(dcm)
+        with self.hold_sync():
+            self.axis, self.angle = axis, angle
+
     @property
     def quaternion(self):
         """Unit quaternion of half the angle, scalar first, shape ``(4,)``."""
         return quaternion_from_axis_angle(self.axis, self.angle)
+
+    @quaternion.setter
+    def quaternion(self, quaternion):
+        self.dcm = dcm_from_quaternion(quaternion)
 
     @property
     def angles(self):

@@ -26,7 +26,7 @@ from ..take_away import first_words, is_notebook, notebook_address, notebook_pag
 HERE = Path(__file__).parent
 FOLDER = "lite"
 LOCK = "lite-lock.json"
-FETCHED = runtime.FETCHED.with_name("lite")  # where `make setup` puts the wheels of wheels.txt
+FETCHED = runtime.FETCHED_FOR_NOTEBOOKS
 WORKSHOP = BUILD / FOLDER
 APPS = ("notebooks", "tree", "edit")  # one notebook, the list of all of them, a text file
 # The parts of the interface that are not JupyterLite's own: the kernel, sliders, and the moving figures.

@@ -11,14 +11,14 @@ SOURCES = {
     "off": "Here NumPy and Matplotlib are not offered: those cells keep their printed results.",
     "folder": "Here NumPy and Matplotlib come with the pages, from the same place.",
 }
-COLUMNS = ("draw with NumPy", "compute with NumPy", "need SciPy", "need a notebook")
+COLUMNS = ("hold a moving figure", "draw with NumPy", "compute with NumPy", "need SciPy")
 
 
 def column(kind):
-    if {"anywidget", "ipywidgets"} & set(kind["needs"]):
-        return "need a notebook"
     if "scipy" in kind["needs"]:
         return "need SciPy"
+    if "anywidget" in kind["needs"]:
+        return "hold a moving figure"
     return "draw with NumPy" if kind["figure"] else "compute with NumPy"
 
 
@@ -45,7 +45,7 @@ class NeedsMore(SphinxDirective):
             "pages run",
             "whole. The other cells, by their numbers from the top of each page, are these; a cell that takes a "
             "name from",
-            "one of them needs the same.",
+            "one of them needs the same. What a moving figure needs comes with this site.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",
             "|---|---|" + "---|" * len(COLUMNS),

@@ -22,6 +22,7 @@ from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
 FETCHED = REPOSITORY / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt
+FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")  # and those of lite/wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
 # Names in the site, by those in npm's package: servers that do not know .mjs would send no script that runs.
@@ -36,7 +37,14 @@ COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
 DISTRIBUTION = "orientation-of-reference-frames"
-DEPENDS = {"sympy": ["mpmath"], DISTRIBUTION: ["sympy"]}
+#: What moving figures talk with their Python through: wheels that the notebook interface needs as well.
+WIDGETS = ("comm", "ipywidgets", "psygnal", "traitlets", "typing-extensions")
+DEPENDS = {
+    "sympy": ["mpmath"],
+    DISTRIBUTION: ["sympy"],
+    "anywidget": list(WIDGETS),
+    "ipywidgets": ["comm", "traitlets"],
+}
 NUMERICAL = ("numpy", "matplotlib")  # not on PyPI for browsers; see the setting numpy_in_the_page
 
 
@@ -172,6 +180,12 @@ def numerical_packages(setting, target, official, address):
     return chosen
 
 
+def wheels_of_widgets():
+    """The wheels that a moving figure's Python side needs, anywidget the first of them."""
+    names = [name.replace("-", "_") for name in ("anywidget", *WIDGETS)]
+    return [wheel for name in names for wheel in FETCHED_FOR_NOTEBOOKS.glob(f"{name}-*.whl")]
+
+
 def write(site, setting):
     """Write the runtime folder of ``site``, a folder with the built pages."""
     target = site / FOLDER
@@ -186,7 +200,7 @@ def write(site, setting):
         if name.endswith(".js"):
             content = content.replace(b"pyodide.asm.mjs", b"pyodide.asm.js")
         (pyodide / name).write_bytes(content)
-    wheels = [*sorted(FETCHED.glob("*.whl")), site / TAKE_AWAY / wheel_name()]
+    wheels = [*sorted(FETCHED.glob("*.whl")), site / TAKE_AWAY / wheel_name(), *wheels_of_widgets()]
     official = official_lock()
     packages = own_packages(compile_wheels(wheels), target)
     packages |= numerical_packages(setting, target, official, official_address())

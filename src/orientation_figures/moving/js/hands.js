@@ -3,7 +3,7 @@ import { AXES, IDENTITY, cross, dcmFromQuaternion, dot, multiply, multiplyQuater
 import { Sheet, button, change, degrees, fixed, follow, glide, group, hats, liveText, numberTable, onceAFrame, open, plain,
   put, radians, readout, element, stage } from './shared.js';
 
-const REACH = 1.0, SIZE = 88, APART = 1.1;   // as in hands.py
+const REACH = 1.0, SIZE = 76, APART = 1.3;   // as in hands.py
 const STEP = 15;
 const [N, M] = ['n', 'm'].map(hats);
 

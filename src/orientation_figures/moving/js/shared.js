@@ -4,6 +4,7 @@
 import { AXES, IDENTITY, add, cross, dcmFromAxisAngle, dot, length, multiply, scale, simpleDcm, subtract, times,
   transpose, unit } from './mathematics.js';
 import { LABELS, OUTLINES } from './glyphs.js';
+import { Model } from './model.js';
 
 // ---- elements and words --------------------------------------------------------------------------------
 
@@ -662,32 +663,10 @@ export function change(model, values) {
   model.save_changes();
 }
 
-// The part of anywidget's model that figures use, for pages without a kernel.
-class PageModel extends EventTarget {
-  constructor(state) {
-    super();
-    this.state = state;
-    this.heard = new Map();
-  }
-
-  get(name) { return this.state[name]; }
-
-  set(name, value) {
-    if (JSON.stringify(this.state[name]) === JSON.stringify(value)) return;
-    this.state[name] = value;
-    for (const listener of this.heard.get(`change:${name}`) ?? []) listener();
-  }
-
-  on(event, listener) { this.heard.set(event, [...this.heard.get(event) ?? [], listener]); }
-
-  off(event, listener) { this.heard.set(event, (this.heard.get(event) ?? []).filter((other) => other !== listener)); }
-
-  save_changes() {}
-}
-
 export function start(name, render) {
   for (const figure of document.querySelectorAll(`.moving[data-figure="${name}"]:not([data-ready])`)) {
-    render({ model: new PageModel(JSON.parse(figure.dataset.state)), el: figure });
+    figure.model = new Model(JSON.parse(figure.dataset.state));
+    render({ model: figure.model, el: figure });
     figure.dataset.ready = '';
   }
 }

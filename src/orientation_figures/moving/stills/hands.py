@@ -4,7 +4,7 @@ import numpy as np
 
 from ...drawing import Drawing
 
-REACH, SIZE, APART = 1.0, 88, 1.1  # as in js/hands.js
+REACH, SIZE, APART = 1.0, 76, 1.3  # as in js/hands.js
 
 
 def drawing(figure):

@@ -28,6 +28,7 @@ export class Cell {
     this.output = output.querySelector(":scope > figure:has(> figcaption)") ?? output;
     this.built = [...this.output.children].filter((child) => child.tagName !== "FIGCAPTION");
     this.current = this.built;
+    this.made = this.original; // the code that has given what stands there
   }
 
   get code() {
@@ -130,6 +131,7 @@ export class Cell {
 
   restore() {
     this.replace(this.built);
+    this.made = this.original;
     this.box.classList.remove("waiting", "running", "failed");
     this.ran = this.stopped = false;
   }
@@ -158,11 +160,21 @@ export class Cell {
       }
       this.words.push(message.text);
     } else {
-      const [box, words] = shown(message.data, this.name);
+      const [box, words] = shown(message.data, this.name, (data) => this.page.figures.show(data, this));
       this.fresh.push(box);
       this.words.push(words);
     }
     if (message.type === "stream") this.replace([...this.fresh]); // what is printed is seen at once
+  }
+
+  // What the observers of this cell's figure put out, at any time after its run.
+  observed(message) {
+    if (message.type === "clear") return;
+    this.heard?.remove();
+    this.heard = message.type === "stream" ? preformatted("stream", message.text) : shown(message.data, this.name, () => null)[0];
+    if (message.name === "stderr") this.heard.classList.add("stderr");
+    this.current.at(-1).after(this.heard);
+    this.current = [...this.current, this.heard].filter((node) => node.isConnected);
   }
 
   // What the book's code gives, beside a note: folded where the code above it is another one.
@@ -185,6 +197,8 @@ export class Cell {
     this.box.classList.toggle("failed", Boolean(note));
     const nodes = [...this.fresh];
     if (note) nodes.push(note, ...this.bookResult);
+    if (!this.asked && this.made === this.code) this.page.figures.keep(this.current, nodes);
+    this.made = this.code;
     this.replace(nodes);
     this.ran = true;
   }

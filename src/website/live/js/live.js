@@ -3,6 +3,7 @@ import { Cell } from "./cell.js";
 import { Answers, fingerprint, nameCells, PREFIX } from "./answers.js";
 import { named } from "./names.js";
 import { bringTogether, readCopy } from "./notebooks.js";
+import { Figures } from "./figures.js";
 import { element, preformatted } from "./output.js";
 import { Python } from "./python.js";
 
@@ -14,6 +15,7 @@ class Page {
     this.pyodide = data.pyodide;
     this.answers = new Answers(data.page);
     this.bar = bar;
+    this.figures = new Figures((name, data) => this.python?.tell(name, data));
     this.cells = boxes.map((box, index) => new Cell(box, index + 1, data.cells[index] ?? {}, this));
     const ids = nameCells(this.cells.map(({ kind, original }) => ({ name: kind.name, original })));
     this.cells.forEach((cell, index) => (cell.id = ids[index]));
@@ -150,6 +152,7 @@ class Page {
     if (!cell && this.cells.every((other) => this.leftOut(other))) {
       return this.bar.say("Each cell of this page draws a picture that is there already. Run below a cell draws it anew.");
     }
+    if (cell) cell.asked = true; // by its own button: its figure begins anew
     const upTo = cell ? cell.number : this.cells.length;
     const before = this.cells.slice(0, upTo).filter((other) =>
       other !== cell && !(cell && (other.ran || other.stopped)) && !(this.leftOut(other) && !(cell?.kind.skip)));
@@ -167,7 +170,7 @@ class Page {
   async work() {
     this.busy = true;
     this.retry = true; // what could not be fetched before is tried again
-    this.unreachable = null;
+    this.unreachable = new Map();
     this.show();
     try {
       if (!this.python) await this.load();
@@ -203,16 +206,19 @@ class Page {
     if (message.type === "progress" && !this.has) this.bar.progress(message.bytes, message.all);
     else if (message.type === "fetching") this.bar.say(`${named(message.name)} is being fetched from ${message.place} ...`);
     else if (message.type === "output") cell.take(message.message);
+    else if (message.type === "widget") this.figures.hear(message.message);
+    else if (message.type === "observed") this.figures.observed(message.widget, message.message);
   }
 
   async next(cell) {
     const needs = cell.edited ? [] : cell.kind.needs ?? [];
-    const lacking = needs.filter((module) => !this.has.numerical.includes(module));
+    const lacking = needs.filter((module) => !this.has.modules.includes(module));
     cell.begin();
     if (lacking.length) {
       return this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
     }
-    if (this.unreachable && needs.length) return this.leave(cell, this.unreachable);
+    const reason = needs.map((module) => this.unreachable.get(module)).find(Boolean);
+    if (reason) return this.leave(cell, reason);
     if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
     // Code that the page hides above this cell; what it puts out belongs to no cell.
     const { before } = cell.kind;
@@ -220,6 +226,7 @@ class Page {
     const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, cell, this.retry) : hidden;
     this.retry = false;
     this.settle(cell, outcome);
+    cell.asked = false;
   }
 
   leave(cell, reason) {
@@ -237,7 +244,7 @@ class Page {
       const words = cell.words.join(" ").trim();
       this.last = `${cell.name} ran${words ? `. Result: ${words.length > 200 ? `${words.slice(0, 200)} ...` : words}` : ", without a result to show"}`;
     } else if (status === "missing") {
-      if (!cell.edited) this.unreachable = outcome.reason;
+      if (!cell.edited) this.unreachable.set(outcome.package, outcome.reason);
       this.leave(cell, outcome.reason);
     } else if (status === "error") {
       const text = preformatted("stream", outcome.traceback);
@@ -286,7 +293,7 @@ class Page {
   // Python is gone, and with it every name: the next run begins with the first cell.
   forget() {
     this.python = null;
-    this.unreachable = null;
+    this.unreachable = new Map();
     for (const cell of this.cells) cell.ran = false;
   }
 

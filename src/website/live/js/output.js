@@ -120,8 +120,11 @@ function withStress(block, text) {
   return block;
 }
 
-// One value in the best of its forms, and in a few words for those who hear the page.
-export function shown(data, name) {
+// One value in the best of its forms, and in a few words for those who hear the page. ``figure`` gives the element of
+// a value that is a moving figure.
+export function shown(data, name, figure) {
+  const moving = figure(data);
+  if (moving) return [moving, "a figure"];
   const form = ORDER.find((known) => known in data);
   if (form === "text/html") {
     const box = html(data[form]);

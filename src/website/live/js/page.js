@@ -76,7 +76,8 @@
       console.info(`The page is not isolated: ${error.message}`);
       return false;
     }
-    sessionStorage.setItem(RUN, JSON.stringify({ page: data.page, number, line: scrollY }));
+    const figures = [...document.querySelectorAll("figure.moving")].map(({ model }) => model?.moved);
+    sessionStorage.setItem(RUN, JSON.stringify({ page: data.page, number, line: scrollY, figures }));
     location.reload();
     return true;
   };
@@ -151,6 +152,8 @@
   if (localStorage.getItem(`book ${place} kept`)) script("keep.js").then(({ remind }) => remind(tools)).catch(() => {});
   if (again.page === data.page) {
     addEventListener("load", () => scrollTo(0, again.line));
+    // What the reader has moved before stands there again; the scripts of the figures have run by now.
+    document.querySelectorAll("figure.moving").forEach(({ model }, place) => model?.move(again.figures?.[place]));
     ask(again.number);
   }
   else if (Object.keys(localStorage).some(isOwn)) ask();

@@ -52,6 +52,11 @@ export class Python {
     });
   }
 
+  // Tell a widget's Python side what has changed on the page. It is heard before the next run.
+  tell(name, data) {
+    this.worker.postMessage({ type: "widget", name, data });
+  }
+
   finish(outcome) {
     clearTimeout(this.timer);
     this.current?.settle(outcome);

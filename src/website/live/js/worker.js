@@ -1,6 +1,7 @@
 // Python for one page, in a thread of its own: loads the runtime, then runs what the page sends.
 import display from "../python/IPython/display.py";
 import ipython from "../python/IPython/__init__.py";
+import interactiveshell from "../python/IPython/core/interactiveshell.py";
 import pretty from "../python/IPython/lib/pretty.py";
 import session from "../python/session.py";
 import { named } from "./names.js";
@@ -8,6 +9,7 @@ import { named } from "./names.js";
 const FILES = {
   "session.py": session,
   "IPython/__init__.py": ipython,
+  "IPython/core/interactiveshell.py": interactiveshell,
   "IPython/display.py": display,
   "IPython/lib/__init__.py": "",
   "IPython/lib/pretty.py": pretty,
@@ -19,6 +21,8 @@ const OURS = "orientation-of-reference-frames";
 const NUMERICAL = ["numpy", "matplotlib"];
 
 let python, shell, packages, job;
+let widget = null; // the one whose observers are at work
+let line = false; // whether widgets can talk with the page
 
 const errorText = (error) => String(error?.message ?? error);
 // Names of modules, by the packages that bring them and are not loaded.
@@ -144,16 +148,20 @@ async function start({ runtime, pyodide, interrupts }) {
   const lost = [OURS, "sympy", "mpmath"].find((name) => !(name in python.loadedPackages));
   if (lost) throw new Error(faults[0] ?? `${lost} could not be loaded: the file is not the one that this edition names`);
   const site = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
-  python.FS.mkdirTree(`${site}/IPython/lib`);
+  for (const folder of ["core", "lib"]) python.FS.mkdirTree(`${site}/IPython/${folder}`);
   for (const [name, text] of Object.entries(FILES)) python.FS.writeFile(`${site}/${name}`, text);
   if (interrupts) python.setInterruptBuffer(new Uint8Array(interrupts));
-  shell = python.pyimport("session").start((text) =>
-    postMessage({ type: "output", job, message: JSON.parse(text) }));
+  shell = python.pyimport("session").start((text) => {
+    const message = JSON.parse(text);
+    if (message.type.startsWith("comm_")) postMessage({ type: "widget", message });
+    else if (widget) postMessage({ type: "observed", widget, message });
+    else postMessage({ type: "output", job, message });
+  });
   tellWhatIsMissing();
   const fetched = Object.values(packages).map(({ file_name: file }) => file).find((file) => file.includes("://"));
   postMessage({
     type: "ready",
-    numerical: NUMERICAL.filter((name) => name in packages),
+    modules: Object.values(packages).flatMap(({ imports }) => imports),
     elsewhere: fetched ? new URL(fetched).host : null,
   });
 }
@@ -178,6 +186,10 @@ async function bring(module) {
     refused[name] = `${named(name)} could not be fetched from ${place}${silent ? ", which does not answer" : ""}`;
   }
   tellWhatIsMissing();
+  if (!line && "comm" in python.loadedPackages) {
+    shell.open_line();
+    line = true;
+  }
   return came;
 }
 
@@ -196,9 +208,20 @@ async function run({ code, name, needs = [], retry }) {
   }
 }
 
+// The reader has moved a figure: its Python side learns of it, and those who observe it.
+function hear({ name, data }) {
+  widget = name;
+  try {
+    shell.hear(name, JSON.stringify(data));
+  } finally {
+    widget = null;
+  }
+}
+
 addEventListener("message", async ({ data }) => {
   try {
     if (data.type === "start") await start(data);
+    else if (data.type === "widget") hear(data);
     else {
       job = data.job;
       postMessage({ type: "done", job, outcome: await run(data) });

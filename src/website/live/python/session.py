@@ -8,6 +8,7 @@ Everything goes to the page as JSON, through one function.
 import ast
 import base64
 import builtins
+import contextlib
 import importlib
 import io
 import json
@@ -28,6 +29,7 @@ REPRESENTATIONS = {
     "image/png": "_repr_png_",
     "text/latex": "_repr_latex_",
 }
+WIDGET = "application/vnd.jupyter.widget-view+json"
 MOST_CHARACTERS = 60_000  # that one cell may print; a page holds no more with comfort
 FIRST_LINES = 50  # sent one by one
 PAUSE = 0.1  # seconds between two messages after that
@@ -105,6 +107,8 @@ class DisplayFormatter:
         if callable(bundle) and not isinstance(value, type):
             data = bundle()
             data = dict(data[0] if isinstance(data, tuple) else data)
+            if WIDGET in data:
+                data[WIDGET] = data[WIDGET]["model_id"]
         for form, formatter in self.formatters.items():
             if form not in data and (text := formatter(value)) is not None:
                 data[form] = base64.b64encode(text).decode() if isinstance(text, bytes) else text
@@ -193,6 +197,38 @@ class Shell:
             if isinstance(value, Absent) and value.__name__ not in reasons:
                 self.names[name] = importlib.import_module(value.__name__)
 
+    # --- figures that move ----------------------------------------------------------------------
+
+    def open_line(self):
+        """Have widgets talk with the page, through the package that is made for it and now here."""
+        import comm
+        from comm.base_comm import BaseComm
+
+        class Line(BaseComm):
+            def publish_msg(line, msg_type, data=None, metadata=None, buffers=None, **more):
+                if buffers:
+                    raise TypeError("a widget on this page can send numbers, text, lists and dictionaries, not bytes")
+                self.send({"type": msg_type, "id": line.comm_id, "data": data})
+
+            def handle_msg(line, message):  # its own would tell the events of IPython's shell
+                line._msg_callback(message)
+
+        comm.create_comm = Line
+
+    def hear(self, name, data):
+        """Take what the page says to the widget ``name``: JSON, in the form of Jupyter's own messages."""
+        import comm
+
+        message = {"content": {"comm_id": name, "data": json.loads(data)}, "buffers": []}
+        with self.printing():
+            comm.get_comm_manager().comm_msg(None, None, message)
+
+    def showtraceback(self):
+        """Print the error that is being handled: widgets ask for it where an observer fails."""
+        told = traceback.TracebackException.from_exception(sys.exception(), compact=True)
+        shorten(told)
+        print("".join(told.format()).rstrip(), file=sys.stderr)
+
     # --- showing --------------------------------------------------------------------------------
 
     def show(self, value, kind="display"):
@@ -227,20 +263,27 @@ class Shell:
         (with the ``package`` that is not here, and the reason).
         """
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
+        with self.printing():
+            try:
+                self.execute(code, name)
+                outcome = {"status": "ok"}
+            except KeyboardInterrupt:
+                outcome = {"status": "interrupted"}
+            except BaseException as error:
+                outcome = self.explain(error, name)
+        return json.dumps(outcome)
+
+    @contextlib.contextmanager
+    def printing(self):
+        """Send to the page what is printed meanwhile."""
         before = sys.stdout, sys.stderr
         sys.stdout, sys.stderr = self.printed
         try:
-            self.execute(code, name)
-            outcome = {"status": "ok"}
-        except KeyboardInterrupt:
-            outcome = {"status": "interrupted"}
-        except BaseException as error:
-            outcome = self.explain(error, name)
+            yield
         finally:
             for stream in self.printed:
                 stream.finish()
             sys.stdout, sys.stderr = before
-        return json.dumps(outcome)
 
     def execute(self, code, name):
         tree = ast.parse(code, name)
