@@ -202,11 +202,11 @@ def test_python_and_every_figure_move_together(browser, laboratory):
         assert kernel.value("heard[-1][0]") == kind
 
     explorer = cells.nth(len(KINDS) + 1)
-    assert "z-y-x locks at" in explorer.locator("[role=status]").inner_text()
+    explorer.get_by_text("z-y-x locks at").first.wait_for()
     explorer.locator("select").first.select_option(label="x-y-x")
-    explorer.get_by_text("x-y-x locks at θ = 0").wait_for()
+    explorer.get_by_text("x-y-x locks at θ = 0").first.wait_for()
     explorer.locator("input[type=text]").nth(1).fill("0")
-    explorer.get_by_text("Here it is locked.").wait_for()
+    explorer.get_by_text("Here it is locked.").first.wait_for()
     assert kernel.value("str(explorer.dcm[0, 0])") == "1"
     kernel.client.stop_channels()
     context.close()
