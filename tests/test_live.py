@@ -792,9 +792,9 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     page.turn(90)
     page.run_below(page.asking)  # and, before it, the figure's own cell
     assert page.angle() == 90
-    assert page.try_code(page.asking, "figure.angle").startswith("1.5707963")
+    assert page.try_code(page.asking, "print(figure.angle)").startswith("1.5707963")
     page.turn(-30)
-    assert page.try_code(page.asking, "figure.angle").startswith("-0.5235987")
+    assert page.try_code(page.asking, "print(figure.angle)").startswith("-0.5235987")
     # The other way round, a matrix as well, and no word that is wrong.
     page.try_code(page.asking, "figure.angle = 0.5")
     page.page.wait_for_function("() => document.querySelector('.moving .field input').value === '28.65'")

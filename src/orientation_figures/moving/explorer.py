@@ -32,6 +32,8 @@ NAMES = ("psi", "theta", "phi")
 FUNCTIONS = {name: getattr(sm, name) for name in ("pi", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan")}
 KINDS_OF_NUMBERS = {name: getattr(sm, name) for name in ("Integer", "Float", "Rational")}
 TURN = 2 * sm.pi  # beyond it, degrees may have been meant
+SPACE = '<mspace width="0.17em"></mspace>'
+FIXED = '<mo stretchy="false">{}</mo>'
 #: The symbol of the matrix, with its frames around it.
 SYMBOL = (
     '<mmultiscripts><mi mathvariant="normal" class="matrix">C</mi><mrow></mrow><mi>A</mi><mprescripts></mprescripts>'
@@ -221,7 +223,17 @@ def _tex(value):
 
 
 def _mathml(value):
-    return mathml(_rounded(value), printer="presentation").replace("<mi>varphi</mi>", "<mi>φ</mi>")
+    """Return MathML without the brackets round a single symbol, as ``fold_func_brackets`` leaves them out of TeX."""
+    text = mathml(_rounded(value), printer="presentation").replace("<mi>varphi</mi>", "<mi>φ</mi>")
+    text = text.replace("<mn>-", "<mn>−")
+    text = re.sub(r"<mrow><mo>\(</mo>(<m[in]>[^<]+</m[in]>)<mo>\)</mo></mrow>", rf"{SPACE}\1", text)
+    for found, wanted in (
+        ("&InvisibleTimes;", SPACE),
+        ("-", "<mo>−</mo>"),
+        *((one, FIXED.format(one)) for one in "()"),
+    ):
+        text = text.replace(f"<mo>{found}</mo>", wanted)
+    return text
 
 
 def _rounded(value):
