@@ -167,14 +167,28 @@ export class Cell {
     if (message.type === "stream") this.replace([...this.fresh]); // what is printed is seen at once
   }
 
-  // What the observers of this cell's figure put out, at any time after its run.
+  // What the observers of this cell's figure put out, at any time after its run: it takes the place of what they put
+  // out before, when the figure was somewhere else.
   observed(message) {
-    if (message.type === "clear") return;
-    this.heard?.remove();
-    this.heard = message.type === "stream" ? preformatted("stream", message.text) : shown(message.data, this.name, () => null)[0];
-    if (message.name === "stderr") this.heard.classList.add("stderr");
-    this.current.at(-1).after(this.heard);
-    this.current = [...this.current, this.heard].filter((node) => node.isConnected);
+    if (message.type === "clear") {
+      this.outdated = true;
+      return;
+    }
+    if (this.outdated || !this.heard) {
+      this.outdated = false;
+      this.heard?.remove();
+      this.heard = element("div", "output");
+      const there = this.current.filter((node) => node.isConnected);
+      there.at(-1).after(this.heard);
+      this.current = [...there, this.heard];
+    }
+    if (message.type !== "stream") return this.heard.append(shown(message.data, this.name, () => null)[0]);
+    const last = this.heard.lastElementChild;
+    if (last?.dataset.name === message.name) return last.querySelector("pre").append(message.text);
+    const box = preformatted("stream", message.text);
+    box.dataset.name = message.name;
+    if (message.name === "stderr") box.classList.add("stderr");
+    this.heard.append(box);
   }
 
   // What the book's code gives, beside a note: folded where the code above it is another one.

@@ -211,6 +211,7 @@ async function run({ code, name, needs = [], retry }) {
 // The reader has moved a figure: its Python side learns of it, and those who observe it.
 function hear({ name, data }) {
   widget = name;
+  postMessage({ type: "observed", widget, message: { type: "clear" } });
   try {
     shell.hear(name, JSON.stringify(data));
   } finally {
