@@ -1,8 +1,10 @@
 """Variants of a question: drawn by rule, sealed one by one, and each student's own found without a server."""
 
+import base64
 import collections
 import json
 import random
+import re
 import shutil
 import zipfile
 
@@ -128,7 +130,9 @@ def of_the_book():
 
 
 def test_the_book_has_variants_that_stay_small():
-    assert len(of_the_book()) >= 24
+    counts = [about["variants"] for about in of_the_book().values()]
+    assert len(counts) >= 60 and sum(count >= 16 for count in counts) >= 24
+    assert sum("picture" in about for about in of_the_book().values()) >= 4
     files = list(COURSE.sealed.rglob("*.json"))
     assert sum(path.stat().st_size for path in files) < 1_500_000
     for path in (COURSE.sealed / "variants").glob("*.json"):
@@ -233,6 +237,51 @@ def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
     write_source(made.sources, *((kind, drawn if text == DRAWN else text) for kind, text, *_ in CELLS), name="levers")
     with pytest.raises(AuthorError, match=r"levers/see-saw, variant \d, {'force': 2, 'arm': 2}: This authored mistake"):
         release(made, run=False)
+
+
+PICTURED = [
+    ("markdown", "# Levers"),
+    ("code", "from coursework import check, me, variant\nme('')"),
+    (
+        "code",
+        "### BEGIN VARIANTS\nclass Drawn:\n    def __init__(self, force):\n        self.alt = f'A beam & {force} arrows'\n"
+        "    def picture(self):\n        return f'<svg width=\"9\">{self.alt}</svg>'\n\n\n"
+        "lever = draw('levers/see-saw', count=3, force=[2, 5, 6], "
+        "picture=lambda drawn: Drawn(drawn['force']))\n### END VARIANTS",
+    ),
+    ("markdown", "{{picture}}\n\nHow many arrows?"),
+    ("code", "### BEGIN SOLUTION\nmoment = lever.force\n### END SOLUTION"),
+    (
+        "code",
+        "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\nquestion('levers/see-saw', kind='expression')\n"
+        "### END HIDDEN TESTS",
+    ),
+]
+
+
+def test_a_picture_differs_from_variant_to_variant(tmp_path, monkeypatch):
+    made = made_in(tmp_path)
+    write_source(made.sources, *PICTURED, name="levers")
+    release(made, run=False)
+    monkeypatch.chdir(made.root)
+    questions.notebook_questions.cache_clear()
+    seen = set()
+    try:
+        for number in range(3):
+            student = next(f"s{k}" for k in range(99) if variants.variant_of(f"s{k}", "levers/see-saw", 3) == number)
+            coursework.me(student)
+            lever = coursework.variant("levers/see-saw")
+            data = re.search(
+                r'<p><img alt="A beam &amp; (\d) arrows" width="9" src="data:[^,]+,(.*?)"></p>', lever._repr_markdown_()
+            )
+            assert f"{data[1]} arrows</svg>" in base64.b64decode(data[2]).decode() and data[1] == str(lever.force)
+            assert repr(lever) == f"A beam & {lever.force} arrows\n\nHow many arrows?"
+            assert coursework.check("levers/see-saw", lever.force).outcome == "correct"
+            seen.add(lever.force)
+    finally:
+        coursework.me("")
+        questions.notebook_questions.cache_clear()
+    assert seen == {2, 5, 6}
 
 
 def test_parameters_are_shown_in_a_text():

@@ -5,11 +5,9 @@ made of it: the exercise notebook with blanks, and the file of sealed questions.
 bytes. :mod:`coursework.authoring.packing` makes the archive that students download.
 """
 
-import base64
 import concurrent.futures
 import copy
 import hashlib
-import html
 import json
 import os
 import re
@@ -18,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 from ..checking.questions import FORMAT, beside
+from ..checking.variants import image
 from .author import AuthorError, solution_code
 from .selftest import try_question
 from .source import CHAPTERS, answered_in, checked_names, digest_of_code, notebooks_in, posed, read_source
@@ -47,7 +46,9 @@ def exercise_notebook(source):
         if shows_variants(source.notebook.cells, number):
             continue
         elif number in source.figures:
-            cells.append(nbformat.v4.new_markdown_cell(_image(source.figures[number])))
+            cells.append(
+                nbformat.v4.new_markdown_cell(image(source.figures[number].picture(), source.figures[number].alt))
+            )
         elif cell.cell_type == "markdown":
             cells.append(nbformat.v4.new_markdown_cell(cell.source))
         else:
@@ -105,15 +106,6 @@ def _checksum(cell, about):
     for part in parts:
         digest.update(part.encode("utf8"))
     return digest.hexdigest()
-
-
-def _image(drawing):
-    """A figure as Markdown: its picture, on white paper of its own, and its text for those who do not see it."""
-    picture = drawing.picture()
-    width = re.search(r'width="(\S+)"', picture)[1]
-    data = base64.b64encode(picture.encode("utf8")).decode("ascii")
-    # As HTML: Markdown readers that are careful refuse this kind of address in an image of their own.
-    return f'<p><img alt="{html.escape(drawing.alt)}" width="{width}" src="data:image/svg+xml;base64,{data}"></p>'
 
 
 def run_notebook(notebook, folder):

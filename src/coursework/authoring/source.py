@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
-from coursework.checking.variants import Given, shown
+from coursework.checking.variants import Given, packed, shown
 
 from . import author
 from .variation import COUNT, VARIANTS, Rule, drawn_in, written
@@ -25,6 +25,8 @@ from .variation import COUNT, VARIANTS, Rule, drawn_in, written
 CHAPTERS = "chapters"
 #: Where the code is that the seals of a question follow from.
 ROOMS = ("authoring", "checking")
+#: Characters of a parameter up to which it is a word, and not a part of the text.
+LONGEST_WORD = 40
 #: The file beside the sources in which an author declares what may be guessed.
 DECLARED = "guessable.json"
 
@@ -101,8 +103,8 @@ def read_source(path, variant=0, edition=""):
     answers, questions, figures = {}, {}, {}
     rules, given, texts = {}, {}, _texts_of_variants(notebook)
 
-    def draw(name, count=COUNT, where=None, **pools):
-        rules[name] = Rule(name, count, pools, where)
+    def draw(name, count=COUNT, where=None, picture=None, **pools):
+        rules[name] = Rule(name, count, pools, where, picture)
         given[name] = rules[name].parameters(variant if variant < count else 0, edition)
         return Given(shown(texts[name], written(given[name])), given[name])
 
@@ -124,9 +126,12 @@ def read_source(path, variant=0, edition=""):
                 "variant": variant,
                 "variants": rules[name].count,
                 "text": texts[name],
-                "shown": written(given[name]),
-                "given": {key: value for key, value in given[name].items() if _is_plain(value)},
+                "shown": {key: text for key, text in written(given[name]).items() if f"{{{{{key}}}}}" in texts[name]},
+                "given": {key: value for key, value in given[name].items() if _is_given(value)},
             } | ({"edition": edition} if edition else {})
+            if rules[name].picture:
+                drawing = rules[name].picture(given[name])
+                about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
             questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
 
     namespace = {"__name__": "__main__", "question": record_question, "draw": draw}
@@ -163,6 +168,11 @@ def _texts_of_variants(notebook):
                 raise author.AuthorError(f"{found[1]}: the text of the question comes next after what may vary in it.")
             texts[found[1]] = after.source
     return texts
+
+
+def _is_given(value):
+    """Whether a student's cell may need a parameter: numbers, words and lists of them, no whole sentences."""
+    return (isinstance(value, str) and len(value) <= LONGEST_WORD) or _is_plain(value) and not isinstance(value, str)
 
 
 def _is_plain(value):

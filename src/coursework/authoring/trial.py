@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 from ..checking.reply import to_html
+from ..checking.variants import text_of as whole_text
 from .author import AuthorError, to_page
 from .selftest import text_of, try_question, write_page
 from .source import declared_strengths, read_source
@@ -34,7 +35,7 @@ def trial(course, name, page):
     if not chosen:
         raise AuthorError(f"There is no question {name!r}; {path.name} has {', '.join(source.questions)}.")
     texts = "".join(
-        f"<section><h2>{html.escape(question.name)}</h2>{to_page(text_of(source, question))}"
+        f"<section><h2>{html.escape(question.name)}</h2>{to_page(_text(source, question))}"
         f"<details><summary>The worked solution</summary>{to_page(question.solution) or '<p>None.</p>'}</details>"
         f"{_hints(question)}</section>"
         for question in chosen
@@ -51,6 +52,11 @@ def _with_mathematics(page):
     from latex2mathml.converter import convert
 
     return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: convert(html.unescape(found[2])), page)
+
+
+def _text(source, question):
+    """The text of a question, with its picture."""
+    return whole_text(question.public) if "text" in question.public else text_of(source, question)
 
 
 def _hints(question):

@@ -39,12 +39,15 @@ class Rule(NamedTuple):
         For each parameter a list to choose from, or a function of a ``random.Random`` that gives a value.
     where : function, optional
         Which choices will do: a function of the dictionary of parameters.
+    picture : function, optional
+        The drawing of a variant, from the dictionary of its parameters: the text shows it as ``{{picture}}``.
     """
 
     name: str
     count: int
     pools: dict
     where: Callable | None = None
+    picture: Callable | None = None
 
     def parameters(self, number, edition=""):
         """The parameters of a variant. Of the first edition, variant 0 takes the first of each list.

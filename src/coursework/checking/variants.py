@@ -5,8 +5,12 @@ follows from the student's identity, the question and the edition of the course 
 the same one in every notebook, on every machine and in the grader. Without an identity it is variant 0.
 """
 
+import base64
 import hashlib
+import html
+import json
 import re
+import zlib
 
 #: Who works in this notebook; set by :func:`me`, anew in each run of it.
 _identity = ""
@@ -64,6 +68,32 @@ def shown(text, written):
     return text
 
 
+def image(picture, alt):
+    """A picture, given as SVG, as Markdown: on white paper of its own, with its text for those who do not see it."""
+    width = re.search(r'width="(\S+)"', picture)[1]
+    data = base64.b64encode(picture.encode("utf8")).decode("ascii")
+    # As HTML: Markdown readers that are careful refuse this kind of address in an image of their own.
+    return f'<p><img alt="{html.escape(alt)}" width="{width}" src="data:image/svg+xml;base64,{data}"></p>'
+
+
+def packed(picture, alt):
+    """A picture as short text: pictures are most of what the variants of a question differ in."""
+    return base64.b85encode(zlib.compress(json.dumps([picture, alt]).encode("utf8"), 9)).decode("ascii")
+
+
+def text_of(question):
+    """The whole text of a sealed question that has variants, with its picture.
+
+    >>> lever = {"text": "{{picture}} Give {{arm}}.", "shown": {"arm": "2"}, "picture": packed('<svg width="9">', "Up")}
+    >>> print(text_of(lever))
+    <p><img alt="Up" width="9" src="data:image/svg+xml;base64,PHN2ZyB3aWR0aD0iOSI+"></p> Give 2.
+    """
+    written = dict(question.get("shown", {}))
+    if "picture" in question:
+        written["picture"] = image(*json.loads(zlib.decompress(base64.b85decode(question["picture"]))))
+    return shown(question.get("text", ""), written)
+
+
 class Given:
     """What is given in a question: its text, and its numbers and names by name.
 
@@ -86,7 +116,8 @@ class Given:
         return self._parameters[name]
 
     def __repr__(self):
-        return re.sub(r"[*`$]", "", self._text)
+        text = re.sub(r'<p><img alt="([^"]*)"[^>]*></p>', lambda found: html.unescape(found[1]), self._text)
+        return re.sub(r"[*`$]", "", text)
 
     def _repr_markdown_(self):
         return self._text
@@ -112,4 +143,4 @@ def variant(name: str) -> Given:
     from .questions import find_question
 
     question = find_question(name)
-    return Given(shown(question.get("text", ""), question.get("shown", {})), question.get("given", {}))
+    return Given(text_of(question), question.get("given", {}))

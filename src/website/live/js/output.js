@@ -99,7 +99,11 @@ function markdown(text) {
   for (const part of text.split(/\n{2,}/)) {
     const display = part.trim().match(/^\$\$([\s\S]*)\$\$$/);
     const items = part.split(/\n(?=\d+\. |- )/);
-    if (display) box.append(formula(display[1]));
+    const drawn = part.trim().match(/^<p><img alt="([^"]*)" width="([\d.]+)" src="(data:image\/svg\+xml;base64,[\w+/=]+)"><\/p>$/);
+    if (drawn) {
+      const alt = new DOMParser().parseFromString(drawn[1], "text/html").documentElement.textContent;
+      box.append(Object.assign(element("img"), { alt, width: drawn[2], src: drawn[3] }));
+    } else if (display) box.append(formula(display[1]));
     else if (/^(\d+\. |- )/.test(part)) {
       const list = element(part.startsWith("-") ? "ul" : "ol");
       list.append(...items.map((item) => withStress(element("li"), item.replace(/^(\d+\.|-) /, ""))));
