@@ -6,6 +6,7 @@ import json
 import random
 import sys
 from functools import cache
+from types import ModuleType
 
 import pytest
 import sympy as sm
@@ -19,6 +20,7 @@ from coursework.checking import questions, sealing
 from coursework.checking.kinds import Fault, Undecidable, fault, read
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.questions import NoSuchQuestion
+from coursework.checking.reply import Reply
 from orientation import (
     SEQUENCES,
     body_fixed_from_dcm,
@@ -410,6 +412,23 @@ def test_a_misspelt_name_is_answered_with_the_nearest():
     for name in ("", "/", "../../etc/passwd", "a" * 5000, "\0"):
         with pytest.raises(NoSuchQuestion):
             coursework.check(name, 1)
+
+
+@pytest.mark.parametrize("sign", ["VSCODE_PID", "google.colab", "marimo", ""])
+def test_formulas_are_mathml_where_nobody_typesets_tex(monkeypatch, sign):
+    for name in ("google.colab", "marimo"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.delenv("VSCODE_PID", raising=False)
+    if sign.isupper():
+        monkeypatch.setenv(sign, "1")
+    elif sign:
+        monkeypatch.setitem(sys.modules, sign, ModuleType(sign))
+    solution = r"<p>So $$x = {}^A\mathbf{C}^N$$ and $a &lt; b$.</p>"
+    shown = Reply("a/b", "wrong", "", [r"The arm is $\frac{1}{2}x$."], solution)._repr_html_()
+    assert ("<mfrac>" in shown) == ("$" not in shown) == (shown.count("<math ") == 3) == bool(sign)
+    assert r"\frac" in shown or sign
+    monkeypatch.setitem(sys.modules, "latex2mathml.converter", None)  # students may not have it
+    assert "<math" not in Reply("a/b", "wrong", "", ["$x$"])._repr_html_()
 
 
 # --- the locks ----------------------------------------------------------------------------------

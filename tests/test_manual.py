@@ -1,11 +1,16 @@
 """The manual for authors: its examples are questions that pass, and the replies that it prints are the real ones."""
 
+import csv
+import os
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
+from test_course import SOLVE
 from test_release import write_source
 
+from coursework.authoring.packing import DISTRIBUTIONS, wheel
 from coursework.authoring.selftest import _judge, try_question
 from coursework.authoring.source import read_source
 
@@ -46,3 +51,34 @@ def test_the_manual_has_examples_of_most_kinds_and_names_all():
 
     for kind in KINDS:
         assert f"`{kind}`" in MANUAL
+
+
+@pytest.mark.long
+def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_path):
+    """From an empty folder to the marks, as one who has nothing but the manual and the two packages."""
+    blocks = re.findall(r"```console\n(.*?)```", MANUAL, re.S)
+    assert (
+        "venv" in blocks[0] and "new" in blocks[1] and "try" in blocks[2] and "grade" in blocks[3] and len(blocks) == 4
+    )
+    (tmp_path / "wheels").mkdir()
+    for name in DISTRIBUTIONS:
+        wheel(name, tmp_path / "wheels")
+    (tmp_path / "solve.py").write_text(SOLVE)
+    handing_in = (
+        "mkdir -p handed-in/ada handed-in/ben\n"
+        "python ../solve.py solutions/first-steps.ipynb handed-in/ada/first-steps.ipynb\n"
+        "cp exercises/first-steps.ipynb handed-in/ben\n"
+    )
+    script = "\n".join(["set -e", *blocks[:3], handing_in, blocks[3]])
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    environment["PIP_CONSTRAINT"] = str(Path(__file__).parent.parent / "constraints.txt")
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    course = tmp_path / "first-course"
+    assert (course / "build" / "try.html").is_file() and (course / "build" / "exercises.zip").is_file()
+    assert (course / "marks" / "report.html").is_file() and len(
+        list((course / "marks" / "feedback").rglob("*.html"))
+    ) >= 2
+    with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        points = {row["student"]: float(row["points"]) for row in csv.DictReader(file)}
+    assert points["ada"] > 0 == points["ben"]

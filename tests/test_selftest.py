@@ -50,3 +50,29 @@ def test_a_question_with_a_fault_is_found(tmp_path):
     faults = selftest(made_in(tmp_path, sources=tmp_path), tmp_path / "page.html", budget=50)
     assert any("gives the right answer" in fault for fault in faults)
     assert "gives the right answer" in (tmp_path / "page.html").read_text("utf8")
+
+
+def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
+    made = made_in(tmp_path)
+    write_source(
+        made.sources,
+        ("markdown", "# Levers"),
+        ("code", "from coursework import check, me, variant\nme('')"),
+        (
+            "code",
+            "### BEGIN VARIANTS\nlever = draw('levers/arm', count=3, arm=[0.7391234, 1, 2])\n### END VARIANTS",
+        ),
+        ("markdown", "How long is the arm?"),
+        ("code", "### BEGIN SOLUTION\narm = lever.arm\n### END SOLUTION"),
+        (
+            "code",
+            "check('levers/arm', arm)\n### BEGIN HIDDEN TESTS\nquestion('levers/arm', kind='expression')\n"
+            "### END HIDDEN TESTS",
+        ),
+        name="levers",
+    )
+    release.release(made, run=False)
+    faults = selftest(made, None, budget=100)
+    assert len(faults) == 1 and "levers/arm: One of its variants can be guessed: found after" in faults[0]
+    (made.sources / "guessable.json").write_text('{"levers/arm": 1}')
+    assert selftest(made, None, budget=100) == []

@@ -7,6 +7,7 @@ import random
 import re
 import shutil
 import zipfile
+from pathlib import Path
 
 import nbformat
 import pytest
@@ -52,6 +53,12 @@ CELLS = [
         "### END HIDDEN TESTS",
     ),
 ]
+
+
+@pytest.fixture(autouse=True)
+def nobody_is_kept(monkeypatch, tmp_path):
+    """Who works in a test is not written down, and not in the next one."""
+    monkeypatch.setattr(variants, "KEPT", tmp_path / "no" / "such" / "me.txt")
 
 
 @pytest.fixture(scope="module")
@@ -185,6 +192,30 @@ def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course
         assert marking.asked_of_sandbox(own)[NAME]["given"] == own[NAME]["public"]["given"]
 
 
+def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(variants, "KEPT", Path(".coursework", "me.txt"))
+    try:
+        coursework.me("")
+        assert not list(tmp_path.iterdir()) and variants._identity == ""
+        coursework.me(" Ada@Uni.example")
+        coursework.me("")
+        assert variants._identity == "ada@uni.example" and "those of ada@uni.example" in capsys.readouterr().out
+        coursework.me("ben")  # another one says it anew
+        coursework.me("")
+        assert variants._identity == "ben"
+        (tmp_path / ".coursework" / "me.txt").write_bytes(b"\xff\xfe")
+        coursework.me("")
+        assert variants._identity == ""
+        monkeypatch.chdir(tmp_path / ".coursework")
+        (tmp_path / ".coursework" / ".coursework").write_text("a file where the folder would be")
+        coursework.me("ada")
+        assert variants._identity == "ada"
+    finally:
+        monkeypatch.chdir(tmp_path.parent)
+        monkeypatch.setattr(variants, "_identity", "")
+
+
 def test_an_edition_draws_afresh():
     rule = Rule("a/b", 4, {"x": range(1000), "y": lambda chance: chance.randint(0, 10**6)})
     first, exam = ([rule.parameters(number, edition) for number in range(4)] for edition in ("", "exam"))
@@ -244,7 +275,8 @@ PICTURED = [
     ("code", "from coursework import check, me, variant\nme('')"),
     (
         "code",
-        "### BEGIN VARIANTS\nclass Drawn:\n    def __init__(self, force):\n        self.alt = f'A beam & {force} arrows'\n"
+        "### BEGIN VARIANTS\nclass Drawn:\n    def __init__(self, force):\n"
+        "        self.alt = f'A beam & {force} arrows'\n"
         "    def picture(self):\n        return f'<svg width=\"9\">{self.alt}</svg>'\n\n\n"
         "lever = draw('levers/see-saw', count=3, force=[2, 5, 6], "
         "picture=lambda drawn: Drawn(drawn['force']))\n### END VARIANTS",

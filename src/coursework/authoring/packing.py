@@ -88,7 +88,7 @@ def archive(course, target=None):
         package = getattr(import_module(module), function)(folder) if course.package else wheel("coursework", folder)
         files = {
             "README.txt": README.format(title=course.title).encode("utf8"),
-            "requirements.txt": f"./{package.name}\njupyterlab\n".encode(),
+            "requirements.txt": f"./{package.name}\njupyterlab\nlatex2mathml\n".encode(),
             package.name: package.read_bytes(),
         }
     files |= {path.name: path.read_bytes() for path in course.exercises.glob("*.ipynb")}

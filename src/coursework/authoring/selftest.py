@@ -43,6 +43,8 @@ from .source import (
 SECONDS_PER_TRY = 0.012
 #: Forms that a right answer is tried in, where algebra gives that many.
 FORMS = 6
+#: Variants of a question that are attacked beside the first one; which ones follows from the name of the notebook.
+ATTACKED = 2
 NO_LEAK = "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"
 
 
@@ -322,7 +324,33 @@ def _try_notebook(path, course, budget):
         )
         for name, question in source.questions.items()
     ]
+    weakest = {finding.name: finding.attack for finding in findings}
+    for number in _numbers_attacked(source):
+        for name, question in read_source(path, number, course.edition).questions.items():
+            found = attack_kept(question, text_of(source, question), budget, course.archive.parent / "attacks")
+            if found.way and (not weakest[name].way or found.tries < weakest[name].tries):
+                weakest[name] = found
+    findings = [
+        finding._replace(
+            attack=weakest[finding.name], faults=[*finding.faults, *_too_weak(finding, weakest, declared, budget)]
+        )
+        for finding in findings
+    ]
     return findings, {} if source.name == CHAPTERS else secrets_of(source)
+
+
+def _numbers_attacked(source):
+    """The numbers of the variants of a notebook that are attacked beside the first: always the same ones."""
+    count = max((rule.count for rule in source.rules.values()), default=1)
+    return sorted(random.Random(source.name).sample(range(1, count), min(ATTACKED, count - 1)))
+
+
+def _too_weak(finding, weakest, declared, budget):
+    """The fault of a question one of whose variants is guessed sooner than its author declared."""
+    found = weakest[finding.name]
+    if found == finding.attack or found.tries >= min(declared.get(finding.name) or BUDGET, budget):
+        return []
+    return [f"One of its variants can be guessed: {found}. {DECLARED} says how many tries it withstands."]
 
 
 def attack_kept(question, text, budget, folder):

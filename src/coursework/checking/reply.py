@@ -1,7 +1,9 @@
 """What a student sees after a check."""
 
 import html
+import os
 import re
+import sys
 from collections.abc import Iterable
 
 #: Each outcome with its sign and its word: the word is for those who do not see the sign or its colour.
@@ -70,9 +72,10 @@ class Reply:
         name = html.escape(self.question)
         tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
         known = f' data-tries="{self.tries}"' if self.tries else ""
-        paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message)}</p>' for message in self.messages)
+        formula = {} if tex_is_typeset() else {"formula": mathml}
+        paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)
         solution = (
-            f"<details><summary>The worked solution</summary><div>{self.solution}</div></details>"
+            f"<details><summary>The worked solution</summary><div>{for_this_front_end(self.solution)}</div></details>"
             if self.solution
             else ""
         )
@@ -82,6 +85,36 @@ class Reply:
             f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> {word}</strong> '
             f'<span style="opacity:.8">{name}{tries}</span></p>{paragraphs}{solution}</div>'
         )
+
+
+# --- mathematics --------------------------------------------------------------------------------
+
+
+def tex_is_typeset():
+    """Whether whatever shows this notebook typesets TeX in HTML: VS Code, Colab and marimo do not."""
+    return not ("VSCODE_PID" in os.environ or {"google.colab", "marimo"} & set(sys.modules))
+
+
+def mathml(source, display="inline"):
+    """A formula as MathML, which every browser shows by itself; TeX in a box where there is no converter.
+
+    >>> mathml("x_1")[:40], "TeX" in mathml("x_1")
+    ('<math xmlns="http://www.w3.org/1998/Math', False)
+    """
+    try:
+        from latex2mathml.converter import convert
+
+        return convert(source, display=display)
+    except Exception:  # no converter, or one that does not know a command: a reply is never lost for that
+        return f"<code>{html.escape(source)}</code>"
+
+
+def for_this_front_end(page):
+    """The HTML of a worked solution, with its formulas in the way in which they will be seen."""
+    if tex_is_typeset():
+        return page
+    blocks = re.sub(r"\$\$([^$]+)\$\$", lambda found: mathml(html.unescape(found[1]), "block"), page)
+    return re.sub(r"\$([^$]+)\$", lambda found: mathml(html.unescape(found[1])), blocks)
 
 
 #: Code, mathematics and emphasis, each with both of its marks; what has only one is text.

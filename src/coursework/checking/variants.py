@@ -11,7 +11,10 @@ import html
 import json
 import re
 import zlib
+from pathlib import Path
 
+#: Where it is kept who works in this folder.
+KEPT = Path(".coursework", "me.txt")
 #: Who works in this notebook; set by :func:`me`, anew in each run of it.
 _identity = ""
 
@@ -19,8 +22,9 @@ _identity = ""
 def me(identity: str = "") -> None:
     """Say who you are, so that you get your own numbers: ``me('ada@uni.example')``.
 
-    It stands in the notebook that you hand in, and nowhere else. Without it you get the numbers that everybody sees;
-    who hands in answers to another one's numbers gets no points for them.
+    Once is enough: it is kept beside your notebooks (in JupyterLite, in the browser), and ``me('')`` in another one
+    finds it there, and says so. Without it you get the numbers that everybody sees; who hands in answers to another
+    one's numbers gets no points for them.
 
     Parameters
     ----------
@@ -29,6 +33,15 @@ def me(identity: str = "") -> None:
     """
     global _identity
     _identity = plain_identity(identity)
+    try:
+        if _identity:
+            KEPT.parent.mkdir(exist_ok=True)
+            KEPT.write_text(_identity, "utf8")
+        elif KEPT.is_file():
+            _identity = plain_identity(KEPT.read_text("utf8"))
+            print(f"The numbers below are those of {_identity}, as you said in another notebook.")
+    except (OSError, UnicodeError):
+        pass  # a folder that cannot be written to: then it is said anew in each notebook
 
 
 def plain_identity(identity):
