@@ -62,3 +62,31 @@ def test_what_the_files_hold_is_licensed():
 
     licence = resources.files(recordings).joinpath("data", "LICENSE.txt").read_text("utf8")
     assert "Thomas Haslwanter" in licence and "Redistribution" in licence
+    licence = resources.files(recordings).joinpath("data", "LICENSE-stars.txt").read_text("utf8")
+    assert "Brandon Rhodes" in licence and "MIT" in licence
+
+
+# Hours, minutes and seconds, degrees, minutes and seconds, as tables of the sky print them for the epoch 2000.
+KNOWN = {
+    "Sirius": (6, 45, 8.9, -1, 16, 42, 58),
+    "Vega": (18, 36, 56.3, 1, 38, 47, 1),
+    "Betelgeuse": (5, 55, 10.3, 1, 7, 24, 25),
+    "Rigel": (5, 14, 32.3, -1, 8, 12, 6),
+    "Dubhe": (11, 3, 43.7, 1, 61, 45, 3),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_stars_stand_where_other_tables_have_them(name):
+    hours, minutes, seconds, sign, degrees, arcminutes, arcseconds = KNOWN[name]
+    ascension = np.radians(15 * (hours + minutes / 60 + seconds / 3600))
+    declination = np.radians(sign * (degrees + arcminutes / 60 + arcseconds / 3600))
+    names, directions, magnitudes = recordings.bright_stars()
+    # Azimuth and elevation, by another way than the sines and cosines of the table's reader.
+    x, y, z = directions[names.index(name)]
+    assert np.arctan2(y, x) % (2 * np.pi) == pytest.approx(ascension, abs=np.radians(3 / 3600))
+    assert np.arcsin(z) == pytest.approx(declination, abs=np.radians(3 / 3600))
+    assert (
+        len(set(names)) == len(names) == len(magnitudes)
+        and np.abs(np.linalg.norm(directions, axis=1) - 1).max() < 1e-12
+    )

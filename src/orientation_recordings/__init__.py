@@ -4,6 +4,9 @@ The files in ``data/`` are excerpts from the recordings that come with *scikit-k
 Haslwanter (BSD licence; its text is in ``data/LICENSE.txt``). :mod:`orientation_recordings.excerpts` cuts them out;
 every digit is the instrument's. The functions here give them with times in seconds, angular velocities in radians
 per second and specific forces in multiples of standard gravity; quaternions and angles stay as they were printed.
+
+Beside them stand the directions of bright stars, as the satellite Hipparcos measured them (ESA 1997), in the table
+that comes with *PyEphem* 4.2.1 by Brandon Rhodes (MIT licence; its text is in ``data/LICENSE-stars.txt``).
 """
 
 from importlib import resources
@@ -183,6 +186,32 @@ def walking_leg():
             )
         )
     return tuple(recordings)
+
+
+def bright_stars():
+    """Give the directions of bright stars at the beginning of the year 2000.
+
+    Returns
+    -------
+    tuple of a list of str, an array of shape ``(n, 3)`` and an array of shape ``(n,)``
+        Names; unit vectors along the equatorial frame :math:`N`, :math:`\\hat{n}_z` to the celestial pole and
+        :math:`\\hat{n}_x` to the vernal equinox (International Celestial Reference System); magnitudes, smaller ones
+        for brighter stars.
+
+    Examples
+    --------
+    >>> from orientation_recordings import bright_stars
+    >>> names, directions, magnitudes = bright_stars()
+    >>> directions[names.index('Polaris')].round(2).tolist()
+    [0.01, 0.01, 1.0]
+    """
+    with resources.files(__package__).joinpath("data", "bright_stars.csv").open(encoding="utf8") as file:
+        rows = [line.split(",") for line in file.read().splitlines()[1:]]
+    hours, degrees, magnitudes = np.array([row[1:] for row in rows], dtype=float).T
+    ascension, declination = np.radians(15 * hours), np.radians(degrees)
+    level = np.cos(declination)
+    directions = np.stack([level * np.cos(ascension), level * np.sin(ascension), np.sin(declination)], axis=-1)
+    return [row[0] for row in rows], directions, magnitudes
 
 
 def _unit(quaternions):

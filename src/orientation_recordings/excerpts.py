@@ -1,9 +1,10 @@
-"""Cut the excerpts in ``data/`` out of the recordings they come from.
+"""Cut the excerpts in ``data/`` out of the recordings they come from, and the stars out of their catalogue.
 
-Run it with ``python -m orientation_recordings.excerpts WHEEL``.
+Run it with ``python -m orientation_recordings.excerpts WHEEL STARS``.
 
-``WHEEL`` is the file ``scikit_kinematics-0.10.4-py3-none-any.whl``. Lines are taken as they stand, so that
-every digit is the instrument's; only columns that the book does not use are left out.
+``WHEEL`` is the file ``scikit_kinematics-0.10.4-py3-none-any.whl``, ``STARS`` any wheel of ``ephem`` 4.2.1. Lines are
+taken as they stand, so that every digit is the instrument's, or the catalogue's; only columns that the book does not
+use are left out.
 """
 
 import io
@@ -13,6 +14,7 @@ from pathlib import Path
 
 DATA = Path(__file__).parent / "data"
 SOURCE = "tests/data"
+OTHER_NAMES = {"Adara", "Agena", "Albereo", "Alcaid", "Etamin", "Formalhaut", "Gienah Corvi", "Sirrah"}
 
 
 def excerpts(wheel):
@@ -51,12 +53,23 @@ def excerpts(wheel):
     }
 
 
-def main(wheel):
+def bright_stars(wheel):
+    """Give the table of the stars: each once, under the name that astronomers have agreed on."""
+    with zipfile.ZipFile(wheel).open("ephem/stars.py") as file:
+        lines = [line.split(",") for line in io.TextIOWrapper(file, "utf8") if ",f|S|" in line]
+    found = "name,right ascension (hours),declination (degrees),magnitude\n"
+    for name, _, ascension, declination, magnitude in lines:
+        if name not in OTHER_NAMES:
+            found += ",".join([name, ascension.partition("|")[0], declination.partition("|")[0], magnitude])
+    return found
+
+
+def main(wheel, stars):
     DATA.mkdir(exist_ok=True)
-    for name, text in excerpts(wheel).items():
+    for name, text in {**excerpts(wheel), "bright_stars.csv": bright_stars(stars)}.items():
         (DATA / name).write_text(text, "utf8")
         print(f"{name}: {text.count(chr(10)) - 1} rows")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])
