@@ -1,0 +1,210 @@
+"""The machines of the cases from practice: an aircraft, a robot's wrist, a satellite, a phone and a leg."""
+
+import numpy as np
+
+from orientation.axis_angle import dcm_from_axis_angle
+from orientation.direction_cosines import simple_dcm
+from orientation.euler_angles import body_fixed_from_dcm, dcm_from_body_fixed
+from orientation.rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
+
+from .drawing import Drawing, view_from
+
+# Along north, west and up, in which these drawings are made: rows of the frame north, east, down.
+NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
+
+
+def aircraft_drawing(bank=np.radians(30)):
+    """Return a drawing of an airliner in a turn to the right, banked by ``bank`` radians, seen from ahead."""
+    drawing = Drawing(
+        f"An airliner seen from ahead and a little above, banked to the right by {np.degrees(bank):.0f} degrees. "
+        "Its frame D has d x out of the nose, d y along the right wing, which points down and to the left of the "
+        "picture, and d z through the floor. Beside it stands the frame N of the ground: x north, y east, z down.",
+        view_from(np.radians(-38), np.radians(16)),
+        92,
+    )
+    aircraft = simple_dcm("x", float(bank)) @ NORTH_EAST_DOWN
+
+    def place(*points):
+        return np.array(points, dtype=float) @ aircraft
+
+    def surface(*corners):
+        drawing.area(place(*corners), "D", 16)
+
+    # From the farthest part to the nearest, for an aircraft that comes towards the reader.
+    surface((-1.5, 0, -0.1), (-1.95, -0.62, -0.16), (-2.1, -0.62, -0.16), (-1.95, 0, -0.1))
+    surface((-1.5, 0, -0.1), (-1.95, 0.62, -0.16), (-2.1, 0.62, -0.16), (-1.95, 0, -0.1))
+    surface((-1.4, 0, -0.14), (-1.95, 0, -0.72), (-2.15, 0, -0.72), (-1.95, 0, -0.14))
+    surface((0.35, 0, 0.1), (-0.75, 1.75, -0.04), (-1.0, 1.75, -0.04), (-0.4, 0, 0.1))
+    drawing.cylinder(*place((-1.95, 0, -0.05), (-0.1, 0, 0)), 0.19, "D", 16)
+    surface((0.35, 0, 0.1), (-0.75, -1.75, -0.04), (-1.0, -1.75, -0.04), (-0.4, 0, 0.1))
+    drawing.cylinder(*place((-0.1, 0, 0), (1.0, 0, 0)), 0.19, "D", 16)
+    nose = [(1.0 + 0.32 * np.sin(t), 0.19 * np.cos(t), 0) for t in np.linspace(0, np.pi, 9)]
+    drawing.area(place(*nose), "D", 26)
+    for side in (0.62, -0.62):
+        drawing.cylinder(*place((-0.1, side, 0.2), (0.28, side, 0.2)), 0.1, "D", 26)
+    drawing.triad("D", aircraft, place((1.25, 0, 0))[0], 0.95)
+    drawing.triad("N", NORTH_EAST_DOWN, -2.35 * drawing.view[0] - 0.35 * drawing.view[1], 0.75)
+    return drawing
+
+
+def wrist_drawing(angles=(0.3, 0.9, 0.4)):
+    r"""Return a drawing of a robot's wrist, bent by ``angles`` (radians), body fixed z-y-z, from forearm to gripper."""
+    drawing = Drawing(
+        "A robot's wrist. The forearm, frame F, comes from below; f z points along it. On its end a first joint turns "
+        "about f z through psi, a second one bends the wrist through theta about an axis across, and a third turns the "
+        "gripper about its own length through phi. The gripper, frame G, has two fingers; g z points out between them. "
+        "The three axes meet in one point.",
+        view_from(np.radians(-48), np.radians(20)),
+        104,
+    )
+    psi, theta, phi = (float(angle) for angle in angles)
+    first = simple_dcm("z", psi)
+    second = simple_dcm("y", theta) @ first
+    gripper = simple_dcm("z", phi) @ second
+
+    def place(frame, *points):
+        return np.array(points, dtype=float) @ frame
+
+    drawing.cylinder(*place(np.eye(3), (0, 0, -2.0), (0, 0, -0.95)), 0.3, "F", 16)
+    drawing.line(place(np.eye(3), (0, 0, -0.95), (0, 0, 1.0)), "muted", "guide")
+    drawing.cylinder(*place(first, (0, 0, -0.9), (0, 0, -0.55)), 0.26, "B")
+    drawing.line(place(first, (0, -0.3, -0.55), (0, -0.3, 0)), "B", "tube")
+    drawing.cylinder(*place(first, (0, -0.36, 0), (0, 0.36, 0)), 0.22, "C")
+    drawing.line(place(first, (0, 0.3, -0.55), (0, 0.3, 0)), "B", "tube")
+    drawing.cylinder(*place(second, (0, 0, 0.25), (0, 0, 0.8)), 0.17, "C")
+    drawing.box(gripper, (0.5, 0.22, 0.16), place(gripper, (0, 0, 0.9))[0], "D")
+    for side in (-0.2, 0.2):
+        drawing.box(gripper, (0.08, 0.18, 0.42), place(gripper, (side, 0, 1.18))[0], "D")
+    drawing.turn((0, 0, 1), 2.6, (0.5, -0.9, 0), 0.5, r"$\psi$", (0, 0, -0.75))
+    drawing.turn(first[1], 2.2, first[0] - first[2], 0.42, r"$\theta$", place(first, (0, 0.5, 0))[0])
+    drawing.turn(second[2], 2.6, (0.5, -0.9, 0) @ second, 0.42, r"$\varphi$", place(second, (0, 0, 0.62))[0])
+    forearm = [rf"$\hat{{f}}_{axis}$" for axis in "xyz"]
+    drawing.triad("F", np.eye(3), -1.6 * drawing.view[0] - 1.5 * drawing.view[1], 0.62, forearm)
+    hand = [rf"$\hat{{g}}_{axis}$" for axis in "xyz"]
+    return drawing.triad("D", gripper, -1.6 * drawing.view[0] + 0.35 * drawing.view[1], 0.62, hand)
+
+
+def star_cameras_drawing(apart=np.radians(102)):
+    """Return a drawing of a satellite whose two star cameras look ``apart`` (radians) from each other."""
+    drawing = Drawing(
+        "A satellite with two wings of solar cells and two star cameras on its body. Each camera is a short tube "
+        "with a cone of view before it. The camera S looks along s z to the upper right, with s x and s y across its "
+        "view; the camera T looks along t z to the upper left. Small dots are stars.",
+        view_from(np.radians(-90), np.radians(14)),
+        88,
+    )
+    for side in (-1, 1):
+        panel = np.array([(side * x, 0.25, y) for x, y in ((0.75, -0.28), (2.1, -0.28), (2.1, 0.28), (0.75, 0.28))])
+        drawing.area(panel, "muted", 16)
+        for x in (1.2, 1.65):
+            drawing.line([(side * x, 0.25, -0.28), (side * x, 0.25, 0.28)], "muted", "faint")
+        drawing.line([(side * 0.45, 0.2, 0), (side * 0.75, 0.25, 0)], "muted", "thick")
+    drawing.box(np.eye(3), (0.9, 0.7, 0.8), colour="ink")
+    random = np.random.default_rng(4)
+    for side, letter, colour in ((1, "s", "A"), (-1, "t", "B")):
+        along = np.array([side * np.sin(apart / 2), 0, np.cos(apart / 2)])
+        mount = np.array([side * 0.4, 0, 0.4])
+        across = np.array([0.0, -1.0, 0.0])
+        third = np.cross(along, across)
+        for edge in (-1, 1):
+            drawing.line([mount + 0.25 * along, mount + 2.1 * along + edge * 0.5 * third], colour, "guide")
+        drawing.circle(along, 0.5, mount + 2.1 * along, colour, "guide")
+        for depth, y in zip(random.uniform(1.5, 2.2, 7), random.uniform(-0.2, 0.2, 7), strict=True):
+            drawing.dot(mount + depth * (along + y * third), "ink", 2.5)
+        drawing.cylinder(mount, mount + 0.4 * along, 0.15, colour)
+        rows = np.array([across, third, along]) @ dcm_from_axis_angle(along, side * 0.9)
+        drawing.triad(colour, rows, mount + 0.42 * along, 0.85, [rf"$\hat{{{letter}}}_{axis}$" for axis in "xyz"])
+    return drawing
+
+
+def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
+    """Return a drawing of a phone, turned by ``angles`` (radians, z-x-y), with what its two sensors feel."""
+    drawing = Drawing(
+        "A phone lies inclined above the ground. Its frame P: p x to the right across the screen, p y to its top edge, "
+        "p z out of the screen. From its middle an arrow points straight up; it is what the accelerometer feels. "
+        f"Another one points north and {np.degrees(dip):.0f} degrees into the ground; it is the magnetic field. Up "
+        "crossed with the field is level and points west. Beside the phone stands the frame E: x north, y west, z up.",
+        view_from(np.radians(-60), np.radians(22)),
+        118,
+    )
+    phone = dcm_from_body_fixed(angles, "zxy")
+    field = np.array([np.cos(dip), 0, -np.sin(dip)])
+    drawing.arrow(1.25 * field, colour="accent", label="field")
+    drawing.box(phone, (0.72, 1.4, 0.09), colour="B")
+    screen = [(x, y, 0.045) @ phone for x, y in ((-0.3, -0.58), (0.3, -0.58), (0.3, 0.58), (-0.3, 0.58))]
+    drawing.area(screen, "B", 8)
+    drawing.triad("B", phone, length=0.95, labels=[rf"$\hat{{p}}_{axis}$" for axis in "xyz"])
+    drawing.arrow((0, 0, 1.3), colour="accent", label="up")
+    drawing.arrow((0, 1.0, 0), colour="accent", label=r"up $\times$ field")
+    drawing.line([(0, 0, 0), (np.cos(dip), 0, 0)], "muted", "guide")
+    return drawing.triad("E", np.eye(3), -1.9 * drawing.view[0] - 0.55 * drawing.view[1], 0.6)
+
+
+def leg_drawing(bend=np.radians(35)):
+    """Return a drawing of a leg, its knee bent by ``bend`` radians, with four markers on thigh and shank."""
+    drawing = Drawing(
+        "A leg seen from its right side, the knee bent. On the thigh and on the shank sits a plate with four "
+        "reflecting balls. The thigh's frame A and the shank's frame B are drawn beside the knee: x forwards, y up "
+        "along the bone, z to the right, towards the reader. The angle between the two is theta.",
+        view_from(np.radians(-74), np.radians(10)),
+        98,
+    )
+    # Along the picture: x forwards, z up. The thigh's frame is x forwards, y up, z to the right.
+    level = np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
+    thigh = simple_dcm("z", 0.3 * float(bend)) @ level
+    shank = simple_dcm("z", -float(bend)) @ thigh
+
+    def place(frame, *points):
+        return np.array(points, dtype=float) @ frame
+
+    def cluster(frame, height, letter):
+        plate = [(-0.16, height - 0.2, 0.22), (0.16, height - 0.2, 0.22), (0.16, height + 0.2, 0.22)]
+        plate.append((-0.16, height + 0.2, 0.22))
+        drawing.area(place(frame, *plate), letter, 26)
+        for x, y, z in plate:
+            drawing.dot(place(frame, (x, y, z + 0.08))[0], "ink", 6)
+
+    drawing.cylinder(*place(thigh, (0, 1.55, 0), (0, 0.12, 0)), 0.24, "A", 8)
+    foot = place(shank, (-0.2, -1.72, 0), (0.62, -1.72, 0), (0.6, -1.6, 0), (0.14, -1.42, 0), (-0.2, -1.45, 0))
+    drawing.area(foot, "B", 8)
+    drawing.cylinder(*place(shank, (0, -0.12, 0), (0, -1.5, 0)), 0.19, "B", 8)
+    drawing.cylinder(*place(thigh, (0, 0, -0.2), (0, 0, 0.2)), 0.21, "muted", 16)
+    cluster(thigh, 0.85, "A")
+    cluster(shank, -0.8, "B")
+    beside = np.array([1.15, 0, 0.1])
+    drawing.triad("A", thigh, beside + [0, 0, 0.55], 0.6)
+    drawing.triad("B", shank, beside - [0, 0, 0.65], 0.6)
+    drawing.line(place(thigh, (0, 0, 0.2), (0, -0.9, 0.2)), "muted", "guide")
+    below = -thigh[1]
+    return drawing.turn(-thigh[2], bend, below, 0.75, r"$\theta$", place(thigh, (0, 0, 0.2))[0])
+
+
+def slew_drawing(before, after):
+    """Return a drawing of a satellite whose telescope turns from ``before`` to ``after``, both ``(3, 3)`` along N."""
+    before, after = np.asarray(before, dtype=float), np.asarray(after, dtype=float)
+    turned = after @ before.T
+    vector, angles = rotation_vector_from_dcm(turned), body_fixed_from_dcm(turned, "zyx")
+    steps = np.linspace(0, 1, 25)[:, None]
+    one = dcm_from_rotation_vector(steps * vector) @ before
+    shares = np.clip(np.linspace(0, 3, 61)[:, None] - np.arange(3), 0, 1)
+    three = dcm_from_body_fixed(shares * angles, "zyx") @ before
+    degrees = np.degrees(np.append(np.linalg.norm(vector), angles))
+    drawing = Drawing(
+        "A satellite, a box with a telescope, in a sphere of the sky, before the slew in grey and after it in blue. "
+        f"One turn through {degrees[0]:.0f} degrees leads the telescope's line of sight along an arc from the one "
+        f"star to the other. Three single turns, {degrees[1]:.0f} degrees about z, {degrees[2]:.0f} about y and "
+        f"{degrees[3]:.0f} about x, lead it along two arcs that meet in a corner; the last leaves it in its place.",
+        view_from(np.radians(32), np.radians(24)),
+        150,
+    )
+    drawing.circle(drawing.view[2], 1.0, kind="faint")
+    drawing.circle((0, 0, 1), 1.0)
+    drawing.line([row[0] for row in three], "B", "guide")
+    drawing.line([row[0] for row in one], "accent", "thick")
+    for rows, colour in ((before, "muted"), (after, "D")):
+        drawing.box(rows, (0.42, 0.26, 0.26), colour=colour)
+        drawing.cylinder(0.21 * rows[0], 0.48 * rows[0], 0.1, colour)
+        drawing.line([0.48 * rows[0], rows[0]], colour, "guide")
+        drawing.dot(rows[0], colour, 6)
+    drawing.arrow(1.25 * vector / np.linalg.norm(vector) @ before, colour="accent", label=r"$\hat{e}$")
+    return drawing.triad("D", after, length=0.75)
