@@ -53,6 +53,17 @@ def test_a_quaternion_and_its_negative_are_one_orientation():
     assert (dcm_from_quaternion(quaternions) == dcm_from_quaternion(-quaternions)).all()
 
 
+@pytest.mark.parametrize("digits", (4, 6, 9))
+def test_a_printed_quaternion_is_refused_with_what_to_do_and_taken_when_it_is_done(digits):
+    """Nine digits are few enough to be refused: a tolerance that lets print through would let faults through."""
+    exact = random_unit_vectors(200, 9, size=4)
+    printed = np.array([[float(f"{number:.{digits}f}") for number in row] for row in exact])
+    with pytest.raises(ValueError, match="rounded when an instrument.*divide by the length: q / numpy.linalg.norm"):
+        dcm_from_quaternion(printed)
+    restored = printed / np.linalg.norm(printed, axis=-1, keepdims=True)  # as the error says
+    assert rotation_error(dcm_from_quaternion(restored), dcm_from_quaternion(exact)) < 6 * 10.0**-digits
+
+
 def test_what_is_taken_as_unit_makes_a_matrix_that_is_taken_as_valid():
     quaternions = random_unit_vectors(50, 4, size=4)
     refused = 0

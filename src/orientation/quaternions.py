@@ -15,6 +15,11 @@ def _explain_length(components, where, name="quaternion"):
     length = sum(entry * entry for entry in components) ** 0.5
     if length == 0:
         cause = "the zero quaternion is no orientation"
+    elif abs(length - 1) < 0.001:
+        cause = (
+            "were its components rounded when an instrument or a program printed them? "
+            "Then divide by the length: q / numpy.linalg.norm(q, axis=-1, keepdims=True)"
+        )
     elif abs(length - 1) < 0.05:
         cause = "were its components rounded, or integrated without restoring the length? Divide by it"
     else:

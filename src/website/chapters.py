@@ -8,7 +8,9 @@ from typing import NamedTuple
 import nbformat
 
 TO_BE_WRITTEN = "TO BE WRITTEN"
-CONTENTS, INDEX, SOLUTIONS = Path("_toc.yml"), Path("exercises/index.md"), Path("appendix/solutions.ipynb")
+CONTENTS, INDEX = Path("_toc.yml"), Path("exercises/index.md")
+#: A page for each part of the book; what is added goes into the last.
+SOLUTIONS = (Path("appendix/solutions.ipynb"), Path("appendix/solutions-going-further.ipynb"))
 SOURCES = Path("tests/solutions")
 CHAPTERS_SOURCE = SOURCES / "chapters.ipynb"
 
@@ -48,7 +50,7 @@ def found(all_lines, pattern):
 
 def faults():
     """What chapters lack: one sentence for each, which begins with the place."""
-    solutions, asked = lines(SOLUTIONS), lines(CHAPTERS_SOURCE)
+    solutions, asked = [line for path in SOLUTIONS for line in lines(path)], lines(CHAPTERS_SOURCE)
     solved = found(solutions, r"{solution-start} (\S+)")
     sealed = found(asked, r"question\(['\"](chapters/[^'\"]+)")
     listed = {
@@ -80,7 +82,7 @@ def faults():
             yield f"{text[-1] if text else path}: the chapter asks nothing; here belongs an `{{exercise}}` with a label"
         for label, line in exercises.items():
             if label not in solved:
-                yield f"{line}: {label} has no `{{solution-start}} {label}` in {SOLUTIONS}"
+                yield f"{line}: {label} has no `{{solution-start}} {label}` in {' or '.join(map(str, SOLUTIONS))}"
         for question, line in found(text, r"check\(['\"](chapters/[^'\"]+)").items():
             if question not in sealed:
                 yield f"{line}: {question} is no question of {CHAPTERS_SOURCE}"
@@ -90,7 +92,7 @@ def faults():
             yield f"{CONTENTS}:{last_exercise}: exercises/{name} is not in the table of contents"
         if f"{{doc}}`{name}`" not in index:
             yield f"{INDEX}:{len(index.splitlines())}: the exercises of the chapter {name} are not listed"
-    for path in [*chapters, SOLUTIONS, *sorted(SOURCES.glob("*.ipynb"))]:
+    for path in [*chapters, *SOLUTIONS, *sorted(SOURCES.glob("*.ipynb"))]:
         yield from (f"{line}: {line.text.strip()}" for line in lines(path) if TO_BE_WRITTEN in line.text)
         for position, cell in enumerate(nbformat.read(path, as_version=4).cells, 1):
             if TO_BE_WRITTEN in str(cell.metadata):

@@ -79,10 +79,7 @@ PACKAGE = """<?xml version="1.0" encoding="utf-8"?>
 def as_mathml(formula):
     """A formula for reading programs: its MathML, and what it is in TeX as its words."""
     math = formula.select_one("math").extract()
-    annotation = math.select_one("annotation")
-    math["alttext"] = re.sub(r"\s+", " ", annotation.get_text())
-    annotation.decompose()
-    math.select_one("semantics").unwrap()
+    math["alttext"] = re.sub(r"\s+", " ", formula["data-tex"])
     # Of bold letters reading programs know those that are signs of their own.
     for letter in math.select("[mathvariant=bold]"):
         letter.string = letter.get_text().translate(BOLD)

@@ -193,7 +193,7 @@ def new_chapter(name, title, after):
     nbformat.write(normalise(new), chapter)
     add_cells(CHAPTERS_SOURCE, [markdown(f"## {title}"), *question_cells(f"chapters/{name}", "expression")])
     add_cells(
-        SOLUTIONS,
+        SOLUTIONS[-1],
         [
             markdown(
                 f"## {title}",
@@ -208,7 +208,7 @@ def new_chapter(name, title, after):
         f"made     {source}: its exercises, with their solutions",
         f"added to _toc.yml and {INDEX}: both pages, after those of {after}",
         f"added to {CHAPTERS_SOURCE}: the question chapters/{name}, which the chapter asks",
-        f"added to {SOLUTIONS}: its worked solution",
+        f"added to {SOLUTIONS[-1]}: its worked solution",
     ]
 
 

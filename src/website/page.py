@@ -63,11 +63,43 @@ def drop_thebe(app, doctree, docname):
             node.parent.remove(node)
 
 
+DEFINITIONS = re.compile(r"<defs>((?:<path [^>]*/>)+)</defs>")
+OUTLINE = re.compile(r'<path ([^>]*?)\bid="([^"]*)" ?([^>]*)/>')
+HIDDEN = '<svg class="outlines" width="0" height="0" style="position:absolute" aria-hidden="true"><defs>{}</defs></svg>'
+
+
+PLACED = re.compile(r'<use transform="translate\(([-.\d]+) ([-.\d]+)\)" href=')
+#: A name of a program within the text, and in the line that says how a function is called.
+LITERAL = re.compile(r'<code class="([^"]*)"><span class="pre">([^<]*)</span></code>')
+NAME = re.compile(r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>')
+
+
+def share_outlines(body):
+    """Move the outlines of letters from the drawings of a page into one table at its end, each of them once."""
+    numbers = {}
+
+    def share(drawing):
+        names = {}
+
+        def take(definitions):
+            for before, name, after in OUTLINE.findall(definitions[1]):
+                names[name] = f"o{numbers.setdefault((before + after).strip(), len(numbers))}"
+            return ""
+
+        text = PLACED.sub(r'<use x="\1" y="\2" href=', DEFINITIONS.sub(take, drawing[0].replace(" />", "/>")))
+        return re.sub(r'href="#([^"]*)"', lambda link: f'href="#{names.get(link[1], link[1])}"', text)
+
+    body = re.sub(r"<svg\b.*?</svg>", share, body, flags=re.DOTALL)
+    table = "".join(f'<path id="o{number}" {outline}/>' for outline, number in numbers.items())
+    return body + HIDDEN.format(table) if numbers else body
+
+
 def lighten(body):
     """Say once what a page would repeat.
 
-    Every figure brings the style sheet of all figures, since in a notebook it stands alone. Names, brackets and
-    blanks of a program have the colour of the text around them, and need no element each.
+    Every figure brings the style sheet of all figures and the outlines of its letters, since in a notebook it stands
+    alone. Names, brackets, blanks and operators of a program have the colour of the text around them, and need no
+    element each; nor does a single word within an element.
     """
     seen = set()
 
@@ -77,7 +109,8 @@ def lighten(body):
         return "" if known else style[0]
 
     body = re.sub(r"<style>\.orientation-figure[^<]*</style>", first_only, body)
-    return re.sub(r'<span class="(?:n|p|w|nn)">([^<]*)</span>', r"\1", body)
+    body = NAME.sub(r"\1\2", LITERAL.sub(r'<code class="\1">\2</code>', body))
+    return share_outlines(re.sub(r'<span class="(?:n|p|w|nn|o)">([^<]*)</span>', r"\1", body))
 
 
 def trim_page(app, pagename, templatename, context, doctree):

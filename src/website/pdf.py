@@ -108,7 +108,7 @@ def move_answers(text):
 
 def as_picture(formula):
     """A PDF has no MathML: screen readers get the formula as it is written in TeX."""
-    tex = formula.select_one("annotation").get_text()
+    tex = formula["data-tex"]
     formula.select_one(".katex-mathml").decompose()
     del formula.select_one(".katex-html")["aria-hidden"]
     formula["role"], formula["aria-label"] = "img", re.sub(r"\s+", " ", tex)
