@@ -2,6 +2,8 @@
 
 import gzip
 import json
+import os
+import random
 import re
 from contextlib import suppress
 from functools import cache
@@ -12,10 +14,13 @@ import pytest
 from conftest import HTML, REPOSITORY, html_pages
 from playwright.sync_api import TimeoutError
 
+from website import mathematics
+
 PAGES = html_pages()
 WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
 NARROWEST = {"width": 320, "height": 640}  # a wide page at four times its size: WCAG 2.2, 1.4.10
 HEAVIEST = 450_000  # bytes over the wire, compressed
+HEAVIEST_PAGE = 450_000  # bytes of the page itself, as it stands on the disk
 LARGEST_SHIFT = 0.001
 MOST_AWAITED, MOST_AWAITED_PACKED = 175_000, 36_000  # bytes of a page's head and of its style sheets
 
@@ -194,6 +199,59 @@ def test_typefaces_are_asked_for_at_once_and_hold_what_the_page_says(browser, si
     # A formula in a hidden part may need one of the rarer ones.
     assert len(named) > 8 and named <= fetched and len(fetched - named) <= 2, fetched ^ named
     assert not any("KaTeX" in address for address in re.findall(r'<link rel="preload"[^>]*', text("search.html")))
+
+
+def test_no_page_is_heavy():
+    weights = {name: (HTML / name).stat().st_size for name in PAGES}
+    assert {name: weight for name, weight in weights.items() if weight > HEAVIEST_PAGE} == {}
+
+
+def test_letters_of_drawings_stand_once_on_a_page():
+    for name in PAGES:
+        outlines = re.findall(r' d="(m[^"]{60,}z)"', text(name))
+        assert len(outlines) == len(set(outlines)), name
+        names = re.findall(r'<path id="(o\d+)"', text(name))
+        used = set(re.findall(r'<use [^>]*href="#([^"]*)"', text(name)))
+        assert len(names) == len(set(names)) and used <= set(re.findall(r'\bid="([^"]*)"', text(name))), name
+
+
+# Where each letter of a formula stands, from the corner of its box.
+LETTERS = """() => [...document.querySelectorAll("p")].map((box) => {
+  const from = box.getBoundingClientRect(), found = [["box", from.height, 0]];
+  const walker = document.createTreeWalker(box.querySelector(".katex-html"), NodeFilter.SHOW_TEXT);
+  for (let node; (node = walker.nextNode());)
+    for (let place = 0; place < node.length; place++) {
+      if (node.data[place] === "\u200b") continue;
+      const range = document.createRange();
+      range.setStart(node, place);
+      range.setEnd(node, place + 1);
+      const at = range.getBoundingClientRect();
+      found.push([node.data[place], at.left - from.left, at.top - from.top]);
+    }
+  return found;
+})"""
+
+
+def test_light_formulas_stand_as_katex_sets_them(browser, site):
+    """Our shorter HTML, letter by letter, against KaTeX's own."""
+    formulas = sorted({unescape(tex) for name in PAGES for tex in re.findall(r' data-tex="([^"]*)"', text(name))})
+    chosen = random.Random(os.environ.get("BOOK_TEST_SEED", "0")).sample(formulas, 60)
+    own = [mathematics.katex(os.getpid())(tex, False, "1.15")["html"] for tex in chosen]
+    page = browser.new_page(viewport={"width": 2400, "height": 900})
+    page.goto(f"{site}/index.html")
+    places = []
+    for formulas in (own, [mathematics.lighten(html, tex) for html, tex in zip(own, chosen, strict=True)]):
+        page.evaluate("html => { document.body.innerHTML = html; }", "".join(f"<p>{html}</p>" for html in formulas))
+        page.evaluate("document.fonts.ready")
+        page.wait_for_function("[...document.fonts].every((font) => font.status !== 'loading')")
+        places.append(page.evaluate(LETTERS))
+    page.close()
+    for tex, before, after in zip(chosen, *places, strict=True):
+        assert [letter for letter, *_ in before] == [letter for letter, *_ in after], tex
+        apart = max(
+            abs(a - b) for one, two in zip(before, after, strict=True) for a, b in zip(one[1:], two[1:], strict=True)
+        )
+        assert apart < 1, (tex, apart)
 
 
 @pytest.mark.parametrize("name", PAGES)

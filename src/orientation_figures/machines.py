@@ -208,3 +208,30 @@ def slew_drawing(before, after):
         drawing.dot(rows[0], colour, 6)
     drawing.arrow(1.25 * vector / np.linalg.norm(vector) @ before, colour="accent", label=r"$\hat{e}$")
     return drawing.triad("D", after, length=0.75)
+
+
+def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
+    """Return a drawing of the Earth with its own frame and, at one place, the two frames of the ground there."""
+    drawing = Drawing(
+        "The Earth as a sphere with its equator and one meridian. From its middle: e z to the north pole, e x to where "
+        "the meridian of Greenwich meets the equator, e y to the east of it. At a place "
+        f"{np.degrees(longitude):.0f} degrees east and {np.degrees(latitude):.0f} degrees north two triads stand on "
+        "the ground. G: g x east, g y north, g z straight up. N: n x north, n y east, n z down, into the Earth. The "
+        "angle lambda runs along the equator from e x to the meridian of the place, phi up the meridian from there.",
+        view_from(np.radians(48), np.radians(22)),
+        150,
+    )
+    ground = dcm_from_body_fixed((longitude + np.pi / 2, np.pi / 2 - latitude, 0), "zxz")
+    aviation = ground[[1, 0, 2]] * [[1], [1], [-1]]
+    up = ground[2]
+    meridian = np.array([np.cos(longitude), np.sin(longitude), 0])
+    drawing.circle(drawing.view[2], 1.0, kind="fill-8")
+    drawing.circle((0, 0, 1), 1.0)
+    drawing.circle(np.cross((0, 0, 1), meridian), 1.0)
+    drawing.triad("E", np.eye(3), length=1.3)
+    drawing.line([(0, 0, 0), meridian], "muted", "guide")
+    drawing.line([(0, 0, 0), up], "muted", "guide")
+    drawing.turn((0, 0, 1), longitude, (1, 0, 0), 0.55, r"$\lambda$")
+    drawing.turn(np.cross(meridian, (0, 0, 1)), latitude, meridian, 0.4, r"$\phi$")
+    drawing.triad("C", ground, up, 0.55, [rf"$\hat{{g}}_{axis}$" for axis in "xyz"])
+    return drawing.triad("N", aviation, up + 0.02 * ground[0], 0.42, shifts=[(16, 6), (4, 18), None])
