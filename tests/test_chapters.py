@@ -45,7 +45,7 @@ FORGOTTEN = {
     ),
     "label": ("chapters/gimbal-lock.ipynb", "(chapter-gimbal-lock)=", "(gimbal)=", r"gimbal-lock.ipynb:1 \(cell 1\)"),
     "solution": (
-        "appendix/solutions.ipynb",
+        "appendix/solutions-going-further.ipynb",
         "{solution-start} exercise-scalar-last",
         "{solution-start} exercise-scalar",
         r"chapters/unit-quaternions.ipynb:\d+ \(cell \d+\): exercise-scalar-last has no",

@@ -9,7 +9,7 @@ import nbformat
 
 TO_BE_WRITTEN = "TO BE WRITTEN"
 CONTENTS, INDEX = Path("_toc.yml"), Path("exercises/index.md")
-#: A page for each part of the book; what is added goes into the last.
+#: On two pages, since one would be heavy; what is added goes into the last.
 SOLUTIONS = (Path("appendix/solutions.ipynb"), Path("appendix/solutions-going-further.ipynb"))
 SOURCES = Path("tests/solutions")
 CHAPTERS_SOURCE = SOURCES / "chapters.ipynb"
