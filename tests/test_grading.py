@@ -948,6 +948,7 @@ def moodle_takes(name, participants):
     return None
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("system", ["canvas", "moodle", "brightspace"])
 @pytest.mark.parametrize("around", ["", "Homework 1_2/"])
 def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(course, tmp_path, capsys, system, around):
