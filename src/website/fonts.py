@@ -71,7 +71,8 @@ def cut(file, signs, weights):
     from fontTools.varLib import instancer
 
     font = TTFont(file)
-    options = subset.Options(layout_features=FEATURES, hinting=False, notdef_outline=True)
+    # Without their hints, browsers that set whole pixels would set the letters of a formula wider.
+    options = subset.Options(layout_features=FEATURES, hinting=True, notdef_outline=True)
     cutter = subset.Subsetter(options)
     cutter.populate(unicodes=list(codes(signs)) if signs else list(font.getBestCmap()))
     cutter.subset(font)

@@ -97,11 +97,9 @@ def places(app, page, uses):
     return made[1:]
 
 
-def entry(app, page, name, main, uses, words=()):
+def entry(app, page, name, main, uses, formula=None):
     """One line: what it is, leading to where it is explained, and where else it stands."""
-    paragraph = nodes.paragraph("", "", link(app, page, *main, name))
-    if words:
-        paragraph += [nodes.Text(" "), *words]
+    paragraph = nodes.paragraph("", "", *([formula, nodes.Text(" ")] if formula else []), link(app, page, *main, name))
     if uses:
         paragraph += [nodes.Text(": "), *places(app, page, uses)]
     return nodes.list_item("", paragraph)
@@ -164,7 +162,7 @@ def fill(app, doctree, docname):
             for name, anchor in found for key in [name.casefold()]
         ])  # fmt: skip
         part("Symbols", [
-            entry(app, docname, [formula.deepcopy()], (NOTATION, section), [], name)
+            entry(app, docname, name, (NOTATION, section), [], formula.deepcopy())  # a link of words: those are heard
             for name, formula, section in symbols(app)
         ])  # fmt: skip
         part("Functions and classes", [
