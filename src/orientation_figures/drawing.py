@@ -81,6 +81,11 @@ def view_from(azimuth, elevation):
 IN_SPACE = view_from(np.radians(32), np.radians(24))
 
 
+def hatted(letter):
+    """Return the symbols of three unit vectors, as labels."""
+    return [rf"$\hat{{{letter}}}_{axis}$" for axis in "xyz"]
+
+
 class Drawing:
     r"""A sheet on which frames, vectors and angles are drawn.
 
@@ -209,7 +214,7 @@ class Drawing:
         an empty string leaves that arrow without a label, and None leaves that arrow out.
         """
         if labels is None:
-            labels = [rf"$\hat{{{letter.lower()}}}_{axis}$" for axis in "xyz"]
+            labels = hatted(letter.lower())
         for row, label, shift in zip(np.asarray(dcm, dtype=float), labels, shifts, strict=True):
             if label is not None:
                 self.arrow(origin + length * row, origin, letter, label, shift)

@@ -7,7 +7,7 @@ from orientation.direction_cosines import simple_dcm
 from orientation.euler_angles import body_fixed_from_dcm, dcm_from_body_fixed
 from orientation.rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 
-from .drawing import Drawing, view_from
+from .drawing import Drawing, hatted, view_from
 
 # Along north, west and up, in which these drawings are made: rows of the frame north, east, down.
 NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
@@ -78,9 +78,9 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
     drawing.turn((0, 0, 1), 2.6, (0.5, -0.9, 0), 0.5, r"$\psi$", (0, 0, -0.75))
     drawing.turn(first[1], 2.2, first[0] - first[2], 0.42, r"$\theta$", place(first, (0, 0.5, 0))[0])
     drawing.turn(second[2], 2.6, (0.5, -0.9, 0) @ second, 0.42, r"$\varphi$", place(second, (0, 0, 0.62))[0])
-    forearm = [rf"$\hat{{f}}_{axis}$" for axis in "xyz"]
+    forearm = hatted("f")
     drawing.triad("F", np.eye(3), -1.6 * drawing.view[0] - 1.5 * drawing.view[1], 0.62, forearm)
-    hand = [rf"$\hat{{g}}_{axis}$" for axis in "xyz"]
+    hand = hatted("g")
     return drawing.triad("D", gripper, -1.6 * drawing.view[0] + 0.35 * drawing.view[1], 0.62, hand)
 
 
@@ -113,7 +113,7 @@ def star_cameras_drawing(apart=np.radians(102)):
             drawing.dot(mount + depth * (along + y * third), "ink", 2.5)
         drawing.cylinder(mount, mount + 0.4 * along, 0.15, colour)
         rows = np.array([across, third, along]) @ dcm_from_axis_angle(along, side * 0.9)
-        drawing.triad(colour, rows, mount + 0.42 * along, 0.85, [rf"$\hat{{{letter}}}_{axis}$" for axis in "xyz"])
+        drawing.triad(colour, rows, mount + 0.42 * along, 0.85, hatted(letter))
     return drawing
 
 
@@ -133,7 +133,7 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
     drawing.box(phone, (0.72, 1.4, 0.09), colour="B")
     screen = [(x, y, 0.045) @ phone for x, y in ((-0.3, -0.58), (0.3, -0.58), (0.3, 0.58), (-0.3, 0.58))]
     drawing.area(screen, "B", 8)
-    drawing.triad("B", phone, length=0.95, labels=[rf"$\hat{{p}}_{axis}$" for axis in "xyz"])
+    drawing.triad("B", phone, length=0.95, labels=hatted("p"))
     drawing.arrow((0, 0, 1.3), colour="accent", label="up")
     drawing.arrow((0, 1.0, 0), colour="accent", label=r"up $\times$ field")
     drawing.line([(0, 0, 0), (np.cos(dip), 0, 0)], "muted", "guide")
@@ -233,5 +233,5 @@ def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
     drawing.line([(0, 0, 0), up], "muted", "guide")
     drawing.turn((0, 0, 1), longitude, (1, 0, 0), 0.55, r"$\lambda$")
     drawing.turn(np.cross(meridian, (0, 0, 1)), latitude, meridian, 0.4, r"$\phi$")
-    drawing.triad("C", ground, up, 0.55, [rf"$\hat{{g}}_{axis}$" for axis in "xyz"])
+    drawing.triad("C", ground, up, 0.55, hatted("g"))
     return drawing.triad("N", aviation, up + 0.02 * ground[0], 0.42, shifts=[(16, 6), (4, 18), None])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...drawing import Drawing
+from ...drawing import Drawing, hatted
 
 REACH, SIZE, APART = 1.0, 76, 1.3  # as in js/hands.js
 
@@ -22,5 +22,5 @@ def drawing(figure):
     if not figure.together:
         up = drawing.view[1]
         drawing.line([-1.2 * up, 1.2 * up], "muted", "guide")
-    labels = [rf"$\hat{{m}}_{axis}$" for axis in "xyz"]
+    labels = hatted("m")
     return drawing.triad("E", np.array(figure.rows), place, labels=labels)
