@@ -2,6 +2,9 @@
 
 import base64
 import collections
+import copy
+import csv
+import io
 import json
 import random
 import re
@@ -16,15 +19,18 @@ from conftest import SEED
 from test_release import COURSE, made_in, needs_solutions, write_source
 
 import coursework
-from coursework.authoring.author import AuthorError
+from coursework.authoring.author import AuthorError, solution_code
 from coursework.authoring.packing import archive
 from coursework.authoring.release import release
 from coursework.authoring.selftest import try_question
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, written
+from coursework.checking import check as check_module
 from coursework.checking import questions, variants
 from coursework.checking.plain import to_plain
-from coursework.grading import marking
+from coursework.grading import intake, marking
+from coursework.grading.grade import grade
+from coursework.grading.reports import feedback_of
 
 NAME = "levers/see-saw"
 TEXT = "## See-saw\n\nA force of ${{force}}$ N acts ${{arm}}$ m from the hinge. Give its moment as `moment`, in N m."
@@ -214,6 +220,146 @@ def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
     finally:
         monkeypatch.chdir(tmp_path.parent)
         monkeypatch.setattr(variants, "_identity", "")
+
+
+# --- siblings: other numbers for one who had help ------------------------------------------------
+
+
+@pytest.fixture
+def recorded(beside, monkeypatch, tmp_path):
+    monkeypatch.setattr(check_module, "PROGRESS", tmp_path / ".coursework" / "progress.json")
+    coursework.me(student_with(2))
+
+
+def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorded):
+    lever = coursework.variant(NAME)
+    assert coursework.check(NAME, lever.force + lever.arm).outcome == "wrong"
+    right = coursework.check(NAME, lever.force * lever.arm)
+    assert right.outcome == "correct" and right.help == "mistake"
+    assert "a mistake was named" in right.messages[0] and f"variant('{NAME}/sibling')" in repr(right)
+    assert "a sibling earns the rest: levers/see-saw." in repr(coursework.progress())
+    twin = coursework.variant(f"{NAME}/sibling")
+    assert (twin.force, twin.arm) != (lever.force, lever.arm)
+    # The first sibling with a mistake, too: then there is one more, and no third.
+    coursework.check(f"{NAME}/sibling", twin.force + twin.arm)
+    assert f"check('{NAME}/sibling-2'" in repr(coursework.check(f"{NAME}/sibling", twin.force * twin.arm))
+    last = coursework.variant(f"{NAME}/sibling-2")
+    alone = coursework.check(f"{NAME}/sibling-2", last.force * last.arm)
+    assert alone.outcome == "correct" and not alone.help and "in full" in alone.messages[0]
+    assert "a sibling earns" not in repr(coursework.progress()) and "1 of the 1 " in repr(coursework.progress())
+    with pytest.raises(questions.NoSuchQuestion, match="its siblings are levers/see-saw/sibling and"):
+        coursework.check(f"{NAME}/sibling-3", 1)
+    with pytest.raises(questions.NoSuchQuestion, match="it has no other numbers"):
+        coursework.variant("levers/plain/sibling")
+
+
+def test_what_is_no_help_asks_for_no_sibling(recorded):
+    lever = coursework.variant(NAME)
+    coursework.check(NAME, lever.force * lever.arm + 0.001)  # rounded too far
+    right = coursework.check(NAME, lever.force * lever.arm)
+    assert right.outcome == "correct" and not right.help and right.messages == []
+    coursework.check(NAME, lever.force + lever.arm)  # after the right answer nothing is help
+    assert coursework.check(NAME, lever.force * lever.arm).help == ""
+
+
+@pytest.mark.parametrize("way", ["hint", "solution"])
+def test_hints_and_the_worked_solution_are_help(recorded, course, way):
+    lever = coursework.variant(NAME)
+    if way == "hint":
+        for wrong in (11, 12, 13):
+            coursework.check(NAME, wrong)
+    else:
+        code = solution_code(nbformat.read(course.sources / "levers.ipynb", as_version=4))
+        assert f"{NAME}/sibling" in repr(coursework.worked_solution(NAME, code))
+    assert coursework.check(NAME, lever.force * lever.arm).help == way
+
+
+def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_path):
+    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
+    own = marking.of_student(found, student_with(5))
+    chances = own[NAME]["second chances"]
+    assert [one["public"].get("variant", 0) for one in chances.values()] == [0, 1]
+    right = {
+        name: {"outcome": "recorded", "plain": to_plain(given["force"] * given["arm"])}
+        for name, question in {NAME: own[NAME], **chances}.items()
+        for given in [question["public"]["given"]]
+    }
+    first, second = chances
+    missing = {"outcome": "missing"}
+
+    def marked(answers, **helped):
+        remembered = {{"own": NAME, "first": first}[one]: {"tries": 3, "help": had} for one, had in helped.items()}
+        return marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
+
+    for answers, helped, points, note in (
+        ({NAME: right[NAME]}, {}, 1, ""),
+        ({NAME: right[NAME]}, {"own": ""}, 1, ""),
+        ({NAME: right[NAME]}, {"own": "mistake"}, 0.8, "with help"),
+        ({NAME: right[NAME], first: right[first]}, {"own": "hint"}, 1, "by a sibling"),
+        ({NAME: right[NAME], first: right[NAME]}, {"own": "hint"}, 0.8, "with help"),
+        ({NAME: right[NAME], first: right[first]}, {"own": "hint", "first": "mistake"}, 0.8, "with help"),
+        (right, {"own": "hint", "first": "mistake"}, 1, "by a sibling"),
+        ({NAME: missing, first: right[first]}, {"own": "solution"}, 1, "by a sibling"),
+        ({NAME: missing}, {"own": "solution"}, 0, "missing"),
+        # The answer of one who has the numbers of the third one after one's own.
+        ({NAME: right[NAME], f"{NAME}/sibling-3": right[second]}, {"own": "hint"}, 0.8, "with help"),
+    ):
+        mark = marked(answers, **helped)
+        assert (mark["points"], mark["note"]) == (points, note), (answers, helped)
+    assert marked(right, own="mistake")["tries"] == 3 and marked(right)["tries"] is None
+    own[NAME]["credit"] = {"help": 1}
+    mark = marked({NAME: right[NAME]}, own="mistake")
+    assert mark["points"] == 1 and mark["messages"] == []  # an author who wants help to cost nothing
+    asked = marking.asked_of_sandbox(marking.with_second_chances(own, {first}))
+    assert set(asked) == {NAME, "levers/plain", first} and asked[first]["given"] == chances[first]["public"]["given"]
+
+
+def test_a_notebook_remembers_tries_and_help(recorded):
+    lever = coursework.variant(NAME)
+    shown = [coursework.check(NAME, lever.force + lever.arm), coursework.check(NAME, lever.force * lever.arm)]
+    cells = [
+        nbformat.v4.new_code_cell("check", outputs=[nbformat.v4.new_output("display_data", {"text/html": text})])
+        for text in [one._repr_html_() for one in shown]
+        + ['<div class="coursework-reply" data-question="a" data-tries="x">']
+    ]
+    data = nbformat.writes(nbformat.v4.new_notebook(cells=cells)).encode()
+    assert intake.remembered_in(data) == {NAME: {"tries": 2, "help": "mistake"}}
+    assert intake.remembered_in(b"{}") == {} and intake.remembered_in(b'\xff coursework-reply "') == {}
+
+
+def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
+    """Three hand in: one right at once, one with help, and one with help and then a sibling."""
+    solved = nbformat.read(course.exercises / "levers.ipynb", as_version=4)
+    answer, check_cell = (next(c for c in solved.cells if word in c.source) for word in ("moment =", "check('lev"))
+    answer.source = "moment = lever.force * lever.arm"
+    students = {"ada": student_with(1), "ben": student_with(3), "eve": student_with(4)}
+    for name, student in students.items():
+        notebook = copy.deepcopy(solved)
+        if name != "ada":
+            coursework.me(student)
+            given = coursework.variant(NAME)
+            check_module.PROGRESS.unlink(missing_ok=True)
+            coursework.check(NAME, given.force + given.arm)
+            reply = coursework.check(NAME, given.force * given.arm)
+            cell = next(c for c in notebook.cells if c.source == check_cell.source)
+            cell.outputs = [
+                nbformat.v4.new_output("execute_result", {"text/html": reply._repr_html_()}, execution_count=1)
+            ]
+        if name == "eve":
+            twin = f"twin = variant('{NAME}/sibling')\ncheck('{NAME}/sibling', twin.force * twin.arm)"
+            notebook.cells.append(nbformat.v4.new_code_cell(twin))
+        place = tmp_path / "handed-in" / student
+        place.mkdir(parents=True)
+        nbformat.write(notebook, place / "levers.ipynb")
+    done = grade(tmp_path / "handed-in", tmp_path / "marks", solutions=course.sources, workers=1, show=io.StringIO())
+    assert done["graded"] == 3
+    text = (tmp_path / "marks" / "grades.csv").read_text("utf8")
+    rows = {row["student"]: row for row in csv.DictReader(text.splitlines())}
+    assert [float(rows[student][NAME]) for student in students.values()] == [1, 0.8, 1]
+    report = (tmp_path / "marks" / "report.html").read_text("utf8")
+    assert "Tries" in report and "2 (2 at most, 2 known)" in report
+    page = (tmp_path / "marks" / feedback_of(students["ben"], "levers")).read_text("utf8")
+    assert "2 different answers, as your notebook remembers" in page and "earns the rest" in page
 
 
 def test_an_edition_draws_afresh():

@@ -9,8 +9,9 @@ from pathlib import Path
 from .kinds import calls_for
 from .plain import NotPlain, to_plain
 from .questions import code_text, find_question, judge, notebook_questions, open_page, opened, rung_key, solution_on
-from .reply import Reply
+from .reply import HELP, Reply
 from .sealing import unseal
+from .variants import siblings_of, without_sibling
 
 #: Where progress is kept: beside the notebook, and nowhere else.
 PROGRESS = Path(".coursework", "progress.json")
@@ -19,6 +20,8 @@ REVIEW_AFTER = 3
 DAY = 86_400
 #: Different answers of one question that are remembered.
 MOST_ANSWERS = 100
+#: Notes of wrong answers that are no help on the way to the right one.
+NO_HELP = ("", "rounded too far")
 
 
 class NotCorrect(AssertionError):
@@ -57,6 +60,9 @@ def check(name: str, answer: object) -> Reply:
     entry = _remember(name, reply, content)
     if reply.outcome == "wrong" and entry:
         _show_next_hint(question, reply, entry)
+    if reply.outcome == "correct":
+        reply.help = entry.get("help", "")
+        reply.messages += _of_siblings(name, question, reply.help)
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome != "correct":
         raise NotCorrect(repr(reply))
@@ -71,6 +77,8 @@ def hint(name: str) -> Reply:
     question = find_question(name)
     entry = _read_progress().get(name, {})
     steps, earned = _steps(question, entry), _earned(entry)
+    if steps[:earned]:
+        _note_help(name, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
     for other, page, key in entry.get("after", []):
         lines += [f"Hint: {step}" for step in open_page(find_question(other), page, key)["after"].get(name, [])]
@@ -91,14 +99,38 @@ def worked_solution(name: str, code: str) -> Reply:
     content = opened(question, code_text(str(code)))
     if content is None or "solution" not in content:
         return Reply(name, "hints", "", ["This code opens no solution. Your instructor gives it out on a date."])
-    progress_now = _read_progress()
-    entry = progress_now.setdefault(name, {})
-    if isinstance(entry, dict):
-        entry["given up"] = entry.get("outcome") != "correct"
-        _write_progress(progress_now)
-    return Reply(
-        name, "hints", "", ["Read it, close it, and write it down by yourself."], solution_on(question, content)
-    )
+    _note_help(name, "solution")
+    entry = _read_progress().get(name, {})
+    said = ["Read it, close it, and write it down by yourself.", *_of_siblings(name, question, entry.get("help", ""))]
+    return Reply(name, "hints", "", said, solution_on(question, content))
+
+
+def _note_help(name, kind):
+    """Write down that somebody had help; after the right answer it is none."""
+    record = _read_progress()
+    entry = record.setdefault(name, {})
+    if isinstance(entry, dict) and entry.get("outcome") != "correct":
+        kinds = list(HELP)
+        entry["help"] = max(kind, entry.get("help", kind), key=lambda one: kinds.index(one) if one in kinds else -1)
+        _write_progress(record)
+
+
+def _of_siblings(name, question, help_had):
+    """What is said of the siblings of a question to one who had help, or who has solved one without."""
+    asked, order = without_sibling(name)
+    siblings = siblings_of(asked, question.get("variants", 1))
+    if not help_had:
+        return [f"Solved without help, so it counts for `{asked}` in full."] if order else []
+    if not siblings:
+        return []
+    said = f"You had help: {HELP.get(help_had, 'it was shown')}."
+    if order == len(siblings):
+        return [f"{said} There is no further sibling."]
+    following = siblings[order]
+    return [
+        f"{said} For the rest of the points of `{asked}`, solve it with other numbers and without help: "
+        f"`variant('{following}')` shows them, and `check('{following}', ...)` checks your answer."
+    ]
 
 
 def _steps(question, entry):
@@ -120,6 +152,8 @@ def _earned(entry):
 
 def _show_next_hint(question, reply, entry):
     steps, earned = _steps(question, entry), _earned(entry)
+    if steps[:earned]:
+        _note_help(reply.question, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
     if len(steps) > earned:
         reply.messages.append(f"`hint('{reply.question}')` tells how to come by a hint." if earned == 0 else "")
@@ -131,13 +165,15 @@ def _show_next_hint(question, reply, entry):
 
 def progress() -> Reply:
     """Show how far you are, by chapter, and what is worth another look; from the record beside this notebook."""
-    record = {name: entry for name, entry in _read_progress().items() if isinstance(entry, dict) and "outcome" in entry}
+    known = {name: entry for name, entry in _read_progress().items() if isinstance(entry, dict) and "outcome" in entry}
+    record = {name: entry for name, entry in known.items() if not without_sibling(name)[1]}
     if not record:
         return Reply("progress", "hints", "", ["Nothing has been checked in this folder yet."])
     right = {name for name, entry in record.items() if entry["outcome"] == "correct"}
     lines = [f"{len(right)} of the {len(record)} questions that you have tried are right."]
     for notebook in sorted({name.partition("/")[0] for name in record}):
         lines.append(_of_notebook(notebook, record, right))
+    lines += _right_with_help(known, right)
     lines += _worth_another_look(record)
     return Reply("progress", "correct" if len(right) == len(record) else "hints", "", lines)
 
@@ -155,6 +191,25 @@ def _of_notebook(notebook, record, right):
     open_.sort(key=lambda name: name not in record)
     line = f"*{notebook}*: {len(questions) - len(open_)} of {len(questions)} right, {earned} of {points} points."
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
+
+
+def _right_with_help(known, right):
+    """The questions whose points are not all earned, since they were right with help and no sibling without."""
+    alone = {without_sibling(name)[0] for name, entry in known.items() if _is_alone(name, entry)}
+    found = []
+    for name in sorted(right - alone):
+        try:
+            count = find_question(name).get("variants", 1)
+        except (LookupError, RuntimeError):
+            continue  # a question of another release
+        if known[name].get("help") and count > 1:
+            found.append(f"`{name}`")
+    return [f"Right with help, so that a sibling earns the rest: {', '.join(found)}."] if found else []
+
+
+def _is_alone(name, entry):
+    """Whether this is a sibling that was solved without help."""
+    return without_sibling(name)[1] > 0 and entry["outcome"] == "correct" and not entry.get("help")
 
 
 def _worth_another_look(record):
@@ -195,6 +250,8 @@ def _remember(name, reply, content):
     # What was right once stays right: another try in the same cell takes nothing away.
     if entry.get("outcome") != "correct":
         entry["outcome"] = reply.outcome
+        if reply.outcome == "wrong" and reply.note not in NO_HELP:
+            entry.setdefault("help", "mistake")
     entry["note"] = reply.note
     if reply.outcome == "wrong":
         answers = entry.setdefault("answers", [])

@@ -18,7 +18,7 @@ from .mistakes import message, numbered
 from .plugins import kind_of_values, sealed_folders
 from .points import spellings
 from .reply import Reply
-from .variants import own_variant
+from .variants import own_variant, siblings_of, without_sibling
 
 FORMAT = 3
 #: Letters and digits of a code that opens worked solutions: none that looks like another.
@@ -66,7 +66,7 @@ def places():
 
 
 def find_question(name):
-    """Give a question by its full name, in the variant of whoever works here.
+    """Give a question by its full name, in the variant of whoever works here; a sibling by its own name.
 
     Raises
     ------
@@ -74,8 +74,13 @@ def find_question(name):
     """
     notebook, _, _ = name.partition("/")
     questions = notebook_questions(notebook)
-    if name in questions:
-        return in_variant(name, own_variant(name, questions[name]))
+    asked, order = without_sibling(name)
+    if asked in questions:
+        siblings = siblings_of(asked, questions[asked].get("variants", 1))
+        if order > len(siblings):
+            there = f"its siblings are {' and '.join(siblings)}" if siblings else "it has no other numbers"
+            raise NoSuchQuestion(f"There is no '{name[:80]}': of '{asked}', {there}.")
+        return in_variant(asked, own_variant(asked, questions[asked], order))
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(

@@ -17,6 +17,14 @@ OUTCOMES = {
 }
 
 
+#: Each kind of help that a student may have had, in words, from little to much.
+HELP = {
+    "mistake": "a mistake was named",
+    "hint": "a hint was shown",
+    "solution": "the worked solution was shown",
+}
+
+
 class Reply:
     """The outcome of a check, shown as HTML in a notebook and as text elsewhere.
 
@@ -35,6 +43,8 @@ class Reply:
         What all ways of writing this answer have in common, hashed.
     tries : int
         How many different answers the record beside the notebook knows of; 0 where there is none.
+    help : str
+        The help that was had before the answer was right, a key of :data:`HELP`; empty without any.
     details : dict
         What the message of the mistake needed to know.
     opened : dict
@@ -57,6 +67,7 @@ class Reply:
         self.solution = solution
         self.answer = ""
         self.tries = 0
+        self.help = ""
         self.details: dict = {}
         self.opened = opened or {}
 
@@ -71,7 +82,9 @@ class Reply:
         sign, word, colour = OUTCOMES[self.outcome]
         name = html.escape(self.question)
         tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
-        known = f' data-tries="{self.tries}"' if self.tries else ""
+        # What the notebook remembers of the way to this answer: the grader reads it there.
+        known = f' data-question="{name}"' + (f' data-tries="{self.tries}"' if self.tries else "")
+        known += f' data-help="{self.help}"' if self.help else ""
         formula = {} if tex_is_typeset() else {"formula": mathml}
         paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)
         solution = (

@@ -3,6 +3,9 @@
 The variants of a question differ in their numbers, axes or names, and are sealed one by one. Which one is a student's
 follows from the student's identity, the question and the edition of the course by a hash, so the same student meets
 the same one in every notebook, on every machine and in the grader. Without an identity it is variant 0.
+
+The variants that come next are its siblings: who had help with a question earns the rest of its points with one of
+them. A sibling has a name, ``'levers/see-saw/sibling'``, and is shown, checked and graded by it.
 """
 
 import base64
@@ -15,6 +18,9 @@ from pathlib import Path
 
 #: Where it is kept who works in this folder.
 KEPT = Path(".coursework", "me.txt")
+#: So many siblings of a question count: with all of them, somebody else's answer would count, too.
+SIBLINGS = 2
+SIBLING = re.compile(r"(?P<question>.+)/sibling(?:-(?P<order>[2-9]))?")
 #: Who works in this notebook; set by :func:`me`, anew in each run of it.
 _identity = ""
 
@@ -65,9 +71,29 @@ def variant_of(identity, name, count, edition=""):
     return int.from_bytes(digest[:8], "big") % count
 
 
-def own_variant(name, question):
-    """The number of the variant of whoever works here."""
-    return variant_of(_identity, name, question.get("variants", 1), question.get("edition", ""))
+def own_variant(name, question, order=0):
+    """The number of the variant of whoever works here, or of one of its siblings."""
+    count = question.get("variants", 1)
+    return (variant_of(_identity, name, count, question.get("edition", "")) + order) % count
+
+
+def siblings_of(name, count):
+    """The names of the siblings of a question that has ``count`` variants, in their order.
+
+    >>> siblings_of('levers/see-saw', 16)
+    ['levers/see-saw/sibling', 'levers/see-saw/sibling-2']
+    """
+    return [f"{name}/sibling" + (f"-{order}" if order > 1 else "") for order in range(1, min(SIBLINGS + 1, count))]
+
+
+def without_sibling(name):
+    """The question that a name means, and which of its siblings: 0 is the student's own variant.
+
+    >>> without_sibling('levers/see-saw/sibling-2'), without_sibling('levers/see-saw')
+    (('levers/see-saw', 2), ('levers/see-saw', 0))
+    """
+    found = SIBLING.fullmatch(name)
+    return (found["question"], int(found["order"] or 1)) if found else (name, 0)
 
 
 def shown(text, written):
@@ -142,7 +168,7 @@ def variant(name: str) -> Given:
     Parameters
     ----------
     name : str
-        The question, as its check names it.
+        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
 
     Returns
     -------

@@ -388,7 +388,9 @@ class _Jobs:
     def of(self, order):
         """The jobs of one student's work."""
         one = self.work[order]
-        asked = marking.asked_of_sandbox(marking.of_student(self.questions[one.assignment], one.student))
+        named = {name for notebook in one.notebooks for name in notebook.named}
+        own = marking.of_student(self.questions[one.assignment], one.student)
+        asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
         for part, notebook in enumerate(one.notebooks):
             cells = notebook.cells
             self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
@@ -483,13 +485,14 @@ def record_of(work, results, key, questions, limits):
                 "handed in": notebook.handed_in,
             }
         )
+    known = marking.with_second_chances(questions)
     answers, finished = {}, all(result["finished"] for result in results)
     for name in results[0]["answers"]:
         given = [result["answers"][name] for result in results]
         # Of several notebooks the one that says something; they have no question in common.
         answers[name] = min(given, key=_says_little)
         if "secret" in answers[name]:
-            answers[name]["secret"]["calls"] = in_secret.digest(questions[name]["secret"])
+            answers[name]["secret"]["calls"] = in_secret.digest(known[name]["secret"])
     return {
         "format": FORMAT,
         "key": key,
@@ -503,6 +506,7 @@ def record_of(work, results, key, questions, limits):
         "limits": vars(limits),
         "finished": finished,
         "answers": answers,
+        "remembered": {name: about for notebook in work.notebooks for name, about in notebook.remembered.items()},
     }
 
 
@@ -528,8 +532,9 @@ def marked(record, questions, decisions=None):
     )
     marks = {}
     for name, question in marking.of_student(questions, record["student"]).items():
-        answer = record["answers"].get(name, {"outcome": "missing"})
-        found = marking.mark(name, question, answer, record["finished"], limited)
+        found = marking.mark_with_siblings(
+            name, question, record["answers"], record.get("remembered", {}), record["finished"], limited
+        )
         decided = (decisions or {}).get((record["student"], record["assignment"], name))
         if decided is not None and decided.answer == digest_of_answer(record, name):
             found |= {

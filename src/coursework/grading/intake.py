@@ -47,6 +47,8 @@ LITTER = (
 )
 INDEXES = ("index.html", "timestamp.txt")  # what Brightspace and nbgrader put there
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
+REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
+ABOUT_REPLY = re.compile(r'\bdata-(question|tries|help)="([^"]{1,200})"')
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
 
@@ -120,6 +122,11 @@ class Notebook(NamedTuple):
             It was changed or removed since it was looked at first.
         """
         return read_notebook(_unchanged(self))[0]
+
+    @property
+    def remembered(self):
+        """What its outputs remember of the way to an answer: see :func:`remembered_in`."""
+        return remembered_in(_unchanged(self))
 
     @property
     def files(self):
@@ -624,6 +631,25 @@ def read_notebook(data):
     if sum(len(cell["source"]) for cell in code) > MOST_CODE:
         raise Unfit(f"Its code is longer than {MOST_CODE} characters.")
     return code, grade_ids
+
+
+def remembered_in(data):
+    """What the replies that a notebook shows remember, by question: the ``tries``, and the ``help`` that was had.
+
+    It is the student's to change: who deletes it is not found out.
+    """
+    found = {}
+    if b"coursework-reply" not in data:
+        return found
+    text = data.decode("utf8", "replace").replace('\\"', '"')  # as it stands in the texts of JSON
+    for reply in REPLY.findall(text):
+        about = dict(ABOUT_REPLY.findall(reply))
+        if not {"question", "tries"} <= set(about) or not about["tries"].isdecimal() or len(found) >= MOST_CELLS:
+            continue
+        one = found.setdefault(about["question"], {"tries": 0, "help": ""})
+        one["tries"] = max(one["tries"], int(about["tries"][:6]))
+        one["help"] = about.get("help", one["help"])
+    return found
 
 
 def _list(value):

@@ -17,8 +17,8 @@ from ..checking.evaluate import MP
 from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
 from ..checking.plain import NotPlain, read_plain
 from ..checking.questions import compare
-from ..checking.reply import Reply
-from ..checking.variants import variant_of
+from ..checking.reply import HELP, Reply
+from ..checking.variants import siblings_of, variant_of
 from . import secret as in_secret
 from .store import write
 from .versions import software
@@ -26,6 +26,9 @@ from .workers import processors, side_by_side
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
+#: The share of the points of an answer that was reached with help, where its author names none, until a sibling of
+#: the question is solved without.
+WITH_HELP = 0.8
 #: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
 CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
@@ -71,7 +74,23 @@ def of_student(questions, identity):
         if len(variants) > 1:
             siblings = [other for order, other in enumerate(variants) if order != number]
             own[name] = {**own[name], "siblings": siblings}
+            # Those that count in its place, by their names.
+            own[name]["second chances"] = {
+                sibling: variants[(number + order) % len(variants)]
+                for order, sibling in enumerate(siblings_of(name, len(variants)), 1)
+            }
     return own
+
+
+def with_second_chances(questions, named=None):
+    """The questions of a student, and their siblings beside them: those that are ``named``, or all."""
+    chances = {
+        sibling: question
+        for one in questions.values()
+        for sibling, question in one.get("second chances", {}).items()
+        if named is None or sibling in named
+    }
+    return {**questions, **chances}
 
 
 def about(question, secret, guessable=None):
@@ -203,6 +222,41 @@ def mark(name, question, answer, finished=True, limited=False):
         "version": question["version"],
         "guessable": question["guessable"],
     }
+
+
+def mark_with_siblings(name, question, answers, remembered, finished=True, limited=False):
+    """The mark of a question, with regard to the help that a student had and to the siblings that were solved.
+
+    Parameters
+    ----------
+    answers : dict
+        Those of the record, by the names of questions and of siblings.
+    remembered : dict
+        As :func:`coursework.grading.intake.remembered_in` gives it.
+
+    Returns
+    -------
+    dict
+        As :func:`mark` gives it, and ``tries``, which the notebook remembers, or ``None``.
+    """
+    found = mark(name, question, answers.get(name, {"outcome": "missing"}), finished, limited)
+    found["tries"] = remembered.get(name, {}).get("tries")
+    had = remembered.get(name, {}).get("help", "")
+    for sibling, other in question.get("second chances", {}).items():
+        helped = remembered.get(sibling, {}).get("help")
+        if sibling in answers and not helped and (had or found["outcome"] != "correct"):
+            if judge(sibling, other, answers[sibling])[0].outcome == "correct":
+                said = f"`{sibling}` was solved without help, and counts for this question."
+                about = {"outcome": "correct", "note": "by a sibling", "points": question["worth"], "messages": [said]}
+                return found | about
+    if found["outcome"] == "correct" and had and "second chances" in question:
+        share = question["credit"].get("help", WITH_HELP)
+        said = (
+            f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without help earns the rest."
+        )
+        found |= {"note": "with help", "points": round(question["worth"] * share, 4)}
+        found["messages"] = [said] if share < 1 else []
+    return found
 
 
 def judge(name, question, answer, finished=True, limited=False):

@@ -71,7 +71,7 @@ class _Assignment:
 
     def __init__(self):
         self.students, self.points, self.worth, self.titles = 0, Counter(), 0, {}
-        self.parts, self.mixups, self.same = {}, Counter(), {}
+        self.parts, self.mixups, self.same, self.tries = {}, Counter(), {}, {}
         self.undecided, self.odd, self.ways, self.versions = [], {}, Counter(), Counter()
         self.waiting = 0
 
@@ -82,6 +82,8 @@ class _Assignment:
         for name, mark in record["marks"].items():
             self.titles.setdefault(name, mark["title"])
             self.parts.setdefault(name, Counter())[_part(mark)] += 1
+            if mark.get("tries"):
+                self.tries.setdefault(name, Counter())[mark["tries"]] += 1
             if mark["outcome"] in ("wrong", "invalid") and mark["note"]:
                 self.mixups[name, deed(mark)] += 1
             elif mark["outcome"] == "wrong" and mark["group"]:
@@ -260,7 +262,7 @@ def _about(found):
         "mean": f"{mean(points):.1f}",
         "median": median(points),
         "bars": _histogram(found.points, found.worth),
-        "success": [_success(name, counts) for name, counts in found.parts.items()],
+        "success": [(*_success(name, counts), _tries(found.tries.get(name))) for name, counts in found.parts.items()],
         "mixups": _mixups(found),
         "same": _same(found),
         "odd": sorted(found.odd.items()),
@@ -309,6 +311,14 @@ def _success(name, counts):
             x += wide
     spoken = ", ".join(f"{counts[part]} {word}" for part, word in PARTS if counts[part])
     return name, bars, spoken, _percent(counts["correct"], total)
+
+
+def _tries(counts):
+    """How many different answers were tried, as the notebooks of those remember that show it; or nothing."""
+    if not counts:
+        return ""
+    known, most = list(counts.elements()), max(counts)
+    return f"{median(known):g} ({most} at most, {len(known)} known)" if len(known) > 1 else f"{most} (1 known)"
 
 
 def _part(mark):

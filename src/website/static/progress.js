@@ -97,6 +97,6 @@ const progress = (() => {
       for (const node of addedNodes)
         if (node.nodeType === Node.ELEMENT_NODE)
           for (const reply of [...(node.matches(RIGHT) ? [node] : []), ...node.querySelectorAll(RIGHT)])
-            note("checked", reply.querySelector("p > span:not([aria-hidden])")?.textContent);
+            note("checked", reply.dataset.question);
   }).observe(document.querySelector("article") ?? document.body, { childList: true, subtree: true });
 }
