@@ -6,6 +6,8 @@ import pytest
 from conftest import HTML
 from test_site import violations
 
+from coursework.checking.reply import Reply
+
 CHAPTER = "chapters/reference-frames"
 COVERING = '.question[data-covers]:not([data-covers="0"])'
 KEPT = "() => JSON.parse(Object.entries(localStorage).find(([key]) => key.startsWith('progress of'))?.[1] ?? '{}')"
@@ -158,12 +160,12 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
 
 
 def test_right_answer_of_the_checker_counts(context, site):
-    """The page's Python puts its reply into the article; here the reply is put there by hand."""
+    """The page's Python puts its reply into the article; here the reply is put there by hand. It was the third try."""
     page = opened(context, site)
+    reply = Reply("chapters/right-handed", "correct")
+    reply.tries = 3
     page.evaluate(
-        """document.querySelector("article").insertAdjacentHTML("beforeend",
-        '<div class="coursework-reply" data-outcome="correct"><p><strong><span aria-hidden="true">+</span></strong>'
-        + ' <span>chapters/right-handed</span></p></div>')"""
+        "(reply) => document.querySelector('article').insertAdjacentHTML('beforeend', reply)", reply._repr_html_()
     )
     page.wait_for_function(f"({KEPT})().pages?.['{CHAPTER}']?.checked.includes('chapters/right-handed')")
 
