@@ -163,7 +163,7 @@ def test_right_answer_of_the_checker_counts(context, site):
     """The page's Python puts its reply into the article; here the reply is put there by hand. It was the third try."""
     page = opened(context, site)
     reply = Reply("chapters/right-handed", "correct")
-    reply.tries = 3
+    reply.tries = 3  # with the record beside it, it is never 0
     page.evaluate(
         "(reply) => document.querySelector('article').insertAdjacentHTML('beforeend', reply)", reply._repr_html_()
     )

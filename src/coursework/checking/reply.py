@@ -83,7 +83,7 @@ class Reply:
         name = html.escape(self.question)
         tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
         # What the notebook remembers of the way to this answer: the grader reads it there.
-        known = f' data-question="{name}"' + (f' data-tries="{self.tries}"' if self.tries else "")
+        known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
         known += f' data-help="{self.help}"' if self.help else ""
         formula = {} if tex_is_typeset() else {"formula": mathml}
         paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)
