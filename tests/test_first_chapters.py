@@ -1,4 +1,4 @@
-"""What the first eight chapters claim: their own code is run, and its results are held against independent ones."""
+"""What every chapter holds; and what the first eight claim: their own code is run, and held against other results."""
 
 import re
 from functools import cache
@@ -16,6 +16,8 @@ FIRST = (
     "reference-frames", "simple-orientations", "direction-cosine-matrices", "successive-orientations",
     "orientation-with-sympy", "euler-angles", "other-descriptions", "unit-quaternions",
 )  # fmt: skip
+
+ALL = sorted(path.stem for path in (REPOSITORY / "chapters").glob("*.ipynb"))
 
 
 @cache
@@ -45,10 +47,14 @@ def code_with(name, text):
 # --- what every chapter has -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", FIRST)
+def text_of(name):
+    return "\n\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown")
+
+
+@pytest.mark.parametrize("name", ALL)
 def test_a_chapter_leads_from_reading_to_doing(name):
     """Predictions, a worked example, a recap with a reply to each choice, and exercises with difficulty and time."""
-    text = "\n\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown")
+    text = text_of(name)
     assert len(re.findall(r"^`{3,}\{predict\}", text, re.MULTILINE)) >= 3
     [recap] = re.findall(r"^````\{recap\}\n(.*?)^````$", text, re.MULTILINE | re.DOTALL)
     questions = re.findall(r"^```\{question\}\n(.*?)^```$", recap, re.MULTILINE | re.DOTALL)
@@ -64,14 +70,14 @@ def test_a_chapter_leads_from_reading_to_doing(name):
         assert re.search(r"^:minutes: \d+$", exercise, re.MULTILINE), exercise
 
 
-@pytest.mark.parametrize("name", FIRST)
+@pytest.mark.parametrize("name", ALL)
 def test_some_exercise_asks_for_a_proof_or_an_explanation(name):
-    text = "\n\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown")
+    text = text_of(name)
     exercises = re.findall(r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL)
     assert any(re.search(r"\b([Pp]rove|[Ss]how|[Ee]xplain|[Ww]hy)\b", exercise) for exercise in exercises)
 
 
-@pytest.mark.parametrize("name", FIRST)
+@pytest.mark.parametrize("name", ALL)
 def test_no_sentence_is_cut_in_two_by_a_cell(name):
     """Text before a cell ends as a sentence does, or with a colon, and what follows begins as one."""
     for before, cell in zip(cells(name), cells(name)[1:]):
@@ -80,6 +86,31 @@ def test_no_sentence_is_cut_in_two_by_a_cell(name):
             assert re.search(r"([.:?!)*]|\$\$.*|:::|```+|</\w+>|^#.*|\|)$", last), last
         if cell.cell_type == "markdown":
             assert not re.match(r"[a-z,;]", cell.source), cell.source[:60]
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_chapter_says_what_for_shows_something_that_moves_and_sums_up(name):
+    text = text_of(name)
+    for part in ("objectives", "summary"):
+        [points] = re.findall(rf"^:::\{{admonition\}} .*\n:class: {part}\n(.*?)^:::$", text, re.MULTILINE | re.DOTALL)
+        assert len(re.findall(r"^- ", points, re.MULTILINE)) >= 3
+    code = "\n".join(cell.source for cell in cells(name) if cell.cell_type == "code")
+    assert re.search(r"^from orientation_figures\.(moving|animation) import ", code, re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_directives_begin_their_line(name):
+    """Within a line they would be printed as they stand, and no warning says so."""
+    assert re.findall(r"^[^`:\n].*(?:`{3,}|:{3,})\{[\w-]+\}.*$", text_of(name), re.MULTILINE) == []
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_prediction_is_a_question_and_not_only_a_box(name):
+    """What is asked can be answered on the page, and every choice has its reply."""
+    text = text_of(name)
+    assert not re.search(r"admonition\} Predict", text)
+    for question in re.findall(r"^```\{predict\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+        assert len(re.findall(r"\n\n(?=[^\n]+\n: )", question)) >= 2, question
 
 
 # --- chapter 1: hands -----------------------------------------------------------------------------

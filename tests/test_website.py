@@ -14,6 +14,8 @@ import yaml
 from conftest import REPOSITORY
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
+from orientation_figures.plot import Plot
+from website import page
 from website.alternative_text import says_something
 from website.notebooks import all_notebooks, normalise
 from website.paths import fingerprint
@@ -268,3 +270,18 @@ def test_formulas_are_set_by_one_process_which_is_missed_when_it_ends():
     with pytest.raises(RuntimeError, match=r"KaTeX ended with code -9 .* at the formula \\theta"):
         katex(r"\theta", False, "1.15")
     katex.close()
+
+
+def test_letters_are_drawn_once_and_a_blank_not_at_all():
+    with Plot(alt="Two words and two words.") as plot:
+        plot.axes.set(title="two words", xlabel="two words")
+    alone = plot._repr_html_()
+    assert re.search(r'<path id="[^"]*"(?![^>]*\bd=)', alone), (
+        "Matplotlib has no more blanks: share_outlines may know none"
+    )
+    body = page.share_outlines(alone + alone)
+    outlines = re.findall(r'<path id="(o\d+)"([^>]*)/>', body)
+    assert all(re.search(r'\bd="[^"]', outline) for _, outline in outlines)
+    assert len({outline for _, outline in outlines}) == len(outlines)
+    links = re.findall(r'<use [^>]*href="#([^"]*)"', body)
+    assert set(links) == {name for name, _ in outlines} and links.count(links[0]) >= 2

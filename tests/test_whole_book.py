@@ -288,6 +288,8 @@ def test_epub_holds_every_formula_and_every_figure(chapters_of_epub):
         assert not text.select("script, button, input, .katex, details.hide")
         for drawing in text.select("figure > svg[role=img]"):
             assert drawing.get("aria-label") or drawing.get("aria-labelledby"), page
+        names = {element["id"] for element in text.find_all(id=True)}
+        assert {use["href"][1:] for use in text.find_all("use")} <= names, page
 
 
 # ---- the zip -------------------------------------------------------------------

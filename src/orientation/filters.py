@@ -59,8 +59,10 @@ class MultiplicativeKalmanFilter:
         check_dcm(self.dcm)
         batch = self.dcm.shape[:-2]
         self.bias = numpy.zeros((*batch, 3))
-        self.covariance = numpy.broadcast_to(number_array(covariance, (6, 6), "covariance"), (*batch, 6, 6)).copy()
-        self.gyroscope_noise, self.bias_noise = float(gyroscope_noise), float(bias_noise)
+        covariance = number_array(covariance, (6, 6), "covariance")
+        self.covariance = numpy.broadcast_to(covariance, (*batch, 6, 6)).copy()
+        self.gyroscope_noise = float(gyroscope_noise)
+        self.bias_noise = float(bias_noise)
 
     def turn(self, angular_velocity: Values, step: float) -> None:
         r"""Turn with the gyroscope for one step.
@@ -74,13 +76,15 @@ class MultiplicativeKalmanFilter:
         """
         import numpy
 
-        turned = dcm_from_rotation_vector((number_array(angular_velocity, (3,), "rate") - self.bias) * step)
+        rate = number_array(angular_velocity, (3,), "rate") - self.bias
+        turned = dcm_from_rotation_vector(rate * step)
         self.dcm = turned @ self.dcm
         carried = numpy.zeros_like(self.covariance) + numpy.eye(6)
         carried[..., :3, :3] = turned
         carried[..., :3, 3:] = -step * numpy.eye(3)
-        noise = numpy.repeat([self.gyroscope_noise**2 * step, self.bias_noise**2 * step], 3)
-        self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + numpy.diag(noise)
+        variances = self.gyroscope_noise**2 * step, self.bias_noise**2 * step
+        noise = numpy.diag(numpy.repeat(variances, 3))
+        self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + noise
 
     def observe(self, observed: Values, reference: Values, deviation: float) -> None:
         r"""Correct the estimate with one direction that was measured.
@@ -96,21 +100,22 @@ class MultiplicativeKalmanFilter:
         """
         import numpy
 
-        observed, reference = (
-            value / numpy.linalg.norm(value, axis=-1, keepdims=True)
-            for value in (number_array(observed, (3,), "observed"), number_array(reference, (3,), "reference"))
-        )
+        observed = number_array(observed, (3,), "observed")
+        reference = number_array(reference, (3,), "reference")
+        observed = observed / numpy.linalg.norm(observed, axis=-1, keepdims=True)
+        reference = reference / numpy.linalg.norm(reference, axis=-1, keepdims=True)
         expected = (self.dcm @ reference[..., None])[..., 0]
         # A body turned by delta sees expected + expected x delta.
         slope = numpy.zeros((*expected.shape, 6))
-        slope[..., :3] = numpy.cross(expected[..., None, :], numpy.eye(3)).swapaxes(-1, -2)
+        across = numpy.cross(expected[..., None, :], numpy.eye(3))
+        slope[..., :3] = across.swapaxes(-1, -2)
         spread = self.covariance @ slope.swapaxes(-1, -2)
         variance = numpy.asarray(deviation, dtype=float)[..., None, None] ** 2
         gain = spread @ numpy.linalg.inv(slope @ spread + variance * numpy.eye(3))
         change = (gain @ (observed - expected)[..., None])[..., 0]
         self.dcm = dcm_from_rotation_vector(change[..., :3]) @ self.dcm
         self.bias = self.bias + change[..., 3:]
-        # Joseph's form keeps the covariance symmetric and positive where rounding would not.
+        # Joseph's form keeps the covariance symmetric and positive in spite of rounding.
         kept = numpy.eye(6) - gain @ slope
-        gain_squared = gain @ gain.swapaxes(-1, -2)
-        self.covariance = kept @ self.covariance @ kept.swapaxes(-1, -2) + variance * gain_squared
+        kept_covariance = kept @ self.covariance @ kept.swapaxes(-1, -2)
+        self.covariance = kept_covariance + variance * gain @ gain.swapaxes(-1, -2)

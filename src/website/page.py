@@ -69,25 +69,36 @@ HIDDEN = '<svg class="outlines" width="0" height="0" style="position:absolute" a
 
 
 PLACED = re.compile(r'<use transform="translate\(([-.\d]+) ([-.\d]+)\)" href=')
+USE = re.compile(r'<use ([^>]*)href="#([^"]*)"([^>]*)/>')
 #: A name of a program within the text, and in the line that says how a function is called.
 LITERAL = re.compile(r'<code class="([^"]*)"><span class="pre">([^<]*)</span></code>')
 NAME = re.compile(r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>')
 
 
 def share_outlines(body):
-    """Move the outlines of letters from the drawings of a page into one table at its end, each of them once."""
+    """Move the outlines of letters from the drawings of a page into one table at its end, each of them once.
+
+    A blank between two words has no outline: it goes, with every place where it stands.
+    """
     numbers = {}
 
     def share(drawing):
-        names = {}
+        names, blanks = {}, set()
 
         def take(definitions):
             for before, name, after in OUTLINE.findall(definitions[1]):
-                names[name] = f"o{numbers.setdefault((before + after).strip(), len(numbers))}"
+                if re.search(r'\bd="[^"]', before + after):
+                    names[name] = f"o{numbers.setdefault((before + after).strip(), len(numbers))}"
+                else:
+                    blanks.add(name)
             return ""
 
-        text = PLACED.sub(r'<use x="\1" y="\2" href=', DEFINITIONS.sub(take, drawing[0].replace(" />", "/>")))
-        return re.sub(r'href="#([^"]*)"', lambda link: f'href="#{names.get(link[1], link[1])}"', text)
+        def place(use):
+            before, name, after = use.groups()
+            return "" if name in blanks else f'<use {before}href="#{names.get(name, name)}"{after}/>'
+
+        text = DEFINITIONS.sub(take, drawing[0].replace(" />", "/>"))
+        return USE.sub(place, PLACED.sub(r'<use x="\1" y="\2" href=', text))
 
     body = re.sub(r"<svg\b.*?</svg>", share, body, flags=re.DOTALL)
     table = "".join(f'<path id="o{number}" {outline}/>' for outline, number in numbers.items())
