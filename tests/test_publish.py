@@ -67,8 +67,7 @@ def test_index_names_every_term_symbol_and_function():
     assert sum(len(item.select("a")) > 1 for item in terms) > 0.8 * len(terms), "most terms are in a chapter"
     assert len(symbols) >= 8 and all(item.select_one(".katex") for item in symbols)
     names = {item.a.get_text() for item in functions}
-    reference = (HTML / "appendix" / "reference.html").read_text("utf8")
-    assert names >= {name for name in orientation.__all__ if f'id="orientation.{name}"' in reference}
+    assert names >= set(orientation.__all__), "each is in the reference"
     (slerp,) = [item for item in functions if item.a.get_text() == "interpolate_quaternions"]
     assert any("quaternions-in-full.html" in link["href"] for link in slerp.select("a"))
 

@@ -14,9 +14,10 @@ from sphinx.util.docutils import SphinxDirective
 
 from .publish import in_order
 
-GLOSSARY, NOTATION, REFERENCE = "appendix/glossary", "appendix/notation", "appendix/reference"
+GLOSSARY, NOTATION = "appendix/glossary", "appendix/notation"
+REFERENCE = ("appendix/reference", "appendix/reference-going-further")
 #: Pages that speak of everything.
-NOT_LISTED = (GLOSSARY, NOTATION, REFERENCE, "index")
+NOT_LISTED = (GLOSSARY, NOTATION, *REFERENCE, "index")
 MOST = 6  # pages of a term that is said and nowhere referred to
 
 
@@ -116,11 +117,11 @@ def terms(app):
 
 
 def functions(app):
-    """What the reference explains: functions, classes and such, by their short names, with their anchors."""
+    """What the reference explains: functions, classes and such, by their short names, with their pages and anchors."""
     return {
-        name.rpartition(".")[2]: entry.node_id
+        name.rpartition(".")[2]: (entry.docname, entry.node_id)
         for name, entry in app.env.domains["py"].objects.items()
-        if entry.docname == REFERENCE and entry.objtype in ("function", "class", "exception", "data")
+        if entry.docname in REFERENCE and entry.objtype in ("function", "class", "exception", "data")
     }
 
 
@@ -166,8 +167,8 @@ def fill(app, doctree, docname):
             for name, formula, section in symbols(app)
         ])  # fmt: skip
         part("Functions and classes", [
-            entry(app, docname, [nodes.literal("", name)], (REFERENCE, anchor), uses["name", name])
-            for name, anchor in sorted(functions(app).items(), key=lambda item: item[0].casefold())
+            entry(app, docname, [nodes.literal("", name)], place, uses["name", name])
+            for name, place in sorted(functions(app).items(), key=lambda item: item[0].casefold())
         ])  # fmt: skip
         stand_in.replace_self(made)
 
