@@ -80,7 +80,7 @@ def declared_strengths(sources):
     return json.loads(file.read_text("utf8")) if file.is_file() else {}
 
 
-def read_source(path, variant=0, edition=""):
+def read_source(path, variant=0, edition="", only=None):
     """Run a notebook with solutions and give its questions.
 
     Parameters
@@ -90,6 +90,8 @@ def read_source(path, variant=0, edition=""):
         For 0 all questions are given, in their first variant; for another number those that have that variant.
     edition : str
         Of a course: each edition draws afresh.
+    only : collection of str, optional
+        The questions that are wanted, without their pictures: cells that these do not need are not run.
 
     Raises
     ------
@@ -118,6 +120,8 @@ def read_source(path, variant=0, edition=""):
             raise author.AuthorError(f"{name}: there are two questions of this name.")
         if name.partition("/")[0] != path.stem:
             raise author.AuthorError(f"{name}: a question of this notebook is named '{path.stem}/...'.")
+        if only is not None and name not in only:
+            return
         if name not in rules:
             if not variant:
                 questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
@@ -129,15 +133,16 @@ def read_source(path, variant=0, edition=""):
                 "shown": {key: text for key, text in written(given[name]).items() if f"{{{{{key}}}}}" in texts[name]},
                 "given": {key: value for key, value in given[name].items() if _is_given(value)},
             } | ({"edition": edition} if edition else {})
-            if rules[name].picture:
+            if rules[name].picture and only is None:
                 drawing = rules[name].picture(given[name])
                 about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
             questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
 
     namespace = {"__name__": "__main__", "question": record_question, "draw": draw}
+    needed = range(len(notebook.cells)) if only is None else cells_needed(notebook, only)
     with _replaced(coursework, "check", record_check), _replaced(coursework, "me", lambda identity="": None):
         for number, cell in enumerate(notebook.cells):
-            if cell.cell_type != "code":
+            if cell.cell_type != "code" or number not in needed:
                 continue
             try:
                 value = _run(cell.source, namespace, f"{path.name}, cell {number}")
@@ -147,7 +152,7 @@ def read_source(path, variant=0, edition=""):
                 raise author.AuthorError(f"{path.name}, cell {number}: {type(error).__name__}: {error}") from error
             if "figure" in cell.metadata.get("tags", []):
                 figures[number] = value
-    unasked = sorted((set(answers) if not variant else set()) - set(questions))
+    unasked = sorted((set(answers) if not variant and only is None else set()) - set(questions))
     if unasked:
         raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
     variables = checked_names(notebook)
@@ -199,11 +204,83 @@ def _run(source, namespace, where):
     return None
 
 
+def cells_needed(notebook, names):
+    """The numbers of the code cells that some questions of a notebook need: by the names that cells bind and use.
+
+    What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than too few: which of
+    several values a name has when a function is called is not followed.
+    """
+    uses = {number: _Uses(cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"}
+    needed = {number for number, cell in uses.items() if cell.texts & set(names)}
+    while True:
+        # What a function uses it may use as late as it is called.
+        anywhere = set().union(*(uses[number].in_functions for number in needed))
+        wanted, before = set(anywhere), len(needed)
+        for number, cell in sorted(uses.items(), reverse=True):
+            if number in needed or cell.bound & wanted:
+                needed.add(number)
+                wanted |= cell.used
+        if len(needed) == before:
+            return needed
+
+
+class _Uses(ast.NodeVisitor):
+    """What a cell binds or may change, what it uses, at once or in its functions, and the texts in it."""
+
+    #: Functions that change nothing of what they are given.
+    HARMLESS = ("check", "question", "draw", "print", "display")
+
+    def __init__(self, source):
+        self.bound, self.used, self.in_functions, self.texts = set(), set(), set(), set()
+        self.depth = 0
+        self.visit(ast.parse(source))
+
+    def visit_Name(self, node):
+        if isinstance(node.ctx, ast.Load):
+            self.used.add(node.id)
+            if self.depth:
+                self.in_functions.add(node.id)
+        else:
+            self.bound.add(node.id)
+
+    def visit_Constant(self, node):
+        if isinstance(node.value, str):
+            self.texts.add(node.value)
+
+    def visit_alias(self, node):
+        self.bound.add((node.asname or node.name).partition(".")[0])
+
+    def visit_FunctionDef(self, node):
+        if hasattr(node, "name"):
+            self.bound.add(node.name)
+        self.depth += 1
+        self.generic_visit(node)
+        self.depth -= 1
+
+    visit_AsyncFunctionDef = visit_ClassDef = visit_Lambda = visit_FunctionDef
+
+    def visit_Expr(self, node):
+        if isinstance(node.value, ast.Call) and getattr(node.value.func, "id", "") not in self.HARMLESS:
+            self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+        self.generic_visit(node)
+
+    def visit_Attribute(self, node):
+        self._change(node)
+
+    def visit_Subscript(self, node):
+        self._change(node)
+
+    def _change(self, node):
+        if not isinstance(node.ctx, ast.Load):
+            self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+        self.generic_visit(node)
+
+
 def checked_names(notebook):
     """The name of the answer of each question, from the calls of ``check``."""
     found = {}
     for cell in notebook.cells:
-        if cell.cell_type == "code":
+        if cell.cell_type == "code" and "check" in cell.source:
             for node in ast.walk(ast.parse(cell.source)):
                 if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
                     name, answer = node.args

@@ -6,6 +6,7 @@ run that finds a record with the right key leaves it alone, so a run that was ki
 """
 
 import base64
+import contextlib
 import hashlib
 import json
 import platform
@@ -421,11 +422,13 @@ MARKING_ENDED = "The process that ran and judged it ended again and again."
 
 def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
     """Run and judge on this machine: each process has a sandbox, and does one student's work after another."""
-    from .sandbox import Sandbox, WeakIsolation, WorkerDied, given_up
+    from .sandbox import Sandbox, WeakIsolation, WorkerDied, copies_are_apart, given_up
+
+    first = None
 
     def prepare(stack):
         store.in_copy_of_process()
-        sandbox = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation))
+        sandbox = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation, like=first))
 
         def run(job):
             try:
@@ -436,13 +439,16 @@ def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
         return lambda order: finish(order, [run(job) for job in jobs.of(order)])
 
     number = len(jobs.work)
-    return side_by_side(
-        range(number),
-        min(workers, number),
-        prepare,
-        (WeakIsolation, WorkerDied, intake.Unfit),
-        lambda order: finish(order, jobs.given_up(order, MARKING_ENDED)),
-    )
+    with contextlib.ExitStack() as stack:
+        if number and copies_are_apart():
+            first = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation))
+        yield from side_by_side(
+            range(number),
+            min(workers, number),
+            prepare,
+            (WeakIsolation, WorkerDied, intake.Unfit),
+            lambda order: finish(order, jobs.given_up(order, MARKING_ENDED)),
+        )
 
 
 def _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store):

@@ -181,6 +181,11 @@ def unshare_all():
         raise IsolationError(error.errno, f"user namespace: {error.strerror}") from None
 
 
+def unshare_processes():
+    """Have the process that is forked next be the first of a namespace in which only those below it are seen."""
+    _call("unshare", _library.unshare(CLONE_NEWPID))
+
+
 def enter_own_root(readable):
     """Change to a root folder that holds `readable`, a few devices and a scratch folder, and is read only."""
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))

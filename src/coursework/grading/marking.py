@@ -29,6 +29,8 @@ NEARLY = MP.mpf("1.5e-3")
 #: The share of the points of an answer that was reached with help, where its author names none, until a sibling of
 #: the question is solved without.
 WITH_HELP = 0.8
+#: Verdicts that are kept for those who hand in the same, at most.
+MOST_KEPT = 4096
 #: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
 CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
@@ -48,10 +50,12 @@ def names_asked(path):
 
 def questions_of(path, secret, edition=""):
     """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
-    source, declared = read_source(path, edition=edition), declared_strengths(Path(path).parent)
+    declared = declared_strengths(Path(path).parent)
+    source = read_source(path, edition=edition, only=list(names_asked(path)))
     found = {name: about(question, secret, declared.get(name)) for name, question in source.questions.items()}
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
-        for name, question in read_source(path, number, edition).questions.items():
+        having = [name for name, rule in source.rules.items() if number < rule.count]
+        for name, question in read_source(path, number, edition, having).questions.items():
             found[name].setdefault("others", []).append(about(question, secret, declared.get(name)))
     return found
 
@@ -205,6 +209,19 @@ def mark(name, question, answer, finished=True, limited=False):
         question, ``group``, which identical answers have in common, and ``guessable``, after how many tries a
         script finds the right answer, or ``None``.
     """
+    # Many hand in the same. What is judged follows from the version of the question and from these texts alone.
+    known = name, question["version"], len(question.get("siblings", [])), json.dumps(answer), finished, limited
+    if known not in _marked:
+        if len(_marked) >= MOST_KEPT:
+            _marked.clear()
+        _marked[known] = _mark(name, question, answer, finished, limited)
+    return dict(_marked[known])
+
+
+_marked = {}
+
+
+def _mark(name, question, answer, finished, limited):
     reply, text = judge(name, question, answer, finished, limited)
     if reply.outcome == "wrong" and any(
         judge(name, other, answer)[0].outcome == "correct" for other in question.get("siblings", [])

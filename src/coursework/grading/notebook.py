@@ -21,6 +21,7 @@ arguments of the secret calls: what knows them then can hand in no answer any mo
 
 import ast
 import base64
+import contextlib
 import inspect
 import json
 import os
@@ -45,7 +46,9 @@ MOST_TRIED = 10  # hints of one notebook
 MAGICS_WITH_CODE = ("time", "capture", "prun")
 
 
+OURS = []  # the modules of this package, which a notebook is to find none of
 AWAIT = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
+PROMPT = "In ["  # pasted with its prompt a line may pass for an annotation
 TICK = 0.5  # seconds by the clock between two looks at whether a step waits
 #: Less of a tick than this share is spent by what waits, and more by what is kept waiting by a busy machine.
 WAITING = 0.02
@@ -142,6 +145,8 @@ def warm_up():
     import sympy
 
     to_plain(sympy.Matrix([[sympy.cos(sympy.Symbol("a")), 0.5]]))
+    # A child that looked through all modules itself would get a copy of every page that one of their names is on.
+    OURS[:] = [name for name in sys.modules if name.partition(".")[0] == "coursework"]
 
 
 def transformer():
@@ -232,8 +237,8 @@ class _Notebook:
         sys.modules["__main__"] = self.module
         shell = Shell(self.execute)
         self.names.update(get_ipython=lambda: shell, display=nothing, In=[], Out={})
-        for name in [name for name in sys.modules if name.partition(".")[0] == "coursework"]:
-            del sys.modules[name]
+        for name in OURS:
+            sys.modules.pop(name, None)
         package = types.ModuleType("coursework")
         package.check = self.check
         package.hint = package.progress = package.me = package.worked_solution = nothing
@@ -254,7 +259,7 @@ class _Notebook:
     def execute(self, source):
         """Run source as a notebook's cell is run; the value of its last line becomes ``_`` and ``Out[number]``."""
         name = f"<cell {self.cell}>"
-        tree = ast.parse(self.transformer.transform_cell(source), name)
+        tree = self.parsed(source, name)
         last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
         self.evaluate(compile(tree, name, "exec", AWAIT, dont_inherit=True))
         # What ends in a semicolon is shown neither, and is a value all the same.
@@ -262,6 +267,13 @@ class _Notebook:
             value = self.evaluate(compile(ast.Expression(last.value), name, "eval", AWAIT, dont_inherit=True))
             if value is not None:
                 self.keep(value)
+
+    def parsed(self, source, name):
+        """The syntax tree of a cell. What is Python as it stands has no magics, and is not searched for them."""
+        if PROMPT not in source:
+            with contextlib.suppress(SyntaxError, ValueError):
+                return ast.parse(source, name)
+        return ast.parse(self.transformer.transform_cell(source), name)
 
     def evaluate(self, code):
         """Run code, to the end of what it awaits if it awaits something."""

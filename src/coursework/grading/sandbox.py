@@ -26,6 +26,7 @@ import select
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -42,6 +43,7 @@ WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
 OUTSIDE = "outside"  # the folder of the file that the isolation is tried on
 DEEPEST_STEPS = 10
 MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
+SIZE_OF_CREDENTIALS = struct.calcsize("3i")
 ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
 
 
@@ -101,6 +103,8 @@ class Sandbox:
         Layers to leave out, of :data:`coursework.grading.isolation.LAYERS`; then the isolation is weak.
     namespaces_by : collection of str
         Which makers of namespaces to try, in order.
+    like : Sandbox, optional
+        One that runs no notebooks: this one gets a copy of its warm parent, if that can be copied.
 
     Raises
     ------
@@ -108,7 +112,15 @@ class Sandbox:
         The layers in force do not stop every attempt.
     """
 
-    def __init__(self, limits=None, *, allow_weak_isolation=False, without=(), namespaces_by=("bubblewrap", "unshare")):
+    def __init__(
+        self,
+        limits=None,
+        *,
+        allow_weak_isolation=False,
+        without=(),
+        namespaces_by=("bubblewrap", "unshare"),
+        like=None,
+    ):
         unknown = set(without) - set(LAYERS)
         if unknown:
             raise ValueError(f"there are no layers {sorted(unknown)}; the layers are {', '.join(LAYERS)}")
@@ -118,7 +130,9 @@ class Sandbox:
         self.allow_weak_isolation = allow_weak_isolation
         self.without = frozenset(without)
         self.namespaces_by = () if NAMESPACES in self.without else tuple(namespaces_by)
+        self.like = like
         self.process = None
+        self.warm_parent = None  # its number
         self.control = None
         self.errors = None
         self.base = None
@@ -139,7 +153,7 @@ class Sandbox:
             with contextlib.ExitStack() as stack:
                 target = self.target(stack)
                 why_not = "switched off"
-                for made_by in (*self.namespaces_by, None):
+                for made_by in (*self.namespaces_by, None) if not self.copied(target) else ():
                     bubblewrap = shutil.which("bwrap")
                     if made_by == "bubblewrap" and bubblewrap is None:
                         why_not = "bubblewrap is not installed"
@@ -171,6 +185,32 @@ class Sandbox:
                 + "\nTo run it all the same, on a machine that you can afford to lose, say "
                 "--allow-weak-isolation; every result will record it."
             )
+
+    def copied(self, target):
+        """Have the warm parent of another sandbox copied, and the copy tried; whether it serves."""
+        if self.like is None or not self.like.report["scratch in memory"]:
+            return False
+        self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
+        self.base = tempfile.mkdtemp(prefix="coursework-")
+        about = {"user": new_user(), "target": target | {"files": [self.file_outside()]}}
+        try:
+            with other:
+                socket.send_fds(self.like.control, [json.dumps({"copy": about}).encode()], [other.fileno()])
+            waiting = select.poll()
+            waiting.register(self.control, select.POLLIN)
+            if not waiting.poll(WAIT_FOR_START * 1000):
+                raise WorkerDied("a copy of the warm parent said nothing")
+            data, ancillary, _, _ = self.control.recvmsg(1 << 20, socket.CMSG_SPACE(SIZE_OF_CREDENTIALS))
+            self.report = json.loads(data)["ready"]
+            # The kernel says who speaks, by the number that the process has here.
+            (credentials,) = (value for _, kind, value in ancillary if kind == socket.SCM_CREDENTIALS)
+            self.warm_parent = struct.unpack("3i", credentials)[0]
+        except (OSError, ValueError, WorkerDied):
+            self.close()
+            return False
+        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 0)
+        return True
 
     def target(self, stack):
         """What the isolation is tried on: two ports and a local socket of our own, and later a file."""
@@ -254,8 +294,7 @@ class Sandbox:
             "base": self.base,
             "namespaces made by": made_by,
             "why no namespaces": why_not,
-            # Root gives the code to a user that nobody else is; its limit of threads counts only these.
-            "user": 1_900_000_000 + random.SystemRandom().randrange(10**8),
+            "user": new_user(),
             "threads in use": 0 if os.geteuid() == 0 else threads_of(os.geteuid()),
         }
         self.send({"start": start})
@@ -264,12 +303,14 @@ class Sandbox:
         except WorkerDied:
             self.process.wait(WAIT_FOR_END)
             raise WorkerDied(self.last_error()) from None
+        self.warm_parent = self.process.pid
         return message["ready"]
 
     def last_error(self):
         """The last line that the warm parent, never a student, wrote on its error stream."""
-        self.errors.seek(0)
-        lines = self.errors.read().decode(errors="replace").strip().splitlines()
+        errors = self.errors or self.like.errors
+        errors.seek(0)
+        lines = errors.read().decode(errors="replace").strip().splitlines()
         return lines[-1][:500] if lines else "the warm parent ended without a word"
 
     def send(self, message, handles=()):
@@ -301,9 +342,11 @@ class Sandbox:
             except subprocess.TimeoutExpired:
                 self.process.kill()
                 self.process.wait()
+        elif self.warm_parent is not None:
+            end_copy(self.warm_parent)
         if self.errors is not None:
             self.errors.close()
-        self.control = self.process = self.errors = None
+        self.control = self.process = self.warm_parent = self.errors = None
         self.remove_base()
 
     def remove_base(self):
@@ -318,7 +361,7 @@ class Sandbox:
         """Run one notebook; give its result. A worker that dies is replaced, and the job tried again."""
         for _ in range(ATTEMPTS_OF_A_JOB):
             try:
-                if self.process is None:
+                if self.control is None:
                     self.start()
                 return _Run(self, job).result()
             except WorkerDied:
@@ -547,7 +590,7 @@ class _Once:
     def give_back(self):
         """Put all deadlines off by the time in which the machine was busy with others; whether there was any."""
         if self.process is None:
-            self.process = running_below(self.sandbox.process.pid)
+            self.process = running_below(self.sandbox.warm_parent)
         waited = kept_waiting(self.process) - self.kept_waiting
         if waited < 0.01:
             return False
@@ -655,6 +698,29 @@ def given_up(job, why):
     }
 
 
+def copies_are_apart():
+    """Whether copies of a warm parent are as much apart as warm parents that are started one by one.
+
+    They share its user namespace. There the threads of an ordinary user are counted together, and one notebook could
+    take another's; root gives each copy a user of its own.
+    """
+    return os.geteuid() == 0
+
+
+def new_user():
+    """A user that nobody else is: root gives the code to it, and its limit of threads counts only these."""
+    return 1_900_000_000 + random.SystemRandom().randrange(10**8)
+
+
+def end_copy(process):
+    """Wait until the copy of a warm parent has ended, of which the other end of its control is closed."""
+    with contextlib.suppress(OSError):  # it has ended
+        handle = os.pidfd_open(process)
+        with open(handle, "rb"):
+            if not select.select([handle], [], [], 5)[0]:
+                signal.pidfd_send_signal(handle, signal.SIGKILL)
+
+
 def running_below(process):
     """The number of the last process below another: a notebook's, which has none below itself; ``None`` if hidden."""
     with contextlib.suppress(OSError, ValueError, IndexError):
@@ -715,7 +781,11 @@ def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, w
         Before any student code is run.
     """
 
-    def prepare(stack):
-        return stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without)).run
+    options = {"allow_weak_isolation": allow_weak_isolation, "without": without}
+    with contextlib.ExitStack() as outer:
+        first = outer.enter_context(Sandbox(limits, **options)) if copies_are_apart() else None
 
-    yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))
+        def prepare(stack):
+            return stack.enter_context(Sandbox(limits, **options, like=first)).run
+
+        yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))

@@ -11,6 +11,10 @@ It speaks with the process that started it in JSON, one message each:
     in   {"run": {"limits": {...}}}            with three handles: the job, where records go, and the secret calls
     out  {"ended": {"signal": n} or {"code": n}, "scratch full": bool}
     in   {"kill": true}                        while a notebook runs
+    in   {"copy": {...}}                       with one handle: a copy of this process says "ready" there, and serves
+
+The libraries take most of a second to load, so where several notebooks run at a time one warm parent loads them and
+is copied. One that is copied runs no notebook itself.
 """
 
 import contextlib
@@ -95,7 +99,6 @@ def load_libraries():
     sympy.simplify(sympy.trigsimp(other.dcm(one) * other.dcm(one).T))
     sympy.lambdify(angle, sympy.sin(angle), "numpy")(numpy.zeros(1))
     notebook.warm_up()
-    sympy.core.cache.clear_cache()
 
 
 def about_itself(processes, name):
@@ -233,33 +236,43 @@ class WarmParent:
 
     def report(self):
         """Try every layer alone, then all that are in force together."""
-        # Namespaces hide the file that it is tried on from all; the other layers get one within.
-        outside = os.path.join(self.base, "inside namespaces")
-        os.mkdir(outside, 0o777)
-        own = os.path.join(outside, "file")
-        Path(own).write_text("a file outside")
-        os.chmod(own, 0o666)
-        os.chmod(outside, 0o777)
         self.target["threads in use"] = self.threads_in_use
-        everywhere = self.target | {"files": [*self.target["files"], own]}
-        layers = {}
-        for layer in LAYERS:
-            why_not = self.why_not(layer, self.target if layer == NAMESPACES else everywhere)
-            layers[layer] = {"in force": why_not is None, "why not": why_not or ""}
-            if why_not is None:
-                self.layers.append(layer)
-        layers[NAMESPACES]["made by"] = self.made_by if layers[NAMESPACES]["in force"] else ""
-        try:
-            not_stopped = self.tried(self.layers, None, everywhere)
-        except IsolationError as error:
-            not_stopped = [f"the layers do not work together: {error}"]
-        scratch.remove_folder(outside)
-        return {
+        with self.file_within() as own:
+            everywhere = self.target | {"files": [*self.target["files"], own]}
+            layers = {}
+            for layer in LAYERS:
+                why_not = self.why_not(layer, self.target if layer == NAMESPACES else everywhere)
+                layers[layer] = {"in force": why_not is None, "why not": why_not or ""}
+                if why_not is None:
+                    self.layers.append(layer)
+            layers[NAMESPACES]["made by"] = self.made_by if layers[NAMESPACES]["in force"] else ""
+            not_stopped = self.not_stopped(everywhere)
+        self.said = {
             "layers": layers,
             "not stopped": not_stopped,
             "landlock version": isolation.landlock_version(),
             "scratch in memory": self.own_scratch,
         }
+        return self.said
+
+    @contextlib.contextmanager
+    def file_within(self):
+        """A file that everybody may change. Namespaces hide the other one that it is tried on from all layers."""
+        outside = os.path.join(self.base, f"inside namespaces, {self.user}")
+        os.mkdir(outside, 0o777)
+        own = os.path.join(outside, "file")
+        Path(own).write_text("a file outside")
+        os.chmod(own, 0o666)
+        os.chmod(outside, 0o777)
+        yield own
+        scratch.remove_folder(outside)
+
+    def not_stopped(self, target):
+        """What the layers in force do not stop together."""
+        try:
+            return self.tried(self.layers, None, target)
+        except IsolationError as error:
+            return [f"the layers do not work together: {error}"]
 
     def why_not(self, layer, target):
         if layer in self.off:
@@ -284,9 +297,43 @@ class WarmParent:
             message, handles = receive(self.control)
             if message is None:
                 return
+            if "copy" in message:
+                self.copy(message["copy"], *handles)
+                continue
             if "run" not in message:
                 continue  # a late "kill": what it was meant for has ended
             send(self.control, self.run(message["run"], handles))
+
+    def copy(self, about, handle):
+        """Have a copy of this process serve at another handle, as the first process of a namespace of its own."""
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:  # copies that have ended
+                pass
+        if os.fork() == 0:
+            with contextlib.suppress(Exception):
+                self.be_copy(about, handle)
+            os._exit(0)
+        os.close(handle)
+
+    def be_copy(self, about, handle):
+        isolation.die_with_parent()
+        self.control.close()
+        self.control = socket.socket(fileno=handle)
+        isolation.unshare_processes()
+        inner = os.fork()
+        if inner:
+            self.control.close()
+            os.waitpid(inner, 0)
+            return
+        isolation.die_with_parent()
+        self.user, self.target = about["user"], about["target"] | {"threads in use": self.threads_in_use}
+        with self.file_within() as own:
+            not_stopped = self.not_stopped(self.target | {"files": [*self.target["files"], own]})
+        gc.collect()
+        gc.freeze()
+        with contextlib.suppress(ConnectionError):
+            send(self.control, {"ready": self.said | {"not stopped": not_stopped}})
+            self.serve()
 
     def run(self, run, handles):
         folder = self.new_scratch(self.layers)
