@@ -131,9 +131,10 @@ def of_cells(paths):
     """
     code = (
         "import contextlib, io, json, os, sys, time, types, warnings\n"
-        "import numpy, orientation, sympy, sympy.physics.mechanics\n"
+        "import coursework, numpy, orientation, sympy, sympy.physics.mechanics\n"
         'warnings.simplefilter("ignore")\n'
-        'sys.modules["coursework"] = types.SimpleNamespace(check=lambda *answers: None)\n'
+        "known = dict(vars(coursework), check=lambda *answers: None)\n"
+        'sys.modules["coursework"] = types.SimpleNamespace(**known)\n'
         "def run(cells):\n"
         '    names = {"__name__": "__main__"}\n'
         "    for cell in cells:\n"
@@ -154,7 +155,11 @@ def of_cells(paths):
         "print(*total)\n"
     )
     said = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", code, *map(str, paths)], check=True, capture_output=True, text=True
+        [sys.executable, "-W", "ignore", "-c", code, *map(str, paths)],
+        check=True,
+        capture_output=True,
+        text=True,
+        cwd=paths[0].parent,  # where it is kept who works here
     )
     return len(paths), *map(float, said.stdout.split())
 

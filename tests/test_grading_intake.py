@@ -194,6 +194,95 @@ def test_two_that_claim_one_identity_are_a_question(box, names):
     assert all("claim to be this student's" in refused[name] for name in names) and len(found) == 1
 
 
+#: Names as the systems themselves write them, each from the source of the system or from what was downloaded of it.
+DOWNLOADED = {
+    # Canvas: `get_filename` and `add_upload_submission` in lib/content_zipper.rb of instructure/canvas-lms. The name
+    # to sort by in small letters without signs, LATE, the number of the student, that of the file.
+    "doejohn_340934_208490284_BobsWork.ipynb": ("doejohn_340934", "", False),  # README of mikewesthad/canvas-unzipper
+    "doejane_LATE_334244_394803489_MyAssignment-1.ipynb": ("doejane_334244", "", True),
+    "m\xfcllerj\xf6rg_101_5_01_turns.ipynb": ("m\xfcllerj\xf6rg_101", "", False),
+    "doejane_marie_102_6_turns.ipynb": ("doejane_marie_102", "", False),
+    "anon_aB3dE_501_turns.ipynb": ("anonymous_aB3dE", "", False),
+    "LATE_anon_xY4zF_502_turns.ipynb": ("anonymous_xY4zF", "", True),
+    # Moodle: `download_submissions` in mod/assign/locallib.php of moodle/moodle, in folders and flat, with groups, and
+    # with names hidden in several languages.
+    "THIRD STUDENT NAME_10019166_assignsubmission_file_/JURNAL1.ipynb": ("THIRD STUDENT NAME 10019166", "", False),
+    "Vorname Nachname_1327627_assignsubmission_file_/turns.ipynb": ("Vorname Nachname 1327627", "", False),
+    "Double-Name Student_657693_assignsubmission_file_turns.ipynb": ("Double-Name Student 657693", "", False),
+    "Default group-Jane Doe_77_assignsubmission_file_/turns.ipynb": ("Default group-Jane Doe 77", "", False),
+    "Participant_1234_assignsubmission_file_/turns.ipynb": ("Participant 1234", "", False),
+    "Teilnehmerin_1235_assignsubmission_file_/turns.ipynb": ("Teilnehmerin 1235", "", False),
+    # Brightspace: downloads that several graders' own tools describe, with the folder around them or without it.
+    "152711-351765 - Some Student - May 18, 2025 1224 PM/turns.ipynb": (
+        "Some Student 152711", "2025-05-18T12:24:00", False),
+    "39786-640693 - Another Student - Oct 10, 2025 1022 AM/turns.ipynb": (
+        "Another Student 39786", "2025-10-10T10:22:00", False),
+    # Blackboard: README of kwurst/bb-file-cleanup and of others; the name of an assignment may hold blanks and signs.
+    "Project 3  Reverse Engineering_abc0124_attempt_2015-04-23-17-56-20_abc0124-P3.ipynb": (
+        "abc0124", "2015-04-23T17:56:20", False),
+    "Project 3  Reverse Engineering_abc0123_attempt_2015-02-12-21-30-34_Assignment_1.ipynb": (
+        "abc0123", "2015-02-12T21:30:34", False),
+    # Gradescope: the archive of all submissions, whose table says whose each is.
+    "assignment_9100_export/submission_41/turns.ipynb": ("100", "2026-11-21T20:01:00.500000+00:00", False),
+    "assignment_9100_export/submission_42/turns.ipynb": ("bob@uni.example", "", False),
+}  # fmt: skip
+GRADESCOPE = """---
+submission_41:
+  :submitters:
+  - :name: Solo Student
+    :sid: '100'
+    :email: solo@uni.example
+  :created_at: 2026-11-21 20:01:00.500000000 Z
+  :score: 0.0
+submission_42:
+  :submitters:
+  - :name: Bob
+    :email: bob@uni.example
+submission_43:
+  :submitters:
+  - :name: Pair One
+    :sid: '200'
+  - :name: Pair Two
+    :sid: '201'
+"""
+
+
+@pytest.mark.parametrize("around", ["", "Programming Exam 1/"])
+def test_names_as_the_systems_write_them(tmp_path, around):
+    systems = ("_attempt_", "assignsubmission", " - ", "export/")
+    groups = {}
+    for name, known in DOWNLOADED.items():
+        groups.setdefault(next((sign for sign in systems if sign in name), "canvas"), {})[name] = known
+    assert len(groups) == 5
+    for sign, names in groups.items():
+        box = tmp_path / f"{len(sign)}.zip"
+        with zipfile.ZipFile(box, "w") as opened:
+            for name in names:
+                opened.writestr((around if sign != "export/" else "") + name, GOOD)
+            if sign == "export/":
+                opened.writestr("assignment_9100_export/submission_metadata.yml", GRADESCOPE)
+                opened.writestr("assignment_9100_export/submission_43/turns.ipynb", GOOD)
+                opened.writestr("assignment_9100_export/submission_41/submission_metadata.yml", GRADESCOPE[::-1])
+        notebooks, refused = intake.take_in(box, ["turns"])
+        found = {one.file.removeprefix(around): (one.student, one.claim.handed_in, one.late) for one in notebooks}
+        assert found == names
+        # What a group handed in is a question, and so is what only looks like the system's table.
+        unknown = {one.file for one in refused}
+        assert unknown == ({"assignment_9100_export/submission_43/turns.ipynb"} if sign == "export/" else set())
+
+
+def test_a_name_that_ends_in_a_number_takes_no_classmates(box, tmp_path):
+    """Canvas lets some people choose a name, and joins it to their number by the sign that a name may hold."""
+    (tmp_path / "book.csv").write_text(
+        'Student,ID,SIS User ID,SIS Login ID,Section,T\n"bob_202",101,,jane,1,\n"Smith, Bob",202,,bob,1,\n'
+        '"Doe, Eve",303,,eve,1,\n'
+    )
+    roster = Roster(tmp_path / "book.csv")
+    mine, other, plain = "bob_202_101_5_turns.ipynb", "eve_doe_202_303_6_turns.ipynb", "smithbob_202_7_01_turns.ipynb"
+    found, refused = named(mine, other, plain, path=box, roster=roster)
+    assert found == {mine: "jane", plain: "bob"} and list(refused) == [other]
+
+
 def test_a_folder_around_everything_is_no_student(box):
     found, _ = named("homework/jane/turns.ipynb", "homework/bob/turns.ipynb", path=box)
     assert sorted(found.values()) == ["bob", "jane"]
@@ -222,7 +311,7 @@ def test_github_classroom(tmp_path):
 
 
 def test_anonymous_exports_and_archives_within(box):
-    found, refused = named("anon_aB3dE_501_turns.ipynb", "anon_LATE1_LATE_502_turns.ipynb", path=box)
+    found, refused = named("anon_aB3dE_501_turns.ipynb", "LATE_anon_LATE1_502_turns.ipynb", path=box)
     assert sorted(found.values()) == ["anonymous_LATE1", "anonymous_aB3dE"]
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as inner:

@@ -3,12 +3,15 @@
 import contextlib
 import json
 import random
+from types import SimpleNamespace
 
 import pytest
 import sympy as sm
 from grading_class import write_sources
 
+from coursework.authoring.course import find_course
 from coursework.authoring.release import read_source
+from coursework.authoring.source import cells_needed
 from coursework.checking.evaluate import MOST_WORK, TooLarge, values
 from coursework.checking.mistakes import MESSAGES
 from coursework.checking.plain import MOST_NODES, NotPlain, read_plain, to_plain
@@ -16,6 +19,10 @@ from coursework.checking.points import points
 from coursework.checking.questions import compare, judge
 from coursework.grading import marking, reports, secret
 from coursework.grading.marking import CUT_SHORT, mark, questions_of
+
+SOURCES = find_course().sources
+SLICED = ("simple-orientations",)
+OTHERS = [path for path in sorted(SOURCES.glob("*.ipynb")) if path.stem not in (*SLICED, "chapters")]
 
 
 @pytest.fixture(scope="module")
@@ -163,6 +170,59 @@ def test_secret_calls_are_like_the_authors(questions):
         assert times == sorted(times) and times[0] == 0
 
 
+CELLS = (
+    "import sympy as sm\na, b = sm.symbols('a b')\nslow = []",
+    "turned = [1]\ndef size():\n    return later",
+    "given = draw('levers/one', arm=[2, 3, 4])",
+    "slow.append(1)\nunused = sm.simplify(a)",
+    "later = given.arm\nturned.append(2)",
+    "one = size()*a + turned[1]",
+    "check('levers/one', one)\nquestion('levers/one', kind='expression', symbols='a')",
+    "two = b*len(slow)",
+    "check('levers/two', two)\nquestion('levers/two', kind='expression', symbols='b')",
+)
+
+
+def test_the_cells_that_a_question_needs_are_found():
+    cells = [SimpleNamespace(cell_type="code", source=source) for source in CELLS]
+    notebook = SimpleNamespace(cells=[*cells, SimpleNamespace(cell_type="markdown", source="levers/one")])
+    assert cells_needed(notebook, ["levers/one"]) == {0, 1, 2, 4, 5, 6}
+    assert cells_needed(notebook, ["levers/two"]) == {0, 3, 7, 8}
+    assert cells_needed(notebook, []) == set()
+
+
+@pytest.mark.parametrize("name", [*SLICED, *(pytest.param(path.stem, marks=pytest.mark.long) for path in OTHERS)])
+def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name):
+    path = SOURCES / f"{name}.ipynb"
+    rules = read_source(path).rules
+    for number in range(1, max((rule.count for rule in rules.values()), default=1)):
+        having = [question for question, rule in rules.items() if number < rule.count]
+        whole, part = read_source(path, number).questions, read_source(path, number, only=having).questions
+        assert list(whole) == list(part)
+        for one, other in zip(whole.values(), part.values(), strict=True):
+            assert {**one.public, "picture": None} == {**other.public, "picture": None}
+            assert (one.plain, one.entries, one.near, one.credit) == (
+                other.plain,
+                other.entries,
+                other.near,
+                other.credit,
+            )
+
+
+def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, monkeypatch):
+    monkeypatch.setattr(marking, "_marked", {})
+    judged = []
+    whole = marking.judge
+    monkeypatch.setattr(marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest))
+    first, again = (mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) for _ in range(2))
+    assert first == again and judged == ["turns/about-x"]
+    again["outcome"] = "decided"  # what a person decides on one is the others' not
+    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) == first
+    changed = {**questions["turns/about-x"], "version": "another", "worth": 7}
+    assert mark("turns/about-x", changed, given(A_C_N))["points"] == 7
+    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N.T))["outcome"] == "wrong"
+
+
 def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
     compared = 0
     for path in sorted(solutions.glob("*.ipynb")):
@@ -230,6 +290,7 @@ def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
     def fail(*arguments):
         raise ZeroDivisionError
 
+    monkeypatch.setattr(marking, "_marked", {})
     monkeypatch.setattr(marking, "compare", fail)
     found = mark("turns/about-x", questions["turns/about-x"], given(A_C_N))
     assert (found["outcome"], found["note"], found["points"]) == ("undecided", "not worked out", 0)

@@ -6,10 +6,12 @@ import errno
 import json
 import os
 import shutil
+import signal
 import struct
 import subprocess
 import sys
 
+import psutil
 import pytest
 
 from coursework.grading import isolation, scratch, system_calls
@@ -67,6 +69,31 @@ def test_a_process_that_cannot_be_confined_runs_nothing():
         sandbox.limits = Limits(open_files=-5)
         with pytest.raises(WeakIsolation, match="could not be confined"):
             sandbox.run(HONEST)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="an ordinary user's warm parents are started one by one")
+def test_copies_of_a_warm_parent_are_as_much_apart_as_those_that_are_started():
+    cell = {
+        "source": "import os\nmine = [os.getuid(), os.getpid()]\nopen('kept', 'x').close()",
+        "execution_count": None,
+    }
+    job = {"id": "one", "cells": [cell], "questions": {"mine": {"variable": "mine"}}, "seed": 0}
+
+    def who(sandbox):
+        result = sandbox.run(job)
+        assert result["finished"] and result["isolation"] == alone.isolation_in_force()
+        return result["answers"]["mine"]["plain"]["nodes"]
+
+    with Sandbox() as alone, Sandbox() as first, Sandbox(like=first) as one, Sandbox(like=first) as other:
+        assert one.process is None and one.warm_parent != other.warm_parent  # they are copies
+        assert one.report == other.report == first.report and not one.report["not stopped"]
+        assert len({str(who(sandbox)) for sandbox in (alone, one, other)}) == 3  # each is a user of its own
+        os.kill(one.warm_parent, signal.SIGKILL)
+        before = one.warm_parent
+        assert who(one) and one.process is None and one.warm_parent != before  # another copy took its place
+        first.close()
+        assert who(other) and other.process is not None  # without the first, one of its own
+    assert not any(psutil.pid_exists(sandbox) for sandbox in (before,))
 
 
 def test_a_layer_that_does_not_exist_is_an_error():

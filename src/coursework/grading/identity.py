@@ -14,9 +14,15 @@ from collections import Counter
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-# A system's own part of a name holds no underscore in a person's name: the first mark is its own.
-CANVAS = re.compile(r"(?P<name>[^_]+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
-CANVAS_ANONYMOUS = re.compile(r"anon_(?P<user>[A-Za-z0-9]{5})_(?P<late>LATE_)?(?P<submission>\d+)_(?P<file>.+)")
+# What a system writes of a person's name holds none of its own marks: the first one is its own. Moodle leaves no
+# underscore in a name, and Canvas none with a number between two of them.
+CANVAS = re.compile(r"(?P<name>.+?)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
+CANVAS_ANONYMOUS = re.compile(r"(?P<late>LATE_)?anon_(?P<user>[A-Za-z0-9]{5})_(?P<submission>\d+)_(?P<file>.+)")
+#: A name that ends in a number may be told from a file whose name begins with one only by who is in the course.
+CANVAS_NUMBERED = re.compile(r"(?P<name>.+?_\d+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
+GRADESCOPE = re.compile(r"submission_\d+")
+#: What Gradescope puts beside the submissions: whose each is.
+GRADESCOPE_TABLE = "submission_metadata.yml"
 MOODLE = re.compile(r"(?P<name>[^_]+)_(?P<user>\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<file>.*))?")
 BRIGHTSPACE = re.compile(
     r"(?P<user>\d+)-(?P<folder>\d+) - (?P<name>.+?) - (?P<when>\w{3,9} \d{1,2}, \d{4} \d{3,4} [AP]M)"
@@ -67,9 +73,18 @@ class Layout:
     """Tells from the names of all files how the submissions are laid out, and what each file's place claims.
 
     One layout holds for all: a student cannot choose another by a name inside the own folder.
+
+    Parameters
+    ----------
+    names : list of str
+        The paths of all files.
+    assignments, repositories : iterable of str
+    roster : Roster, optional
+    read : function, optional
+        Gives the bytes of a file of these names, for a system that says in a table whose is what.
     """
 
-    def __init__(self, names, assignments=(), repositories=(), roster=None):
+    def __init__(self, names, assignments=(), repositories=(), roster=None, read=None):
         self.assignments = sorted(assignments, key=len, reverse=True)
         self.roster = roster
         self.enclosing = ()
@@ -81,6 +96,11 @@ class Layout:
             (kind for kind, fits in SYSTEMS if 2 * sum(fits(parts) for parts in notebooks) > len(notebooks)), "own"
         )
         self.prefix = ""
+        table = "/".join([*self.enclosing, GRADESCOPE_TABLE])
+        if self.kind == "gradescope" and (read is None or table not in names):
+            self.kind = "own"
+        elif self.kind == "gradescope":
+            self.submitters = _submitters(read(table))
         if self.kind == "blackboard":
             # The assignment's name comes first, and is the same for all.
             self.prefix = _shared({BLACKBOARD.fullmatch(top)["who"] for top in tops if BLACKBOARD.fullmatch(top)}, "_")
@@ -122,9 +142,7 @@ class Layout:
     # -- the systems: a part of the name that does not fit claims nothing
 
     def _canvas(self, parts):
-        found = CANVAS_ANONYMOUS.fullmatch(parts[0])
-        kind = "canvas anonymous" if found else "canvas"
-        found = found or CANVAS.fullmatch(parts[0])
+        kind, found = self._read_as_canvas(parts[0])
         if not found:
             return None
         again = RESUBMITTED.fullmatch(PurePosixPath(found["file"]).stem)
@@ -140,6 +158,37 @@ class Layout:
             bool(found["late"]),
             True,
             reply=_before_the_file(found),
+        )
+
+    def _read_as_canvas(self, name):
+        """What Canvas wrote of a name; ``None`` where it may be read in two ways and the roster does not tell which."""
+        anonymous = CANVAS_ANONYMOUS.fullmatch(name)
+        if anonymous:
+            return "canvas anonymous", anonymous
+        readings = [found for found in (CANVAS.fullmatch(name), CANVAS_NUMBERED.fullmatch(name)) if found]
+        people = [self.roster and self.roster.find((("canvas", found["user"]),))[0] for found in readings]
+        if len(readings) == 2 and people[1] is not None:
+            readings = [
+                found
+                for found, student in zip(readings, people, strict=True)
+                if student is not None and self.roster.find((("letters", _clean(found["name"])),))[0] == student
+            ]
+            return ("canvas", readings[0]) if len(readings) == 1 else ("canvas", None)
+        return "canvas", readings[0] if readings else None
+
+    def _gradescope(self, parts):
+        known = self.submitters.get(parts[0])
+        if known is None:
+            return None
+        name, own, when = known
+        return Claim(
+            _clean(own or name),
+            (("own", own), ("name", name)),
+            f"gradescope {parts[0]}",
+            _inside(parts),
+            given_by_system=True,
+            handed_in=when,
+            reply=f"{parts[0]}/",
         )
 
     def _moodle(self, parts):
@@ -243,7 +292,29 @@ SYSTEMS = (
     ("moodle", _fits(MOODLE)),
     ("brightspace", _fits(BRIGHTSPACE, in_file=False)),
     ("blackboard", _fits(BLACKBOARD)),
+    ("gradescope", _fits(GRADESCOPE, in_file=False)),
 )
+
+
+def _submitters(data):
+    """The name, the number or address, and the time of each of Gradescope's submissions that one person handed in."""
+    import yaml
+
+    try:
+        listed = yaml.safe_load(data)
+    except (yaml.YAMLError, ValueError):
+        return {}
+    found = {}
+    for folder, about in listed.items() if isinstance(listed, dict) else ():
+        people = about.get(":submitters") if isinstance(about, dict) else None
+        # What a group handed in is nobody's alone: a person says whose it is.
+        if isinstance(people, list) and len(people) == 1 and isinstance(people[0], dict):
+            name, number, address = (str(people[0].get(f":{key}") or "") for key in ("name", "sid", "email"))
+            when = about.get(":created_at")
+            time = when.isoformat() if isinstance(when, datetime.datetime) else ""
+            if name or number or address:
+                found[str(folder)] = name, number or address, time
+    return found
 
 
 def _own(name):

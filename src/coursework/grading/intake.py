@@ -23,7 +23,7 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from .identity import Claim, Layout, looks_like
+from .identity import GRADESCOPE_TABLE, Claim, Layout, looks_like
 
 MOST_BYTES = 20 << 20  # of one notebook
 MOST_CELLS = 1_000
@@ -45,7 +45,7 @@ LITTER = (
     ".coursework",
     "__pycache__",
 )
-INDEXES = ("index.html", "timestamp.txt")  # what Brightspace and nbgrader put there
+INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)  # what Brightspace, nbgrader and Gradescope put there
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
 ABOUT_REPLY = re.compile(r'\bdata-(question|tries|help)="([^"]{1,200})"')
@@ -170,7 +170,8 @@ def take_in(path, assignments=(), roster=None, student=None):
             refused.append(Refused(name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."))
             break
         files.append((name, when, read))
-    layout = Layout([name for name, _, _ in files], assignments, repositories, roster)
+    contents = {name: read for name, _, read in files}
+    layout = Layout(list(contents), assignments, repositories, roster, lambda name: contents[name]())
     others = {}
     for name, when, read in files:
         if name.lower().endswith(".zip"):

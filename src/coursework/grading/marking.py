@@ -6,7 +6,10 @@ reached by the same functions. An answer that cannot be decided is put aside for
 as wrong; nothing is earned by default.
 """
 
+import contextlib
 import hashlib
+import importlib
+import io
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,6 +19,7 @@ from ..authoring.source import DECLARED, checked_names, declared_strengths, read
 from ..checking.evaluate import MP
 from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
 from ..checking.plain import NotPlain, read_plain
+from ..checking.plugins import packages
 from ..checking.questions import compare
 from ..checking.reply import HELP, Reply
 from ..checking.variants import siblings_of, variant_of
@@ -50,6 +54,11 @@ def names_asked(path):
 
 def questions_of(path, secret, edition=""):
     """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
+    with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
+        return _questions_of(path, secret, edition)
+
+
+def _questions_of(path, secret, edition):
     declared = declared_strengths(Path(path).parent)
     source = read_source(path, edition=edition, only=list(names_asked(path)))
     found = {name: about(question, secret, declared.get(name)) for name, question in source.questions.items()}
@@ -152,6 +161,8 @@ def load_questions(paths, kept, secret, edition=""):
     if len(missing) == 1:
         work_out(missing[0])
     else:
+        for module in ("nbformat", "sympy.physics.mechanics", *packages()) if missing else ():
+            importlib.import_module(module)  # once, and not in each process
         number = min(len(missing), processors())
         list(side_by_side(map(str, missing), number, lambda stack: lambda path: work_out(Path(path)), [AuthorError]))
     found = {}

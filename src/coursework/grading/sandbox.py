@@ -188,7 +188,7 @@ class Sandbox:
 
     def copied(self, target):
         """Have the warm parent of another sandbox copied, and the copy tried; whether it serves."""
-        if self.like is None or not self.like.report["scratch in memory"]:
+        if self.like is None or self.like.control is None or not self.like.report["scratch in memory"]:
             return False
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
