@@ -489,6 +489,26 @@ def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypa
     assert {row["student"] for row in rows_of(tmp_path / "out" / "whose.csv")} == {"right", "mistaken"}
 
 
+def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course, copied, tmp_path):
+    solutions = shutil.copytree(course / "solutions", tmp_path / "course" / "solutions")
+    said = tmp_path / "course" / "course.toml"
+    page, marks = copied / "feedback" / "right" / "turns.html", record(course, "right")["marks"]
+    said.write_text('chapter = "https://book.example/{notebook}.html"\n')
+    regrade(copied, solutions=solutions)
+    assert page.read_text("utf8").count('<a href="https://book.example/turns.html">the chapter</a>') == len(marks)
+    assert "worked solution" not in page.read_text("utf8")
+    said.write_text(said.read_text() + 'solution = "https://book.example/solved#{notebook}-{question}"\n')
+    regrade(copied, solutions=solutions)
+    assert '<a href="https://book.example/solved#turns-about-x">the worked solution</a>' in page.read_text("utf8")
+    said.unlink()
+    regrade(copied, solutions=solutions)
+    assert "Read on" not in page.read_text("utf8")
+    for address in ("javascript:alert('{notebook}')", "https://book.example/all", "https://book.example/{student}"):
+        said.write_text(f'chapter = "{address}"')
+        with pytest.raises(ValueError, match="is an address with {notebook}"):
+            regrade(copied, solutions=solutions)
+
+
 def test_feedback_gives_no_outputs_of_calls_away(course):
     """What a function returned to the check would do for a friend's answer, and the secret calls for all later ones."""
     found = record(course, "right")["answers"]["turns/doubled"]

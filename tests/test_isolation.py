@@ -96,6 +96,23 @@ def test_copies_of_a_warm_parent_are_as_much_apart_as_those_that_are_started():
     assert not any(psutil.pid_exists(sandbox) for sandbox in (before,))
 
 
+def test_a_crash_is_handled_by_nobody():
+    """Neither a file nor a program gets the memory of a crashed notebook, whatever the system has set up for that."""
+    cell = """
+import ctypes, resource
+library = ctypes.CDLL(None)
+core = [*resource.getrlimit(resource.RLIMIT_CORE), library.prctl(3, 0, 0, 0, 0)]
+library.prctl(4, 1, 0, 0, 0)  # to be dumped again
+core.append(library.prctl(3, 0, 0, 0, 0))
+"""
+    job = {"id": "one", "cells": [{"source": cell}], "questions": {"core": {"variable": "core"}}, "seed": 0}
+    with Sandbox() as sandbox:
+        result = sandbox.run(job)
+    numbers = [int(node[1]) for node in result["answers"]["core"]["plain"]["nodes"]]
+    said = [numbers[entry[1]] for entry in result["answers"]["core"]["plain"]["value"][1]]
+    assert said[:3] == [1, 1, 0] and (len(said) == 3 or said[3] == 0)
+
+
 def test_a_layer_that_does_not_exist_is_an_error():
     with pytest.raises(ValueError, match="no layers \\['armour'\\]"):
         Sandbox(without=["armour"])

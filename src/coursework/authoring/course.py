@@ -1,5 +1,6 @@
 """A course: where its notebooks with solutions are, and where what is made of them goes."""
 
+import re
 import tomllib
 from pathlib import Path
 from typing import NamedTuple
@@ -26,6 +27,9 @@ class Course(NamedTuple):
         empty for one that needs nothing but coursework.
     edition : str
         Each edition draws the variants of questions afresh: an exam, say, or another year.
+    chapter, solution : str
+        Addresses that the graders' feedback leads to, with ``{notebook}`` and ``{question}`` in them: where one reads
+        on, and the worked solution, named here once it is released.
     """
 
     root: Path
@@ -36,8 +40,12 @@ class Course(NamedTuple):
     archive: Path
     package: str = ""
     edition: str = ""
+    chapter: str = ""
+    solution: str = ""
 
 
+#: What a course may say that is no path.
+TEXTS = ("package", "edition", "chapter", "solution")
 DEFAULTS = {
     "sources": "solutions",
     "exercises": "exercises",
@@ -54,21 +62,31 @@ def find_course(start="."):
     AuthorError
         There is none, or it is not understood.
     """
+    course = _course_around(start)
+    if course is None:
+        raise AuthorError(
+            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. `coursework new COURSE` makes a "
+            "course that has one."
+        )
+    return course
+
+
+def _course_around(start):
     start = Path(start).resolve()
-    for folder in (start, *start.parents):
-        if (folder / FILE).is_file():
-            return _read(folder / FILE)
-    raise AuthorError(
-        f"There is no {FILE} in {start}, nor in a folder above it. `coursework new COURSE` makes a course that has one."
-    )
+    found = next((folder / FILE for folder in (start, *start.parents) if (folder / FILE).is_file()), None)
+    return found and _read(found)
 
 
 def edition_of(folder):
     """The edition of the course that a folder belongs to; empty where it belongs to none."""
-    try:
-        return find_course(folder).edition
-    except AuthorError:
-        return ""
+    course = _course_around(folder)
+    return course.edition if course else ""
+
+
+def links_of(folder):
+    """The addresses that the course of a folder names, by what they lead to."""
+    course = _course_around(folder)
+    return {name: address for name in ("chapter", "solution") if course and (address := getattr(course, name))}
 
 
 def _read(path):
@@ -76,12 +94,17 @@ def _read(path):
         said = tomllib.loads(path.read_text("utf8"))
     except ValueError as error:
         raise AuthorError(f"{path}: {error}") from None
-    unknown = sorted(set(said) - {*DEFAULTS, "title", "package", "edition"})
+    unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it has texts under the names title, package, edition, {', '.join(DEFAULTS)}, and nothing else"
+            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, and nothing else"
             + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
-    others = {name: said.get(name, "") for name in ("package", "edition")}
+    others = {name: said.get(name, "") for name in TEXTS}
+    for name in ("chapter", "solution"):
+        if others[name] and not re.fullmatch(r"https?://[^{}\s]*(\{(notebook|question)\}[^{}\s]*)+", others[name]):
+            raise AuthorError(
+                f"{path}: `{name}` is an address with {{notebook}} or {{question}} in it, and {others[name]!r} is none."
+            )
     return Course(path.parent, said.get("title", path.parent.name), **places, **others)

@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from ..authoring.course import edition_of, find_course
+from ..authoring.course import edition_of, find_course, links_of
 from . import intake, marking
 from . import secret as in_secret
 from .identity import BadRoster, Roster
@@ -256,6 +256,7 @@ def grade(
             if again != record:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
+        write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
         store.log("end")
     _say_guessable(questions, show)
@@ -650,5 +651,6 @@ def regrade(out, *, solutions=None, show=None):
             if changed:
                 moved.append(Moved(record["student"], record["assignment"], record["points"], again["points"], changed))
         store.log(f"graded again: {len(moved)} moved")
+        write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
     return moved

@@ -150,7 +150,7 @@ def bubblewrap_command(bubblewrap, readable):
         command.append("--unshare-user")
     # What the warm parent needs to mount each notebook's scratch folder, and to change its user if
     # it is root; the notebook's process gives all of it up.
-    for capability in ("SYS_ADMIN", "SETUID", "SETGID", "KILL", "CHOWN", "DAC_OVERRIDE", "FOWNER"):
+    for capability in ("SYS_ADMIN", "SETPCAP", "SETUID", "SETGID", "KILL", "CHOWN", "DAC_OVERRIDE", "FOWNER"):
         command += ["--cap-add", f"CAP_{capability}"]
     places = _places(readable)
     # Folders on the way would be closed to the user that root gives the code to.
@@ -292,7 +292,8 @@ def limit_resources(limits, memory_in_use, threads_in_use):
         (resource.RLIMIT_FSIZE, limits["file_bytes"]),
         (resource.RLIMIT_NOFILE, limits["open_files"]),
         (resource.RLIMIT_NPROC, threads_in_use + limits["threads"]),
-        (resource.RLIMIT_CORE, 0),
+        # Not 0: a program that handles crashes is started for that all the same, and for 1 it is not (core(5)).
+        (resource.RLIMIT_CORE, 1),
         (resource.RLIMIT_MEMLOCK, 0),
         (resource.RLIMIT_MSGQUEUE, 0),
     ):

@@ -7,6 +7,7 @@ import functools
 import json
 from collections import Counter
 from statistics import mean, median
+from urllib.parse import quote
 
 from ..checking.plugins import plugins
 from ..checking.reply import OUTCOMES
@@ -16,6 +17,8 @@ from .store import file_name, write
 from .tables import lines, table
 from .templates_of_pages import page
 
+#: The addresses that feedback leads to, as the course had them when it was graded.
+LINKS = "links.json"
 #: What is said of an outcome once there is no "yet" any more.
 FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
@@ -113,10 +116,10 @@ class _Assignment:
 
 def write_all(store):
     """Make the tables and the pages of all records; no more than one record is held at a time."""
-    classes, names = {}, {}
+    classes, names, links = {}, {}, _read(store.folder / LINKS, {})
     for record in _readable(store):
         place = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
-        _write_if_new(place, feedback(record))
+        _write_if_new(place, feedback(record, links))
         classes.setdefault(record["assignment"], _Assignment()).add(record)
         names.update(dict.fromkeys(record["marks"]))
     refused = [tuple(entry) for entry in _read(store.folder / "refused.json", [])]
@@ -184,8 +187,8 @@ def _grades_of(record, names):
 # --- for a student ------------------------------------------------------------------------------
 
 
-def feedback(record):
-    """The page that a student gets; ``answers`` of the record are plain data."""
+def feedback(record, links=None):
+    """The page that a student gets; ``answers`` of the record are plain data, ``links`` addresses as a course has them."""
     return page(
         "feedback.html",
         record=record,
@@ -195,7 +198,21 @@ def feedback(record):
         ],
         notebooks=[(notebook, _stopped(notebook)) for notebook in record["notebooks"]],
         notes=NOTES,
+        links={name: _addresses(name, links or {}) for name in record["marks"]},
     )
+
+
+#: What the addresses of a course lead to, in words.
+LEADS_TO = {"chapter": "the chapter", "solution": "the worked solution"}
+
+
+def _addresses(question, links):
+    notebook, _, own = question.partition("/")
+    return [
+        (said, links[name].replace("{notebook}", quote(notebook)).replace("{question}", quote(own)))
+        for name, said in LEADS_TO.items()
+        if name in links
+    ]
 
 
 def _shown(record, name):

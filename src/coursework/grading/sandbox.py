@@ -33,7 +33,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from coursework.grading import isolation, records, scratch
+from coursework.grading import isolation, records, scratch, steady
 from coursework.grading.isolation import LAYERS, NAMESPACES
 from coursework.grading.warm_parent import NOT_CONFINED
 from coursework.grading.workers import side_by_side
@@ -259,6 +259,10 @@ class Sandbox:
                         scratch.__file__,
                         self.base,
                         *command,
+                        sys.executable,
+                        "-I",
+                        "-S",
+                        steady.__file__,
                         sys.executable,
                         "-s",
                         "-P",

@@ -8,12 +8,10 @@ folder: whoever gave the command may be killed meanwhile, and the command may se
 """
 
 import contextlib
-import ctypes
 import os
 import secrets
 import sys
 
-ADDR_NO_RANDOMIZE = 0x0040000
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
@@ -73,8 +71,6 @@ def main(folder, *command):
     """Run a command, and remove a folder when it has ended; give what the command ended with."""
     child = os.fork()
     if child == 0:
-        # Everything at the same addresses each time: some of what a notebook works out depends on them.
-        ctypes.CDLL(None).personality(ADDR_NO_RANDOMIZE)
         os.execv(command[0], command)
     # The handles are the command's: held here as well, its end would not be seen by others.
     os.closerange(3, 1 << 16)
