@@ -38,9 +38,9 @@
       if (typeof found?.pages !== "object") throw new Error("no pages");
       progress.replace(found);
       fill();
-      say("Brought back.");
+      say("Imported: your record is back.");
     } catch {
-      say("That file is not an export of this page; nothing was changed.");
+      say("That file was not exported from this page, so nothing has changed.");
     }
     file.value = "";
   });
@@ -50,7 +50,7 @@
     if (!asked) {
       asked = true;
       clear.textContent = "Yes, clear everything";
-      return say("This forgets all that is in the table. An export would keep it.");
+      return say("This erases everything in the table. Export it first if you would like to keep it.");
     }
     asked = false;
     clear.textContent = "Clear";
@@ -62,5 +62,5 @@
   actions.append(take, bring, file, clear);
   table.parentElement.after(actions, words);
   fill();
-  if (!progress.isKept()) say("This browser does not let the page keep anything: what you do lasts as long as a page is open.");
+  if (!progress.isKept()) say("This browser does not let the page store anything, so your record lasts only as long as the page is open.");
 }

@@ -131,7 +131,7 @@
       const right = chosen.classList.contains("right");
       const words = chosen.querySelector("div").cloneNode(true);
       result.className = `result ${right ? "right" : "wrong"}`;
-      result.replaceChildren(make("p", { className: "verdict" }, make("strong", { textContent: right ? "Right." : "Not so." })), words);
+      result.replaceChildren(make("p", { className: "verdict" }, make("strong", { textContent: right ? "Right." : "Not quite." })), words);
       fold.hidden = false;
       fold.firstElementChild.textContent = right ? "All replies" : "The answer";
       skip.hidden = true;
