@@ -59,7 +59,7 @@ def test_prediction_covers_what_follows_until_it_is_made(context, site):
     wrong = box.locator(f'input:not([value="{right}"])').first
     wrong.check()
     box.get_by_role("button", name="That is my prediction").click()
-    assert box.get_by_role("status").inner_text().startswith("Not so.")
+    assert box.get_by_role("status").inner_text().startswith("Not quite.")
     assert covered.count() == 0 and page.evaluate("document.querySelectorAll('.uncovered[inert]').length") == 0
     box.locator(f'input[value="{right}"]').check()
     box.get_by_role("button", name="That is my prediction").click()
@@ -155,7 +155,7 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
         page.evaluate("document.querySelector('.said').textContent = ''")
     (tmp_path / "kept.json").write_text(json.dumps(record))
     page.locator("input[type=file]").set_input_files(tmp_path / "kept.json")
-    page.wait_for_function("document.querySelector('.said').textContent === 'Brought back.'")
+    page.wait_for_function("document.querySelector('.said').textContent === 'Imported: your record is back.'")
     assert cell("done").startswith("1 of ")
 
 
