@@ -92,7 +92,8 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
         faults.append(f"The right answer was tried in {len(forms)} forms only.")
     there = against_sealed and question.name in notebook_questions(question.name.partition("/")[0])
     sealed = in_variant(question.name, question.public.get("variant", 0)) if there else None
-    if sealed and judge(question.name, sealed, question.plain)[0].outcome != "correct":
+    expected = "recorded" if question.public.get("exam") else "correct"
+    if sealed and judge(question.name, sealed, question.plain)[0].outcome != expected:
         faults.append("The right answer does not open what is sealed: make the release anew.")
     named, unmoved = _try_mistakes(question, faults)
     blank = _judge(question, ...)
@@ -105,7 +106,10 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
     if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
-    found = attack_kept(question, text, budget, kept) if kept else attack(question, text, budget)
+    if question.public.get("exam"):
+        found = Found(0, "")  # there is nothing to try a guess on
+    else:
+        found = attack_kept(question, text, budget, kept) if kept else attack(question, text, budget)
     if found.way and found.tries < min(declared or BUDGET, budget):
         faults.append(
             f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED} and give it little "
@@ -327,6 +331,8 @@ def _try_notebook(path, course, budget):
     weakest = {finding.name: finding.attack for finding in findings}
     for number in _numbers_attacked(source):
         for name, question in read_source(path, number, course.edition).questions.items():
+            if question.public.get("exam"):
+                continue
             found = attack_kept(question, text_of(source, question), budget, course.archive.parent / "attacks")
             if found.way and (not weakest[name].way or found.tries < weakest[name].tries):
                 weakest[name] = found

@@ -64,7 +64,7 @@ def check(name: str, answer: object) -> Reply:
         reply.help = entry.get("help", "")
         reply.messages += _of_siblings(name, question, reply.help)
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
-    if os.environ.get("NBGRADER_EXECUTION") and reply.outcome != "correct":
+    if os.environ.get("NBGRADER_EXECUTION") and reply.outcome not in ("correct", "recorded"):
         raise NotCorrect(repr(reply))
     return reply
 
@@ -186,10 +186,13 @@ def _of_notebook(notebook, record, right):
     questions = questions or {name: {} for name in record if name.startswith(f"{notebook}/")}
     points = sum(about.get("worth", 1) for about in questions.values())
     earned = sum(about.get("worth", 1) for name, about in questions.items() if name in right)
-    open_ = [name for name in questions if name not in right]
+    taken_down = {name for name in questions if record.get(name, {}).get("outcome") == "recorded"}
+    open_ = [name for name in questions if name not in right and name not in taken_down]
     # What was begun comes before what is new.
     open_.sort(key=lambda name: name not in record)
-    line = f"*{notebook}*: {len(questions) - len(open_)} of {len(questions)} right, {earned} of {points} points."
+    line = f"*{notebook}*: {len(right & set(questions))} of {len(questions)} right, {earned} of {points} points."
+    if taken_down:
+        line += f" Taken down, and marked later: {', '.join(f'`{name}`' for name in sorted(taken_down))}."
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
 
 

@@ -122,7 +122,7 @@ def judge(name, question, plain):
     tuple (Reply, dict)
         The reply, and what the answer opened: hints, the worked solution, hints for another question.
     """
-    reply = compare(name, question, plain, lambda text: opened(question, text))
+    reply = compare(name, question, plain, None if question.get("exam") else lambda text: opened(question, text))
     return reply, reply.opened
 
 
@@ -176,13 +176,14 @@ def compare(name, question, plain, find):
     question : dict
         The public part of the question.
     plain : dict
-    find : function
-        What is known of a fingerprint, or ``None``: a dictionary whose ``"cases"`` are each an outcome with its
-        notes and, where answers have a tolerance, the numbers that it is meant for.
+    find : function or None
+        ``None`` where there is nothing to compare with, as in an exam: then only the form of the answer is looked at.
+        It gives what is known of a fingerprint, or ``None``: a dictionary whose ``"cases"`` are each an outcome with
+        its notes and, where answers have a tolerance, the numbers that it is meant for.
     """
     try:
         reading = read(question, plain)
-        reply = _compare(name, question, plain, reading, find)
+        reply = _compare(name, question, plain, reading, find) if find else _taken_down(name, question, reading)
         reply.answer = hashlib.sha256(fingerprint(question, reading).encode()).hexdigest()[:12]
         return reply
     except Blank:
@@ -193,6 +194,21 @@ def compare(name, question, plain, find):
         return Reply(
             name, "undecided", "undecidable", [f"{found} Try another form, or ask your instructor to look at it."]
         )
+
+
+def _taken_down(name, question, reading):
+    found = fault(question, reading)
+    if found:
+        return Reply(name, "invalid", found.note, [found.message])
+    return Reply(
+        name,
+        "recorded",
+        "",
+        [
+            "Your answer can be read, and has the form that is asked for. It is marked later: nothing that you have "
+            "tells whether it is right."
+        ],
+    )
 
 
 def _compare(name, question, plain, reading, find):

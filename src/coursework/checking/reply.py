@@ -13,6 +13,7 @@ OUTCOMES = {
     "invalid": ("!", "Not in the form that is asked for", "#b54708"),
     "undecided": ("?", "Undecided", "#5b5fc7"),
     "hints": ("→", "So far", "#6b7280"),
+    "recorded": ("→", "Taken down", "#5b5fc7"),
     "not attempted": ("…", "Not attempted", "#6b7280"),
 }
 

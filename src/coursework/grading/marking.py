@@ -87,10 +87,11 @@ def of_student(questions, identity):
         if len(variants) > 1:
             siblings = [other for order, other in enumerate(variants) if order != number]
             own[name] = {**own[name], "siblings": siblings}
-            # Those that count in its place, by their names.
+            # Those that count in its place, by their names; in an exam each has one question.
             own[name]["second chances"] = {
                 sibling: variants[(number + order) % len(variants)]
                 for order, sibling in enumerate(siblings_of(name, len(variants)), 1)
+                if not question["public"].get("exam")
             }
     return own
 
