@@ -221,6 +221,27 @@ def test_equal_code_is_a_hint_only_where_few_have_it(out):
     assert not any("sign by sign" in said for said in sum(hints_of(everybody, lambda digest: same).values(), []))
 
 
+def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
+    records = json.loads(json.dumps(Class(out).records))
+    one, other, third = (record["student"] for record in records[:3])
+
+    def said_of(*tried):
+        for record, answers in zip(records, tried, strict=False):
+            record["remembered"] = {"turns/sum": {"tries": len(answers), "tried": answers, "help": ""}}
+        found = hints_of(records, lambda digest: [])
+        return {
+            student: [said for said in found[student, "turns/sum"] if "tried on the way" in said]
+            for student in (one, other, third)
+        }
+
+    shared = said_of(["aaaaaa", "bbbbbb", "cccccc"], ["bbbbbb", "aaaaaa"], ["dddddd"])
+    assert shared[one] == shared[other] == ["2 unusual wrong answers were tried on the way that one other tried, too"]
+    assert shared[third] == []
+    assert not any(said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values())  # one may be chance
+    usual = said_of(*[["aaaaaa", "bbbbbb"]] * len(records))
+    assert not any(usual.values())
+
+
 def test_names_are_hidden_on_request(out):
     with Served(out, hide_names=True) as served:
         _, text = served.ask(f"/{served.secret}/answer/{first_of(served, 'hints')}")

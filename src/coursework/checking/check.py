@@ -20,6 +20,8 @@ REVIEW_AFTER = 3
 DAY = 86_400
 #: Different answers of one question that are remembered.
 MOST_ANSWERS = 100
+#: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are the same.
+MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
 NO_HELP = ("", "rounded too far")
 
@@ -64,6 +66,8 @@ def check(name: str, answer: object) -> Reply:
         reply.help = entry.get("help", "")
         reply.messages += _of_siblings(name, question, reply.help)
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
+    if isinstance(entry.get("answers"), list):
+        reply.tried = [str(answer)[:DIGITS] for answer in entry["answers"][-MOST_TOLD:]]
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome not in ("correct", "recorded"):
         raise NotCorrect(repr(reply))
     return reply

@@ -44,6 +44,8 @@ class Reply:
         What all ways of writing this answer have in common, hashed.
     tries : int
         How many different answers the record beside the notebook knows of; 0 where there is none.
+    tried : list of str
+        A few digits of each wrong answer that the record knows of, the newest last.
     help : str
         The help that was had before the answer was right, a key of :data:`HELP`; empty without any.
     details : dict
@@ -68,6 +70,7 @@ class Reply:
         self.solution = solution
         self.answer = ""
         self.tries = 0
+        self.tried: list[str] = []
         self.help = ""
         self.details: dict = {}
         self.opened = opened or {}
@@ -85,6 +88,7 @@ class Reply:
         tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
         # What the notebook remembers of the way to this answer: the grader reads it there.
         known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
+        known += f' data-tried="{html.escape(" ".join(self.tried))}"' if self.tried else ""
         known += f' data-help="{self.help}"' if self.help else ""
         formula = {} if tex_is_typeset() else {"formula": mathml}
         paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)

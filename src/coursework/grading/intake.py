@@ -48,7 +48,9 @@ LITTER = (
 INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)  # what Brightspace, nbgrader and Gradescope put there
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
-ABOUT_REPLY = re.compile(r'\bdata-(question|tries|help)="([^"]{1,200})"')
+ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
+MOST_TRIED = 100  # of one question
+TRIED = re.compile(r"[0-9a-f]{6}")
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
 
@@ -635,7 +637,9 @@ def read_notebook(data):
 
 
 def remembered_in(data):
-    """What the replies that a notebook shows remember, by question: the ``tries``, and the ``help`` that was had.
+    """What the replies that a notebook shows remember, by question.
+
+    The number of ``tries``, a few digits of each wrong answer that was ``tried``, and the ``help`` that was had.
 
     It is the student's to change: who deletes it is not found out.
     """
@@ -647,7 +651,8 @@ def remembered_in(data):
         about = dict(ABOUT_REPLY.findall(reply))
         if not {"question", "tries"} <= set(about) or not about["tries"].isdecimal() or len(found) >= MOST_CELLS:
             continue
-        one = found.setdefault(about["question"], {"tries": 0, "help": ""})
+        one = found.setdefault(about["question"], {"tries": 0, "tried": [], "help": ""})
+        one["tried"] = list(dict.fromkeys((*one["tried"], *TRIED.findall(about.get("tried", "")))))[:MOST_TRIED]
         one["tries"] = max(one["tries"], int(about["tries"][:6]))
         one["help"] = about.get("help", one["help"])
     return found

@@ -183,13 +183,17 @@ class Class:
 def hints_of(records, work):
     """What a person may want to look at, by student and question; never a mark.
 
-    Equal unusual wrong answers, equal code that few share, and what a notebook tried that no exercise needs.
+    Equal unusual wrong answers, also among those that were tried on the way, equal code that few share, and what a
+    notebook tried that no exercise needs.
     """
     found = defaultdict(list)
     students = len({record["student"] for record in records})
     few = max(2, int(FEW * students))
-    wrong, code = defaultdict(set), defaultdict(set)
+    wrong, code, tried = defaultdict(set), defaultdict(set), defaultdict(set)
     for record in records:
+        for question, about in record.get("remembered", {}).items():
+            for one in about.get("tried", ()):
+                tried[question, one].add(record["student"])
         for question, mark in record["marks"].items():
             judged = mark.get("before", mark)
             if judged["outcome"] == "wrong" and not judged["note"] and mark["group"]:
@@ -215,11 +219,28 @@ def hints_of(records, work):
         if 2 <= len(same) <= few:
             for one in same:
                 found[one, question].append(f"the same code, sign by sign, as {len(same) - 1} other")
+    _note_shared_tries(found, {key: same for key, same in tried.items() if 2 <= len(same) <= few})
     for record in records:
         for said in dict.fromkeys(said for notebook in record["notebooks"] for said in notebook.get("tried", ())):
             for question in record["marks"]:
                 found[record["student"], question].append(f"the notebook {said}")
     return found
+
+
+def _note_shared_tries(found, tried):
+    """Note who tried the same wrong answers as one other, if they were several: one may be chance."""
+    together, where = Counter(), defaultdict(set)
+    for (question, _), same in tried.items():
+        for one in same:
+            for other in same - {one}:
+                together[one, other] += 1
+                where[one, other].add(question)
+    for (one, other), number in together.items():
+        if number > 1:
+            for question in sorted(where[one, other]):
+                said = f"{number} unusual wrong answers were tried on the way that one other tried, too"
+                if said not in found[one, question]:
+                    found[one, question].append(said)
 
 
 def _bare(source):
