@@ -122,7 +122,7 @@ def test_works_where_storage_is_forbidden(context, site):
     page.locator(".recap .question").first.get_by_role("button", name="Check").click()
     assert page.locator(".recap .question .result .verdict").first.is_visible()
     page.goto(f"{site}appendix/my-progress.html")
-    assert "does not let the page keep" in page.locator(".said").inner_text()
+    assert "does not let the page store" in page.locator(".said").inner_text()
     assert [fault for fault in faults if "progress.js" in fault or "questions.js" in fault] == []
 
 
@@ -151,7 +151,7 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
     for text in ("[1", '{"other": 1}'):
         (tmp_path / "wrong.json").write_text(text)
         page.locator("input[type=file]").set_input_files(tmp_path / "wrong.json")
-        page.wait_for_function("document.querySelector('.said').textContent.includes('nothing was changed')")
+        page.wait_for_function("document.querySelector('.said').textContent.includes('nothing has changed')")
         page.evaluate("document.querySelector('.said').textContent = ''")
     (tmp_path / "kept.json").write_text(json.dumps(record))
     page.locator("input[type=file]").set_input_files(tmp_path / "kept.json")
