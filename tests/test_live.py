@@ -374,6 +374,7 @@ def test_numpy_is_fetched_and_checked(context, site, made_wheels):
     assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_hidden_code_runs_before_the_cell_below_it(context, site):
     """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the next one."""
 
@@ -593,7 +594,7 @@ FAILURES = {
 }
 
 
-@pytest.mark.sampled(1)
+@pytest.mark.sampled(1, of="pages that start otherwise")
 @pytest.mark.parametrize(
     ("pattern", "words", "answer"), [(p, *case) for p, cases in FAILURES.items() for case in cases]
 )
@@ -792,6 +793,7 @@ class FigurePage(Page):
         )
 
 
+@pytest.mark.sampled(1, of="figures and code")
 def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context, site):
     page = FigurePage(context, site)
     page.turn(90)
@@ -816,6 +818,7 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     assert page.outside() == [] and page.errors == []
 
 
+@pytest.mark.sampled(1, of="figures and code")
 def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
     """Where the server gives no shared memory, the first run loads the page again, by a service worker."""
     context = browser.new_context()
@@ -830,6 +833,7 @@ def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser
     context.close()
 
 
+@pytest.mark.sampled(1, of="figures and code")
 def test_the_explorer_of_sequences_works_in_the_page(context, site):
     page = Page(context, site, "chapters/euler-angles.html")
     text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
@@ -845,6 +849,7 @@ def test_the_explorer_of_sequences_works_in_the_page(context, site):
     assert page.outside() == [] and page.errors == []
 
 
+@pytest.mark.sampled(1, of="figures and code")
 def test_controls_that_only_a_notebook_can_show_say_so(context, site):
     page = FigurePage(context, site)
     page.page.click("button.run-page")

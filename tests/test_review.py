@@ -1,5 +1,6 @@
 """The page to judge in: safe against other pages and against what it shows, and worked by keys alone."""
 
+import functools
 import http.client
 import io
 import json
@@ -274,7 +275,9 @@ def test_the_commands(out, capsys, tmp_path, graded):
 def test_who_stops_judging_has_the_decisions_in_the_marks(out, graded):
     solutions = str(graded / "solutions")
     command = [sys.executable, "-m", "coursework", "review", str(out), "--solutions", solutions]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as page:
+    # Whoever starts the tests in the background has them, and all that they start, not hear Ctrl+C.
+    hear = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=hear) as page:
         assert "Open this address" in page.stdout.readline()
         Ledger(out).add(Store(out).read("rounded-1", "turns"), "turns/sum", 0.5, comment="Nearly.")
         page.send_signal(signal.SIGINT)

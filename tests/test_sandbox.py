@@ -366,6 +366,7 @@ def bytes_of(results):
     return json.dumps(sorted(results, key=lambda result: int(result["id"])), sort_keys=True)
 
 
+@pytest.mark.sampled(2, of="sandboxes under strain")
 def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
     once = list(run_notebooks(class_of_notebooks(), workers=1, limits=LIMITS))
     assert len(once) == 21 and len({result["id"] for result in once}) == 21
@@ -380,6 +381,7 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
     assert bytes_of(run_notebooks(killing(class_of_notebooks()), workers=2, limits=LIMITS)) == bytes_of(once)
 
 
+@pytest.mark.sampled(2, of="sandboxes under strain")
 def test_a_busy_machine_costs_nobody_an_answer():
     """What a notebook waits for while others compute is not its own time: three share one processor here."""
     start = "import time\nbegun = time.process_time()"
@@ -395,6 +397,7 @@ def test_a_busy_machine_costs_nobody_an_answer():
     assert [result["answers"]["q"]["outcome"] for result in results] == ["recorded"] * 3, results
 
 
+@pytest.mark.sampled(2, of="sandboxes under strain")
 @pytest.mark.parametrize("made_by", ["unshare", "bubblewrap"])
 def test_addresses_are_the_same_each_time(made_by):
     """Some of what a notebook works out depends on them."""
@@ -427,6 +430,7 @@ def test_a_worker_that_always_dies_is_named(sandbox, monkeypatch):
         sandbox.run(notebook("1"))
 
 
+@pytest.mark.sampled(2, of="sandboxes under strain")
 def test_who_stops_listening_leaves_nothing_running():
     before = {process.pid for process in psutil.Process().children(recursive=True)}
     sleeping = notebook("import time; time.sleep(600)")
