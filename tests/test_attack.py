@@ -55,6 +55,21 @@ def test_an_answer_that_can_be_guessed_is_found_and_named_until_its_author_decla
     assert any("guessed" in fault for fault in try_question(ABOUT_X, declared=found.attack.tries + 1).faults)
 
 
+def test_a_function_of_turns_is_attacked_by_some_of_them():
+    """A question whose answer is a loop over the turns has candidates, and is found where one turn is enough."""
+
+    def first(turns):
+        (_, angle), *_ = turns
+        return [np.cos(angle / 2), 0, 0, np.sin(angle / 2)]
+
+    calls = [[[["z", 0.3], ["x", 0.5]]], [[["z", -1.1]]], [[["z", 2.0], ["y", 1], ["x", 3]]]]
+    about = {"result": "quaternion", "calls": calls, "tolerance": 1e-9}
+    found = attack(question("trial/first", "function", first, **about), budget=2000)
+    assert found.way.startswith("some of the turns") and found.tries < 100
+    found = attack(question("trial/none", "function", lambda turns: [0.6, 0, 0.48, 0.64], **about), budget=2000)
+    assert not found.way and found.tries > 30
+
+
 def test_the_reply_to_a_mistake_shortens_the_attack():
     """Turned through the wrong sign, the reply says so: no other choice need be tried."""
     assert "by the reply" in attack(GIMBAL).way

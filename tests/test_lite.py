@@ -9,7 +9,10 @@ import nbformat
 import pytest
 from conftest import HTML, REPOSITORY
 from test_live import ELSEWHERE, solution
+from test_release import COURSE
 
+from coursework.checking.questions import notebook_questions
+from coursework.checking.variants import variant_of
 from website.lite import FOLDER, LOCK
 from website.live import runtime
 from website.live.cells import kinds_of_cells, stored_outputs
@@ -243,4 +246,37 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
         interface.run(interface.number("sm.trigsimp(D_C_A.subs(theta, -sm.pi/2))"))[0]["output_type"]
         == "execute_result"
     )
+    context.close()
+
+
+@pytest.mark.long
+def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
+    """The page asks; the notebook knows it and shows that one's numbers; what is said there, the page knows."""
+    question = "simple-orientations/compass"
+    count = notebook_questions("simple-orientations")[question]["variants"]
+    ada, ben = (next(s for s in (f"s{k}" for k in range(99)) if variant_of(s, question, count) == n) for n in (3, 5))
+    context = browser.new_context(viewport={"width": 1300, "height": 900})
+    page = context.new_page()
+    page.goto(f"{site}{EXERCISE}.html")
+    page.click("button.run-cell >> nth=0")
+    page.fill(".live-who input", ada)
+    page.click(".live-who button")
+    interface = Interface(context, site, EXERCISE)
+    first = interface.number("from math")
+    assert f"those of {ada}" in interface.run(first)[0]["text"]
+    sealed = []
+    interface.page.on("response", lambda one: "/sealed-" in one.url and sealed.append(len(one.body())))
+    shown = next(k for k, cell in enumerate(interface.cells()) if f'variant("{question}")' in "".join(cell["source"]))
+    own = json.loads((COURSE.sealed / "variants" / "simple-orientations-3.json").read_text("utf8"))["questions"][
+        question
+    ]
+    (output,) = interface.run(shown)
+    assert all(text in "".join(output["data"]["text/markdown"]) for text in own["shown"].values())
+    assert sealed and sum(sealed) < 20_000
+    interface.write(first, f"from coursework import me\nme('{ben}')")
+    interface.run(first)
+    page.reload()
+    page.click("button.run-cell >> nth=0")
+    page.wait_for_selector(f".live-who:has-text('those of {ben}')")
+    assert interface.outside() == [] and interface.errors == []
     context.close()

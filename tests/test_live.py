@@ -14,6 +14,8 @@ import pytest
 from conftest import HTML, REPOSITORY, html_pages
 from test_site import Visit, violations
 
+from coursework.checking.questions import notebook_questions
+from coursework.checking.variants import variant_of
 from website.browser import FLAGS, find
 from website.execution import STORED
 from website.live import runtime, scripts
@@ -515,6 +517,62 @@ def test_exercise_is_checked_in_the_page(context, site):
             assert page.cell(check).locator("[data-outcome] .katex").count() > 0
             assert "transpose" in page.words()
     assert page.outside() == [] and page.errors == []
+
+
+def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
+    name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
+    count = notebook_questions("simple-orientations")[question]["variants"]
+    students = {variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)}
+    page = Page(context, site, name)
+    sealed = []
+    page.page.on("response", lambda one: "/sealed-" in one.url and sealed.append((one.url, len(one.body()))))
+    codes = [
+        page.cell(k).locator("pre").first.inner_text() for k in range(1, page.page.locator("div.cell").count() + 1)
+    ]
+    shown = next(k for k, code in enumerate(codes, 1) if question in code)
+
+    def run(page):
+        page.page.click(f"button.run-cell >> nth={shown - 1}")
+        page.wait()
+        return page.below(shown)
+
+    everybodys = run(page)
+    assert sealed == [] and "that everybody sees" in page.cell(1).inner_text()
+    own = max(students)
+    page.page.fill(".live-who input", f" {students[own].upper()} ")
+    page.page.click(".live-who button")
+    assert f"those of {students[own].upper()}" in page.cell(1).inner_text()
+    mine = run(page)
+    assert mine != everybodys and page.errors == []
+    # One small file for each question above with variants, and no more than that.
+    assert any(address.endswith(f"/variants/simple-orientations-{own}.json") for address, _ in sealed)
+    assert len(sealed) <= 3 and sum(size for _, size in sealed) < 30_000, sealed
+    # Another page of the book does not ask any more, and what is said in the code counts as well.
+    opened.remove(page.page)
+    page.page.close()
+    again = Page(context, site, name)
+    assert run(again) == mine
+    assert f"those of {students[own].upper()}" in again.cell(1).locator(".live-who").inner_text()
+    again.write(1, codes[0].replace("me('')", f"me('{students[0]}')"))
+    assert run(again) == everybodys
+    again.page.wait_for_selector(f".live-who:has-text('those of {students[0]}')")
+
+
+def test_tries_and_hints_of_a_page_outlive_it(context, site):
+    name = "exercises/simple-orientations.html"
+    places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
+    blank, check = places["simple-orientations-crank"], places["check-simple-orientations-crank"]
+    for code in ("A_C_N = sm.eye(3)", "A_C_N = sm.diag(1, -1, -1)"):
+        page = Page(context, site, name)
+        page.page.click(f"button.run-cell >> nth={check - 1}")
+        page.wait()
+        page.write(blank, code)
+        page.page.click(f"button.run-cell >> nth={check - 1}")
+        page.wait()
+        said = page.below(check)
+        opened.remove(page.page)
+        page.page.close()
+    assert "2 answers so far" in said and "Hint:" in said
 
 
 # --- stopping and starting afresh -----------------------------------------------------------------

@@ -144,7 +144,7 @@ def of_the_book():
 
 def test_the_book_has_variants_that_stay_small():
     counts = [about["variants"] for about in of_the_book().values()]
-    assert len(counts) >= 60 and sum(count >= 16 for count in counts) >= 20
+    assert len(counts) >= 60 and sum(count >= 16 for count in counts) >= 27
     assert sum("picture" in about for about in of_the_book().values()) >= 4
     files = list(COURSE.sealed.rglob("*.json"))
     assert sum(path.stat().st_size for path in files) < 1_500_000

@@ -16,6 +16,7 @@ def families(public, at):
         yield of_words("all sequences", ["xyz"] * 3, "".join, lambda word: word[0] != word[1] != word[2])
     elif kind == "function":
         yield from _of_library(public)
+        yield from _of_chains(public)
     elif kind in ("direction cosine matrix", "Euler angles", "axis and angle"):
         yield from _of_orientations(public, at, _dcm_of, 9)
     elif kind == "quaternion":
@@ -207,3 +208,48 @@ def _of_library(public):
         if size == 4:
             table = one_sign(public, table, 4)
         yield Family("functions of the library", (len(table),), lambda choices: table[choices[:, 0]])
+
+
+#: Which of a list of turns are made. Not all of them: a loop over the turns is what such a question asks for, and who
+#: writes it has solved it. Tried is what one gets without.
+SOME = (slice(1), slice(-1, None), slice(1, 2), slice(2), slice(-2, None), slice(0, None, 2))
+
+
+def _of_chains(public):
+    """Where the argument is a list of turns, each an axis and an angle: what some of them give, one after another."""
+    size = size_of(public)
+    calls = [_turns_in(call) for call in calls_for(public)]
+    if None in calls or size not in (4, 9):
+        return
+
+    def evaluate(choices):
+        found = []
+        for other_order, degrees, half, backwards, added, some in choices.tolist():
+            row = []
+            for turns in calls:
+                whole = np.array([1.0, 0, 0, 0])
+                some_turns = turns[SOME[some]]
+                if added:  # all angles together, about the axis of the first of them
+                    some_turns = [(some_turns[0][0], sum(angle for _, angle in some_turns))] if some_turns else []
+                for axis, angle in some_turns:
+                    angle = (math.radians(angle) if degrees else angle) * (-1 if backwards else 1) / (2 if half else 1)
+                    turn = np.array([math.cos(angle / 2), *(math.sin(angle / 2) * axis)])
+                    whole = _times(turn, whole) if other_order else _times(whole, turn)
+                row.append(_dcm_of(whole).reshape(9) if size == 9 else whole)
+            found.append(np.concatenate(row))
+        return one_sign(public, np.array(found), size)
+
+    yield Family("some of the turns", (2, 2, 2, 2, 2, len(SOME)), evaluate)
+
+
+def _turns_in(call):
+    """The axes, as unit vectors, and the angles of a call whose one argument is a list of them; or ``None``."""
+    if len(call) != 1 or not isinstance(call[0], list):
+        return None
+    turns = []
+    for one in call[0]:
+        if not isinstance(one, list) or len(one) != 2 or not isinstance(one[1], (int, float)):
+            return None
+        axis = np.eye(3)["xyz".index(one[0])] if one[0] in ("x", "y", "z") else np.array(one[0], dtype=float)
+        turns.append((axis / np.linalg.norm(axis), one[1]))
+    return turns

@@ -59,7 +59,8 @@ def write_list(site):
     """Write what a reader may keep of the finished site, in two parts: ``book`` and ``python``."""
     packages = json.loads((site / FOLDER / LOCK).read_text("utf8"))["packages"].values()
     wheels = [site / FOLDER / package["file_name"] for package in packages if "://" not in package["file_name"]]
-    python = [site / FOLDER / LOCK, *(site / FOLDER).glob("pyodide-*/*"), *wheels]
+    sealed = (site / FOLDER).glob("sealed-*/*/*.json")
+    python = [site / FOLDER / LOCK, *(site / FOLDER).glob("pyodide-*/*"), *wheels, *sealed]
     pages = [
         path for path in site.rglob("*")
         if path.suffix in KEPT and path.relative_to(site).parts[0] != "lite" and path not in python

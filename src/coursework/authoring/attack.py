@@ -23,10 +23,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checking import sealing
-from ..checking.kinds import EXACT, EXACT_WIDTH, calls_for, sign_limit, tolerances
+from ..checking.kinds import EXACT, EXACT_WIDTH, FAR, NEAR, PARTS, calls_for, sign_limit, tolerances
 from ..checking.kinds import _offsets as offsets_of
 from ..checking.plugins import plugins
 from ..checking.points import points
+from ..checking.units import unit
 
 #: Slow hashes that the attack on one question may need; a question beyond it counts as not guessable.
 BUDGET = 2**16
@@ -206,6 +207,8 @@ def families(public, text=""):
         yield from WORDS[kind](public)
     elif kind == "function":
         yield from _of_functions(public)
+    elif kind == "measurement":
+        yield from _of_measurements(public, at)
     elif kind in ("expression", "vector", "matrix"):
         yield from of_pools(public, at, size_of(public))
 
@@ -233,7 +236,15 @@ WORDS = {
     "choice": lambda public: [of_words("all options", [public["options"]], lambda word: word[0].lower())],
     "truth values": lambda public: [of_words("all lists", ["TF"] * public["length"], "".join)],
     "words": lambda public: [
-        of_words("all lists", [public["options"]] * public["length"], lambda word: " | ".join(word).lower())
+        of_words("all lists", [public["options"]] * public["length"], lambda word: PARTS["words"].join(word).lower())
+    ],
+    "order": lambda public: [
+        of_words(
+            "all orders",
+            [public["options"]] * len(public["options"]),
+            lambda word: PARTS["order"].join(word).lower(),
+            lambda word: len(set(word)) == len(word),
+        )
     ],
 }
 
@@ -244,6 +255,39 @@ def of_words(name, options, write, allowed=lambda word: True):
         return [write(word) if allowed(word) else None for word in words]
 
     return Family(name, tuple(map(len, options)), evaluate)
+
+
+# Numbers with their units: what suggests itself for numbers, in units that are often asked for.
+
+UNITS = (
+    "N m", "N", "m", "m/s", "m/s^2", "kg", "s", "J", "W", "Pa", "rad/s", "1", "kN", "kN m", "N/m", "mm", "kPa", "MPa",
+    "Hz", "rad", "deg", "m^2", "m^3", "kg/m^3", "kg m^2", "N s", "K", "A", "V", "km/h", "kJ", "kW", "cm", "h",
+)  # fmt: skip
+
+
+def _of_measurements(public, at):
+    absolute = max(float(tolerances(public)[0]), float(NEAR))
+    found = [unit(text) for text in UNITS]
+    sizes = np.array([float(one.size) for one in found]) / float(public["scale"])
+    far = np.array([one.exponents for one in found]) * FAR * absolute
+    pool = _monomials(at) if at.symbols else _numbers(public, at)
+
+    def beside_units(values, units):
+        scaled = (values * sizes[units][:, None])[..., None]
+        exponents = np.broadcast_to(far[units][:, None, :], (*values.shape, far.shape[1]))
+        return np.concatenate([scaled, exponents], axis=2).reshape(len(values), -1)
+
+    def evaluate(choices):
+        return beside_units(pool[choices[:, 0]], choices[:, 1])
+
+    yield Family("one small formula, in usual units", (len(pool), len(UNITS)), evaluate)
+    if not at.symbols:
+        sweep = _sweep(public)
+        yield Family(
+            "every value in turn, in usual units",
+            (*sweep.sizes, len(UNITS)),
+            lambda choices: beside_units(sweep.evaluate(choices[:, :2]) / sizes[choices[:, 2]][:, None], choices[:, 2]),
+        )
 
 
 # Formulas: monomials of what is given, and what is made of two of them.

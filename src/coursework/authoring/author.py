@@ -25,6 +25,7 @@ from typing import NamedTuple
 from ..checking import sealing
 from ..checking.evaluate import MP
 from ..checking.kinds import (
+    PARTS,
     Blank,
     Fault,
     Undecidable,
@@ -98,6 +99,10 @@ class Question:
     worth : int
     credit : dict
         Share of the worth for a mistake, by its note.
+    partial : bool
+        Whether an answer in several words earns the share of them that is right, beyond what a guess would earn.
+    rubric : list of str
+        What a person looks for who reads the answers.
     entries : dict
         :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
     near : list
@@ -113,6 +118,8 @@ class Question:
         variable=None,
         worth=1,
         credit=None,
+        partial=False,
+        rubric=None,
         hints=None,
         ladder=None,
         after=None,
@@ -129,6 +136,7 @@ class Question:
             dict(credit or {}),
             title or name.partition("/")[2].replace("-", " "),
         )
+        self.partial, self.rubric = partial, list(rubric or [])
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
         self.ladder = ladder_of(public, ladder, turns, solution)
         self.turns, self.turned = list(turns), turned
@@ -146,7 +154,8 @@ class Question:
             *(Mistake("authored", {"text": text}, wrong) for text, wrong in (authored or {}).items()),
             *self._catalogued(),
         ]
-        self.entries = self._entries()
+        self.near = []
+        self.entries = {} if kinds()[public["kind"]].by_a_person else self._entries()
 
     def to_plain(self, answer):
         return to_plain(answer, calls_for(self.public))
@@ -477,7 +486,11 @@ def question(
     if kind not in kinds():
         raise AuthorError(f"{name}: the kind {kind!r} is none of {sorted(kinds())}.")
     known, values = kinds()[kind], kinds()[result or kind]
-    public = {"kind": kind, **(variant or {})}
+    public = {"kind": kind, **(variant or {}), **(known.public(answer) if known.public else {})}
+    if rest.get("rubric") and not known.by_a_person:
+        raise AuthorError(f"{name}: a rubric is for answers that a person reads, of the kind 'free text'.")
+    if rest.get("partial") and kind not in PARTS:
+        raise AuthorError(f"{name}: only answers of the kinds {', '.join(PARTS)} are right in part.")
     if isinstance(symbols, str):
         symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
     symbols = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}

@@ -8,6 +8,7 @@ from sympy import I, Rational, cos, exp, pi, sin, sqrt, tan
 from sympy.core.function import AppliedUndef
 
 from ..checking.plugins import kinds
+from ..checking.units import BASE, unit
 
 #: Ways of writing the sine and the cosine, each a function of the argument.
 SINES = {
@@ -84,7 +85,18 @@ def _common_forms(public, kind, answer):
             ("SymPy", [sympy.sympify(part) for part in answer]),
             ("copy", list(answer)),
         ]
-    if kind == "words":
+    if kind == "measurement":
+        number, text = answer
+        found = unit(text)
+        base = " ".join(f"{name}^{power}" for name, power in zip(BASE, found.exponents) if power) or "1"
+        forms = _common_forms({**public, "kind": "expression"}, "expression", number)
+        forms = [(name, (form, text)) for name, form in forms]
+        return [
+            *forms,
+            ("a list", [number, f" {text} "]),
+            ("in base units", (sympy.sympify(number) * found.size, base)),
+        ]
+    if kind in ("words", "order"):
         return [
             ("list", list(answer)),
             ("tuple", tuple(answer)),
@@ -187,6 +199,8 @@ def _digits(public):
 def random_form(public, answer, chance):
     """Give the same answer in a form made up by chance, as one who simplifies nothing might write it."""
     kind = public["kind"]
+    if kind == "measurement":
+        return (random_form({**public, "kind": "expression"}, answer[0], chance), answer[1])
     if kinds()[kind].text or kind == "function":
         return chance.choice(equivalent_forms(public, answer))[1]
     entries, put = flat(answer)
@@ -263,6 +277,10 @@ def another_answer(public, answer, chance=None):
     if kind == "truth values":
         changed = chance.randrange(len(answer))
         return [part != (order == changed) for order, part in enumerate(answer)]
+    if kind == "order":
+        return chance.sample(list(answer), len(answer))
+    if kind == "measurement":
+        return (another_answer({**public, "kind": "expression"}, answer[0]), answer[1])
     if kind == "words":
         return [another_answer({**public, "kind": "choice"}, part) for part in answer]
     if hasattr(answer, "to_matrix"):

@@ -82,6 +82,8 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
     """
     faults = []
+    if kinds()[question.public["kind"]].by_a_person:
+        return _try_text(question)
     forms = equivalent_forms(question.public, question.answer)
     for form, answer in forms:
         reply = _judge(question, answer)
@@ -125,6 +127,16 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
         question.worth,
         faults,
     )
+
+
+def _try_text(question):
+    """A question whose answers a person reads: the untouched blank is none, and every text is put aside."""
+    outcomes = [_judge(question, answer).outcome for answer in (..., "", question.answer)]
+    faults = [] if outcomes == ["not attempted", "not attempted", "undecided"] else [f"Its answers get {outcomes}."]
+    if not question.rubric:
+        faults.append("Nothing says what a person looks for: give a `rubric`.")
+    name, kind = question.name, question.public["kind"]
+    return Finding(name, kind, [], [], [], Found(0, ""), question.worth, faults)
 
 
 def _judge(question, answer):

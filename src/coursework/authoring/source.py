@@ -7,6 +7,7 @@ import ast
 import contextlib
 import functools
 import hashlib
+import io
 import itertools
 import json
 import re
@@ -32,6 +33,29 @@ DECLARED = "guessable.json"
 
 SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
 HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
+
+
+class Drawing(NamedTuple):
+    """A plot of Matplotlib as the figure of a question: ``drawing(figure, alt)`` in a source.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+    alt : str
+        What it shows, for those who do not see it.
+    """
+
+    figure: object
+    alt: str
+
+    def picture(self):
+        """The same SVG each time, with its letters as outlines: nobody needs the typeface."""
+        import matplotlib
+
+        text = io.StringIO()
+        with matplotlib.rc_context({"svg.hashsalt": "coursework", "svg.fonttype": "path"}):
+            self.figure.savefig(text, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})
+        return re.sub(r"^.*?(?=<svg)", "", text.getvalue(), flags=re.S)
 
 
 class Source(NamedTuple):
@@ -138,7 +162,7 @@ def read_source(path, variant=0, edition="", only=None):
                 about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
             questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
 
-    namespace = {"__name__": "__main__", "question": record_question, "draw": draw}
+    namespace = {"__name__": "__main__", "question": record_question, "draw": draw, "drawing": Drawing}
     needed = range(len(notebook.cells)) if only is None else cells_needed(notebook, only)
     with _replaced(coursework, "check", record_check), _replaced(coursework, "me", lambda identity="": None):
         for number, cell in enumerate(notebook.cells):

@@ -24,6 +24,7 @@ from . import mistakes
 from .evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol, real, values
 from .plugins import Kind, kind_of_values, kinds
 from .points import points
+from .units import UnknownUnit, unit
 
 #: What an exact answer may be off by, absolutely and relatively: above all rounding of doubles.
 EXACT = MP.mpf(10) ** -12
@@ -31,6 +32,10 @@ EXACT = MP.mpf(10) ** -12
 EXACT_WIDTH = 1000
 #: What an answer may be off by that is said to be nearly right where an exact one is asked for: three digits.
 NEAR = MP.mpf("2e-3")
+#: What two units that measure something else are apart, in tolerances.
+FAR = 10**6
+#: What stands between the parts of an answer in words.
+PARTS = {"words": " | ", "order": " < ", "truth values": ""}
 FUNCTIONS = SimpleNamespace(sin=MP.sin, cos=MP.cos, norm=lambda *parts: MP.sqrt(sum(x * x for x in parts)))
 
 
@@ -99,7 +104,7 @@ def read(question, plain):
     for point in points(question):
         results = values(plain["nodes"], point)
         numbers.append([_number(question, results[leaf]) for leaf in leaves])
-    return Reading(numbers)
+    return Reading(_with_units(question, value, numbers) if question["kind"] == "measurement" else numbers)
 
 
 def fingerprint(question, reading, near=False):
@@ -304,6 +309,38 @@ def components(value, length, wanted):
     raise shape_fault(wanted, value)
 
 
+def _measurement(question, value):
+    wanted = "A number and its unit, such as `(3.2, 'N m')`,"
+    if value[0] != "list" or len(value[1]) != 2 or value[1][1][0] != "text":
+        raise shape_fault(wanted, value)
+    return [leaf(value[1][0], wanted)]
+
+
+def _with_units(question, value, numbers):
+    """The number in base units, in terms of the question's scale, and which these are.
+
+    The unit is part of the answer: another one differs from it by more than any tolerance.
+    """
+    text = value[1][1][1]
+    try:
+        found = unit(text)
+    except UnknownUnit as error:
+        raise Fault(
+            "unknown unit",
+            f"`{error}` is no unit that is known here. Write products with a space and quotients with a stroke: "
+            "`kN m`, `m/s^2`, `J/(kg K)`.",
+        ) from None
+    absolute, _ = tolerances(question)
+    far = [exponent * FAR * max(absolute, NEAR) for exponent in found.exponents]
+    scale = MP.mpf(str(question["scale"]))
+    return [[number * found.size / scale, *far] for [number] in numbers]
+
+
+def scale_of(answer):
+    """What the sealed part of a measurement tells of its unit: how large it is, and not what it measures."""
+    return {"scale": MP.nstr(unit(answer[1]).size, 15)}
+
+
 def _vector(question, value):
     length = question.get("length", 3)
     frame = question.get("frames", (None,))[0]
@@ -408,7 +445,26 @@ def _words(question, plain):
     wanted = f"A list of {length} words, each one of {listed(options)},"
     if value[0] != "list" or len(value[1]) != length:
         raise shape_fault(wanted, value)
-    return " | ".join(_choice(question, {"value": part}) for part in value[1])
+    return PARTS["words"].join(_choice(question, {"value": part}) for part in value[1])
+
+
+def _order(question, plain):
+    value, options = plain["value"], question["options"]
+    wanted = f"A list with each of {listed(options)} once"
+    if value[0] != "list" or len(value[1]) != len(options):
+        raise shape_fault(wanted, value)
+    parts = [_choice(question, {"value": part}) for part in value[1]]
+    twice = next((part for part in parts if parts.count(part) > 1), None)
+    if twice is not None:
+        raise Fault("shape", f"{wanted} is asked for; here `{twice}` stands {parts.count(twice)} times.")
+    return PARTS["order"].join(parts)
+
+
+def _free_text(question, plain):
+    text = word(plain, "A text").strip()
+    if not text:
+        raise Blank
+    return text
 
 
 #: What a keyboard or a text program may make of a minus.
@@ -479,6 +535,8 @@ BEGIN = {
     "choice": "Put each of the possibilities to the test on the simplest case that tells them apart.",
     "words": "Take them one by one, and begin with those that you are sure of; find a test for the others.",
     "truth values": "Look for an example that breaks a claim; where there is none, look for the proof.",
+    "measurement": "Work with the units as with the numbers: what do those that are given make together?",
+    "order": "Find the first and the last; then compare two at a time.",
     "function": "Work out by hand what it should return for the simplest arguments, and compare.",
 }
 KINDS = {
@@ -496,5 +554,23 @@ KINDS = {
     "truth values": Kind(
         begin=BEGIN["truth values"], text=_truths, needs=("length",), wrong=SEVERAL, mistakes=mistakes.of_parts
     ),
+    "measurement": Kind(
+        begin=BEGIN["measurement"],
+        entries=_measurement,
+        wrong="It is a number with a unit; the number, the unit or both are not the right ones.",
+        public=scale_of,
+        mistakes=mistakes.of_measurement,
+        messages=mistakes.OF_MEASUREMENTS,
+        details={"power": mistakes.POWERS},
+    ),
+    "order": Kind(
+        begin=BEGIN["order"],
+        text=_order,
+        needs=("options",),
+        wrong="The order is not right.",
+        mistakes=mistakes.of_order,
+        messages=mistakes.OF_ORDERS,
+    ),
+    "free text": Kind(text=_free_text, by_a_person=True),
     "function": Kind(begin=BEGIN["function"], needs=("calls", "result")),
 }

@@ -64,6 +64,17 @@ MESSAGES = {
     ),
     "authored": lambda question, text: text,
 }
+#: Prefixes that are lost or read wrongly, as powers of ten.
+POWERS = (3, -3, 6, -6, 2, -2)
+OF_MEASUREMENTS = {
+    "power of ten": lambda question, power: (
+        f"This is $10^{{{power}}}$ times what is asked for. Has a prefix got lost, as in kN or mm?"
+    ),
+}
+OF_ORDERS = {
+    "turned round": lambda question: "The order is turned round: the last comes first here.",
+    "two interchanged": lambda question: "Two that are neighbours are interchanged; all the others are in order.",
+}
 
 
 def numbered(question):
@@ -180,6 +191,28 @@ def of_parts(question, answer, turns, turned):
         for option in question.get("options") or [True, False]:
             if option != right:
                 yield Mistake("one wrong", {"number": len(answer)}, answer[:place] + [option] + answer[place + 1 :])
+
+
+def of_order(question, answer, turns, turned):
+    """The order turned round, and two neighbours in each other's place."""
+    answer = list(answer)
+    yield Mistake("turned round", {}, answer[::-1])
+    if len(answer) > 3:
+        for place in range(len(answer) - 1):
+            first, second = answer[place : place + 2]
+            yield Mistake("two interchanged", {}, [*answer[:place], second, first, *answer[place + 2 :]])
+
+
+def of_measurement(question, answer, turns, turned):
+    """What is mixed up in a number, with the unit as it is; and a prefix that is lost."""
+    import sympy
+
+    number, unit = answer
+    for mistake in of_expression(question, number, turns, turned):
+        if mistake.note != "reciprocal":
+            yield mistake._replace(answer=(mistake.answer, unit))
+    for power in POWERS:
+        yield Mistake("power of ten", {"power": power}, (sympy.sympify(number) * sympy.Integer(10) ** power, unit))
 
 
 def of_factors(answer):

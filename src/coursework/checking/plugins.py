@@ -64,6 +64,10 @@ class Kind(NamedTuple):
         The answer that successive turns lead to, where ``turns`` may be given.
     forms : function (question, answer) -> list of (str, answer)
         Further ways of writing a right answer, to try a question with.
+    public : function (answer) -> dict
+        What of the right answer a student's computer must know, and may.
+    by_a_person : bool
+        Whether a person reads the answers; then nothing is sealed, and no program says what is right.
     another : function (question, answer) -> answer
         An answer of the right form that is another one.
     """
@@ -85,6 +89,8 @@ class Kind(NamedTuple):
     build: Callable | None = None
     forms: Callable | None = None
     another: Callable | None = None
+    public: Callable | None = None
+    by_a_person: bool = False
 
 
 @functools.cache

@@ -45,7 +45,8 @@ def me(identity: str = "") -> None:
             KEPT.write_text(_identity, "utf8")
         elif KEPT.is_file():
             _identity = plain_identity(KEPT.read_text("utf8"))
-            print(f"The numbers below are those of {_identity}, as you said in another notebook.")
+            if _identity:
+                print(f"The numbers below are those of {_identity}, as you have said before.")
     except (OSError, UnicodeError):
         pass  # a folder that cannot be written to: then it is said anew in each notebook
 

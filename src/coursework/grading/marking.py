@@ -10,6 +10,7 @@ import contextlib
 import hashlib
 import importlib
 import io
+import itertools
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,7 +18,7 @@ from types import SimpleNamespace
 from ..authoring.author import AuthorError
 from ..authoring.source import DECLARED, checked_names, declared_strengths, read_source
 from ..checking.evaluate import MP
-from ..checking.kinds import Blank, Fault, Undecidable, canonical, read
+from ..checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, read
 from ..checking.plain import NotPlain, read_plain
 from ..checking.plugins import packages
 from ..checking.questions import compare
@@ -128,6 +129,8 @@ def about(question, secret, guessable=None):
                 "plain": question.plain if question.public["kind"] != "function" else None,
                 "secret": in_secret.secret_of(question, secret),
                 "guessable": guessable,
+                "partial": read(question.public, question.plain).text if question.partial else None,
+                "rubric": question.rubric,
             }
         )
     )
@@ -240,6 +243,11 @@ def _mark(name, question, answer, finished, limited):
     ):
         reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
     share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
+    if reply.outcome == "wrong" and question["partial"] and reply.note != "other numbers":
+        right, parts, beyond_chance = parts_right(question, text)
+        share = max(share, beyond_chance)
+        pairs = "pairs stand in the right order" if question["public"]["kind"] == "order" else "are right"
+        reply.messages.append(f"{right} of {parts} {pairs}.")
     return {
         "outcome": reply.outcome,
         "note": reply.note,
@@ -251,6 +259,25 @@ def _mark(name, question, answer, finished, limited):
         "version": question["version"],
         "guessable": question["guessable"],
     }
+
+
+def parts_right(question, text):
+    """How many parts of an answer in words are right, of how many, and the share of credit that this earns.
+
+    The parts of an order are its pairs: which of the two comes first. Of the share, what a guess has right on average
+    is taken off, so that guessing earns nothing on average: with m words to choose from, it has 1/m right.
+    """
+    public, right = question["public"], question["partial"]
+    if public["kind"] == "order":
+        given, places = text.split(PARTS["order"]), {part: k for k, part in enumerate(right.split(PARTS["order"]))}
+        good = [places[first] < places[second] for first, second in itertools.combinations(given, 2)]
+        chance = 1 / 2
+    else:
+        between = PARTS[public["kind"]]
+        given, wanted = ((one.split(between) if between else list(one)) for one in (text, right))
+        good = [one == other for one, other in zip(given, wanted, strict=True)]
+        chance = 1 / len(public.get("options", "TF"))
+    return sum(good), len(good), max(0, (sum(good) / len(good) - chance) / (1 - chance))
 
 
 def mark_with_siblings(name, question, answers, remembered, finished=True, limited=False):

@@ -424,6 +424,8 @@ def application(graded, grader, port, hide_names=False):
     secret = secrets.token_urlsafe(24)
     hosts = (f"{ALONE}:{port}", f"localhost:{port}")
     rubrics = defaultdict(dict)
+    for name, about in graded.questions.items():
+        rubrics[name].update(dict.fromkeys(about.get("rubric", ())))
     for one in graded.ledger.decisions:
         rubrics[one.question].update(dict.fromkeys(one.rubric))
     return web.Application(

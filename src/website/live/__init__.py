@@ -4,6 +4,7 @@ The site's folder ``runtime`` holds all of it, and nothing there is loaded befor
 
 - ``pyodide-<hash>/``: the interpreter, as npm brings it (``pyodide.js`` and what it loads);
 - ``wheels/<hash>/*.whl``: SymPy, mpmath and our own packages, byte-compiled;
+- ``sealed-<hash>/``: the sealed variants of the book's questions, of which a reader's Python fetches its own;
 - ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file names of
   wheels in it are relative to the lock file. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says;
 - ``scripts-<hash>/``: what makes the cells of a page run in place (``js``, ``python``).

@@ -17,8 +17,10 @@ from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
 OURS = ("orientation/", "orientation_figures/", "orientation_recordings/", "orientation_course/", "coursework/")
+# The sealed variants are fetched one by one: a reader needs few of them. This file says where they are.
+APART, ELSEWHERE = "/sealed/variants/", "/sealed/elsewhere.txt"
 # What nobody needs in a browser: tests, and what Jedi, which completes names, knows of 200 packages.
-LEFT_OUT = ("/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
+LEFT_OUT = (APART, "/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
 THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)  # the same sources give the same bytes
 
 
@@ -35,9 +37,16 @@ def compiled(name, source):
     return {name: source, f"{folder}/__pycache__/{file[:-3]}.{sys.implementation.cache_tag}.pyc": byte_code}
 
 
+def place_of_variants(wheel):
+    """The file that says where the sealed variants are, with an address that follows from their contents."""
+    names = sorted(name for name in wheel.namelist() if APART in name)
+    digest = hashlib.sha256(b"".join(name.encode() + wheel.read(name) for name in names)).hexdigest()
+    return {name.partition(APART)[0] + ELSEWHERE: f"sealed-{digest[:12]}/".encode() for name in names}
+
+
 def compile_wheel(path, target):
-    files = {}
     with zipfile.ZipFile(path) as wheel:
+        files = place_of_variants(wheel)
         for name in wheel.namelist():
             if not any(part in name for part in LEFT_OUT) and not name.endswith((".dist-info/RECORD", "/")):
                 files |= compiled(name, wheel.read(name))

@@ -11,6 +11,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import zipfile
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -180,6 +181,21 @@ def numerical_packages(setting, target, official, address):
     return chosen
 
 
+def write_variants(wheel, compiled, target):
+    """Put beside the wheels what ``compiled`` has not of ``wheel``: the sealed variants, each fetched alone."""
+    for outdated in target.glob("sealed-*/"):
+        shutil.rmtree(outdated)
+    with zipfile.ZipFile(wheel) as whole, zipfile.ZipFile(compiled) as rest:
+        for place in rest.namelist():
+            if place.endswith("/sealed/elsewhere.txt"):
+                folder, address = place.removesuffix("elsewhere.txt"), rest.read(place).decode()
+                for name in whole.namelist():
+                    if name.startswith(f"{folder}variants/"):
+                        file = target / address / name.removeprefix(folder)
+                        file.parent.mkdir(parents=True, exist_ok=True)
+                        file.write_bytes(whole.read(name))
+
+
 def wheels_of_widgets():
     """The wheels that a moving figure's Python side needs, anywidget the first of them."""
     names = [name.replace("-", "_") for name in ("anywidget", *WIDGETS)]
@@ -200,9 +216,12 @@ def write(site, setting):
         if name.endswith(".js"):
             content = content.replace(b"pyodide.asm.mjs", b"pyodide.asm.js")
         (pyodide / name).write_bytes(content)
-    wheels = [*sorted(FETCHED.glob("*.whl")), site / TAKE_AWAY / wheel_name(), *wheels_of_widgets()]
+    own = site / TAKE_AWAY / wheel_name()
+    wheels = [own, *sorted(FETCHED.glob("*.whl")), *wheels_of_widgets()]
     official = official_lock()
-    packages = own_packages(compile_wheels(wheels), target)
+    compiled = compile_wheels(wheels)
+    packages = own_packages(compiled, target)
+    write_variants(own, compiled[0], target)
     packages |= numerical_packages(setting, target, official, official_address())
     first = with_dependencies([DISTRIBUTION], packages)
     loaded = [pyodide / name for name in PYODIDE_FILES]

@@ -28,6 +28,14 @@ export function nameCells(cells) {
   });
 }
 
+// What coursework keeps beside a notebook, for all pages: who works here, and how far. {text, at} by the file's name.
+const COURSEWORK = `${PREFIX}coursework `;
+export const coursework = {
+  read: (name) => parsed(COURSEWORK + name),
+  write: (name, text, at = Date.now()) => put(COURSEWORK + name, { text, at }),
+  all: () => Object.fromEntries(Answers.entries(COURSEWORK).map(([name, { text }]) => [name, text])),
+};
+
 function parsed(key) {
   try {
     return JSON.parse(localStorage.getItem(key));

@@ -1,8 +1,8 @@
 // Loaded when the reader first asks for code to run: the page's cells, the bar below, and the order of runs.
 import { Cell } from "./cell.js";
-import { Answers, fingerprint, nameCells, PREFIX } from "./answers.js";
+import { Answers, coursework, fingerprint, nameCells, PREFIX } from "./answers.js";
 import { named } from "./names.js";
-import { bringTogether, readCopy } from "./notebooks.js";
+import { agreeOnIdentity, bringTogether, readCopy } from "./notebooks.js";
 import { Figures } from "./figures.js";
 import { element, preformatted } from "./output.js";
 import { Python } from "./python.js";
@@ -32,6 +32,33 @@ class Page {
   // The editors are made while Python is being loaded, which takes longer.
   edit() {
     for (const cell of this.cells) cell.edit();
+    this.askWho();
+  }
+
+  // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.
+  askWho() {
+    const cell = this.cells.find(({ original }) => /^me\(/m.test(original));
+    if (!cell || this.who?.contains(document.activeElement)) return;
+    const name = coursework.read("me.txt")?.text ?? "";
+    const field = Object.assign(element("input"), { value: name, name: "me", autocomplete: "email", spellcheck: false });
+    const label = element("label", "", "Your name or address, as your course has it: ", field);
+    const button = element("button", "", name ? "Change" : "Give me my own numbers");
+    const words = name ? `The numbers on these pages are those of ${name}.`
+      : "These are the numbers that everybody sees. Whoever says who they are gets their own; it stays in this browser.";
+    const form = element("form", "live-note live-choice live-who", element("p", "", words), label, " ", button);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      if (field.value.trim() === name) return;
+      coursework.write("me.txt", field.value.trim());
+      field.blur();
+      button.blur();
+      for (const other of this.cells) other.ran = false;
+      this.askWho();
+      this.bar.say(field.value.trim() ? "From the next run on, the numbers are your own." : "From the next run on, the numbers are those that everybody sees.");
+    });
+    if (this.who) this.who.replaceWith(form);
+    else cell.input.after(form);
+    this.who = form;
   }
 
   // --- the reader's edits ----------------------------------------------------------------------
@@ -70,6 +97,7 @@ class Page {
   async lookAtNotebook() {
     if (!localStorage.getItem(this.answers.agreed)) return;
     try {
+      await agreeOnIdentity(this.answers.page);
       const copy = await readCopy(`${this.answers.page}.ipynb`);
       if (copy) bringTogether(this.answers.page, copy);
     } catch (error) {
@@ -206,8 +234,15 @@ class Page {
     if (message.type === "progress" && !this.has) this.bar.progress(message.bytes, message.all);
     else if (message.type === "fetching") this.bar.say(`${named(message.name)} is being fetched from ${message.place} ...`);
     else if (message.type === "output") cell.take(message.message);
+    else if (message.type === "kept") this.keepOf(message);
     else if (message.type === "widget") this.figures.hear(message.message);
     else if (message.type === "observed") this.figures.observed(message.widget, message.message);
+  }
+
+  // Coursework has written down who works here, or how far they are.
+  keepOf({ name, text }) {
+    coursework.write(name, text);
+    if (name === "me.txt") this.askWho();
   }
 
   async next(cell) {
@@ -222,8 +257,8 @@ class Page {
     if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
     // Code that the page hides above this cell; what it puts out belongs to no cell.
     const { before } = cell.kind;
-    const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }, this.retry) : { status: "ok" };
-    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, cell, this.retry) : hidden;
+    const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }, this.retry, coursework.all()) : { status: "ok" };
+    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, cell, this.retry, coursework.all()) : hidden;
     this.retry = false;
     this.settle(cell, outcome);
     cell.asked = false;

@@ -1,5 +1,5 @@
 // The notebooks that JupyterLite keeps in this browser, and how one of them and its page come to hold the same.
-import { Answers, fingerprint, nameCells, SITE } from "./answers.js";
+import { Answers, coursework, fingerprint, nameCells, SITE } from "./answers.js";
 
 const DATABASE = `JupyterLite Storage - ${SITE}lite/`;
 const text = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
@@ -41,6 +41,19 @@ export function newFile(path, content) {
     name: path.split("/").at(-1), path, last_modified: now, created: now, format: "json",
     mimetype: "application/json", content, size: JSON.stringify(content).length, writable: true, type: "notebook",
   };
+}
+
+// Who works here is said once, on a page or in a notebook: the newer of the two counts for both.
+export async function agreeOnIdentity(page, mayWrite = false) {
+  const folder = `${page.split("/").slice(0, -1).join("/")}/.coursework`, path = `${folder}/me.txt`;
+  const here = coursework.read("me.txt"), there = await readCopy(path);
+  if (there && there.content !== here?.text && Date.parse(there.last_modified) > (here?.at ?? 0)) {
+    coursework.write("me.txt", there.content, Date.parse(there.last_modified));
+  } else if (mayWrite && here && here.text !== there?.content) {
+    const about = { ...newFile(path, here.text), format: "text", mimetype: "text/plain", type: "file", size: here.text.length };
+    await writeCopy(folder, { ...newFile(folder, null), format: "json", mimetype: "", type: "directory", size: 0 });
+    await writeCopy(path, about);
+  }
 }
 
 // The code cells of a notebook that are the book's: their names, texts, and the code that the book had there.

@@ -43,12 +43,12 @@ export class Python {
     } else if (data.job === undefined || data.job === this.current?.job) this.listener(data, this.current?.show);
   }
 
-  // Run code; ``show`` is given each output as it comes. Resolves to the outcome.
-  run(code, name, needs, show, retry) {
+  // Run code; ``kept`` are the files of coursework as the browser has them; ``show`` is given each output as it comes. Resolves to the outcome.
+  run(code, name, needs, show, retry, kept) {
     return new Promise((settle) => {
       this.current = { job: ++this.jobs, settle, show };
       if (this.interrupts) this.interrupts[0] = 0;
-      this.worker.postMessage({ type: "run", job: this.current.job, code, name, needs, retry });
+      this.worker.postMessage({ type: "run", job: this.current.job, code, name, needs, retry, kept });
     });
   }
 

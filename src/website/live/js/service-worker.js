@@ -35,7 +35,7 @@ async function copyOf(url) {
 async function answer(request) {
   const url = new URL(request.url);
   // What never changes under its address need not be asked for again.
-  const lasts = url.searchParams.has("v") || /\/(scripts|pyodide)-[0-9a-f]{12}\/|\/wheels\//.test(url.pathname);
+  const lasts = url.searchParams.has("v") || /\/(scripts|pyodide|sealed)-[0-9a-f]{12}\/|\/wheels\//.test(url.pathname);
   const kept = lasts && await copyOf(url);
   if (kept) return isolated(kept);
   try {

@@ -1,0 +1,99 @@
+"""Units of measurement as texts, ``'kN m'`` or ``'m/s^2'``: how large each is, and of which base units it is made.
+
+Only the names of the International System, and those that it accepts beside its own (brochure of the BIPM, 9th
+edition, tables 1 to 8).
+"""
+
+import re
+from fractions import Fraction
+from typing import NamedTuple
+
+from .evaluate import MP
+
+#: The base units, in the order of the exponents.
+BASE = ("m", "kg", "s", "A", "K", "mol", "cd")
+PREFIXES = {
+    "": 0, "n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "h": 2, "k": 3, "M": 6, "G": 9, "T": 12,
+}  # fmt: skip
+#: Units with prefixes: the size in base units, and the exponents of m, kg, s, A, K, mol, cd.
+WITH_PREFIX = {
+    "m": (1, (1,)), "g": (Fraction(1, 1000), (0, 1)), "s": (1, (0, 0, 1)), "A": (1, (0, 0, 0, 1)),
+    "K": (1, (0, 0, 0, 0, 1)), "mol": (1, (0, 0, 0, 0, 0, 1)), "cd": (1, (0, 0, 0, 0, 0, 0, 1)),
+    "N": (1, (1, 1, -2)), "Pa": (1, (-1, 1, -2)), "J": (1, (2, 1, -2)), "W": (1, (2, 1, -3)), "Hz": (1, (0, 0, -1)),
+    "C": (1, (0, 0, 1, 1)), "V": (1, (2, 1, -3, -1)), "Ω": (1, (2, 1, -3, -2)), "ohm": (1, (2, 1, -3, -2)),
+    "F": (1, (-2, -1, 4, 2)), "T": (1, (0, 1, -2, -1)), "Wb": (1, (2, 1, -2, -1)), "H": (1, (2, 1, -2, -2)),
+    "L": (Fraction(1, 1000), (3,)), "l": (Fraction(1, 1000), (3,)), "rad": (1, ()), "bar": (100_000, (-1, 1, -2)),
+}  # fmt: skip
+WITHOUT_PREFIX = {
+    "min": (60, (0, 0, 1)), "h": (3600, (0, 0, 1)), "d": (86_400, (0, 0, 1)), "t": (1000, (0, 1)), "1": (1, ()),
+    "°": (MP.pi / 180, ()), "deg": (MP.pi / 180, ()), "turn": (2 * MP.pi, ()), "%": (Fraction(1, 100), ()),
+}  # fmt: skip
+RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+TOKEN = re.compile(
+    r"\s*(?:(?P<unit>[^\W\d_]+|°|%|1)(?:(?:\^|\*\*)?\(?(?P<power>-?\d+)\)?)?|(?P<over>/)|(?P<times>[*·⋅×])|(?P<open>\()|(?P<close>\)))"
+)
+
+
+class UnknownUnit(ValueError):
+    """A text is no unit; the message quotes the part that is not understood."""
+
+
+class Unit(NamedTuple):
+    """How large a unit is in base units, and their exponents."""
+
+    size: object
+    exponents: tuple
+
+
+def unit(text):
+    """Read a unit.
+
+    Raises
+    ------
+    UnknownUnit
+
+    >>> unit("kN m").exponents, int(unit("kN m").size)
+    ((2, 1, -2, 0, 0, 0, 0), 1000)
+    >>> unit("J/(kg K)") == unit("m²·s⁻²/K"), unit("N/m/s") == unit("kg s^-3")
+    (True, True)
+    """
+    size, exponents, place, sign, inside = MP.one, [0] * len(BASE), 0, 1, None
+    plain = text.translate(RAISED).replace("\u03bc", "µ").replace("\u2126", "Ω").strip()
+    while place < len(plain):
+        found = TOKEN.match(plain, place)
+        if not found:
+            raise UnknownUnit(plain[place:][:20])
+        place = found.end()
+        if found["over"]:
+            sign = -1
+        elif found["open"]:
+            inside = sign
+        elif found["close"]:
+            sign, inside = 1, None
+        elif found["unit"]:
+            one, power = _named(found["unit"]), int(found["power"] or 1) * sign
+            if abs(power) > 12:
+                raise UnknownUnit(found[0].strip())
+            size *= one.size**power
+            exponents = [a + power * b for a, b in zip(exponents, one.exponents)]
+            # What stands behind a stroke is one unit, or those in brackets.
+            sign = 1 if inside is None else inside
+    return Unit(size, tuple(exponents))
+
+
+def _named(name):
+    """One unit, with its prefix."""
+    whole = {**WITH_PREFIX, **WITHOUT_PREFIX}
+    if name in whole:
+        return _unit(whole[name])
+    for prefix, power in PREFIXES.items():
+        if prefix and name.startswith(prefix) and name[len(prefix) :] in WITH_PREFIX:
+            one = _unit(WITH_PREFIX[name[len(prefix) :]])
+            return Unit(one.size * MP.mpf(10) ** power, one.exponents)
+    raise UnknownUnit(name[:20])
+
+
+def _unit(about):
+    size, exponents = about
+    size = MP.mpf(size.numerator) / size.denominator if isinstance(size, Fraction) else MP.mpf(size)
+    return Unit(size, (*exponents, *[0] * (len(BASE) - len(exponents))))
