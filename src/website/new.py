@@ -67,6 +67,19 @@ EXAMPLES = {
         "a list of two texts, each `'left'` or `'right'`",
         "length=2, options=['left', 'right']",
     ),
+    "measurement": Example("rate", "rate = (3.2, 'rad/s')", "the number and its unit, such as `(1.5, 'm/s')`", ""),
+    "order": Example(
+        "steps",
+        "steps = ['first', 'then', 'last']",
+        "a list of the three texts in their order",
+        "options=['first', 'last', 'then']",
+    ),
+    "free text": Example(
+        "why",
+        "why = 'Since the axis is shared.'",
+        "one or two sentences, as a text",
+        "rubric=['names the shared axis']",
+    ),
     "truth values": Example("holds", "holds = [True, False]", "a list of two truth values", "length=2"),
     "function": Example(
         "doubled",

@@ -18,7 +18,8 @@ from pathlib import Path
 SITE = sysconfig.get_path("purelib")
 OURS = ("orientation/", "orientation_figures/", "orientation_recordings/", "orientation_course/", "coursework/")
 # The sealed variants are fetched one by one: a reader needs few of them. This file says where they are.
-APART, ELSEWHERE = "/sealed/variants/", "/sealed/elsewhere.txt"
+APART = "/sealed/variants/"
+ELSEWHERE = "/sealed/elsewhere.txt"
 # What nobody needs in a browser: tests, and what Jedi, which completes names, knows of 200 packages.
 LEFT_OUT = (APART, "/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
 THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)  # the same sources give the same bytes
