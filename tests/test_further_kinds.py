@@ -119,6 +119,15 @@ def test_a_number_with_its_unit_is_tried_as_others_are():
     assert not attack(hard, "", 2000).way
 
 
+def test_the_unit_of_an_exam_is_not_told():
+    """What a student receives is the same for another unit."""
+    one, other = (make("measurement", (3, unit), exam=True).sealed() for unit in ("kN m", "mm"))
+    assert one == other
+    reply = questions.judge("trial/one", one, to_plain((3, "kN m")))[0]
+    assert reply.outcome == "recorded"
+    assert questions.judge("trial/one", one, to_plain((3, "kNm")))[0].note == "unknown unit"
+
+
 # --- orders and lists -----------------------------------------------------------------------------
 
 PLANETS = ["Mercury", "Venus", "Earth", "Mars", "Jupiter"]

@@ -46,6 +46,8 @@ class Found(NamedTuple):
     way: str
 
     def __str__(self):
+        if not self.tries:
+            return "there is nothing to try a guess on"
         if self.way:
             return f"found after {self.tries} slow hashes ({self.way})"
         return f"not found within {self.tries} slow hashes"

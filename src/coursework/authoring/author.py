@@ -301,7 +301,7 @@ class Question:
         """
         if self.public.get("exam"):
             self.pages = first or Pages(b"")
-            told = {name: value for name, value in self.public.items() if name != "every symbol"}
+            told = {name: value for name, value in self.public.items() if name not in ("every symbol", "scale")}
             salt = hashlib.sha256(f"{self.name} {self.public.get('variant', 0)}".encode()).hexdigest()[:16]
             return {**told, "salt": salt, "lockers": "", "worth": self.worth}
         pages = self.pages = Pages(

@@ -37,7 +37,7 @@ def trial(course, name, page):
     texts = "".join(
         f"<section><h2>{html.escape(question.name)}</h2>{to_page(_text(source, question))}"
         f"<details><summary>The worked solution</summary>{to_page(question.solution) or '<p>None.</p>'}</details>"
-        f"{_hints(question)}</section>"
+        f"{_hints(question)}{_rubric(question)}</section>"
         for question in chosen
     )
     declared = declared_strengths(course.sources)
@@ -57,6 +57,11 @@ def _with_mathematics(page):
 def _text(source, question):
     """The text of a question, with its picture."""
     return whole_text(question.public) if "text" in question.public else text_of(source, question)
+
+
+def _rubric(question):
+    lines = "".join(f"<li>{to_html(line)}</li>" for line in question.rubric)
+    return f"<h3>What a person looks for</h3><ul>{lines}</ul>" if lines else ""
 
 
 def _hints(question):

@@ -332,7 +332,7 @@ def _with_units(question, value, numbers):
         ) from None
     absolute, _ = tolerances(question)
     far = [exponent * FAR * max(absolute, NEAR) for exponent in found.exponents]
-    scale = MP.mpf(str(question["scale"]))
+    scale = MP.mpf(str(question.get("scale", 1)))  # in an exam it is not told
     return [[number * found.size / scale, *far] for [number] in numbers]
 
 
