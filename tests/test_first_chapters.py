@@ -99,6 +99,13 @@ def test_a_chapter_says_what_for_shows_something_that_moves_and_sums_up(name):
 
 
 @pytest.mark.parametrize("name", ALL)
+def test_a_chapter_has_six_sealed_questions(name):
+    notebook = nbformat.read(REPOSITORY / "exercises" / f"{name}.ipynb", as_version=4)
+    code = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "code")
+    assert len(set(re.findall(rf"^check\([\"']({name}/[\w-]+)[\"']", code, re.MULTILINE))) >= 6
+
+
+@pytest.mark.parametrize("name", ALL)
 def test_directives_begin_their_line(name):
     """Within a line they would be printed as they stand, and no warning says so."""
     assert re.findall(r"^[^`:\n].*(?:`{3,}|:{3,})\{[\w-]+\}.*$", text_of(name), re.MULTILINE) == []

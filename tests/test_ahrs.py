@@ -1,0 +1,117 @@
+"""Orientation from sensors, motion and means, against the package ahrs, which others wrote for the same purposes.
+
+Four of its parts are no judges, as of 0.3.1: its QUEST squares a matrix entry by entry and never begins Newton's
+method, its ``sarabandi`` and ``angular_distance`` disagree with SciPy, and its Mahony filter loses the recording.
+"""
+
+import ahrs
+import numpy as np
+import pytest
+from ahrs.common.orientation import hughes, itzhack, shepperd, slerp
+from ahrs.filters import TRIAD, AngularRate, Davenport, Madgwick
+from ahrs.utils import metrics
+from orientations import random_unit_vectors
+
+import orientation_recordings as recordings
+from orientation import (
+    MultiplicativeKalmanFilter,
+    angle_between,
+    dcm_from_directions,
+    dcm_from_quaternion,
+    dcm_from_rotation_vector,
+    dcm_from_two_directions,
+    dcms_after_turns,
+    interpolate_quaternions,
+    mean_orientation,
+    quaternion_from_dcm,
+    random_orientations,
+)
+
+TURNS = random_orientations(30, 3)
+
+
+def noisy(dcm, directions, seed, size):
+    return directions @ dcm.T + size * np.random.default_rng(seed).normal(size=directions.shape)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_two_directions_as_its_triad(seed):
+    known = random_unit_vectors(2, seed)
+    seen = noisy(TURNS[seed], known, seed, 0.05)
+    theirs = TRIAD(v1=known[0], v2=known[1]).estimate(*seen)
+    assert abs(dcm_from_two_directions(seen, known) - theirs).max() < 1e-14
+    assert abs(dcm_from_two_directions(seen[::-1], known[::-1]) - theirs).max() > 1e-3  # the order counts
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_weighted_directions_as_its_davenport(seed):
+    weights = np.array([3.0, 1.0])
+    judge = Davenport(magnetic_dip=60.0, weights=weights, gravity=9.8)
+    known = np.array([judge.g_q, judge.m_q])
+    seen = noisy(TURNS[seed], known, seed, 0.05)
+    theirs = judge.estimate(*seen)
+    theirs = dcm_from_quaternion(theirs / np.linalg.norm(theirs))
+    # It takes the lengths as they are, here they are taken off: so they count as weights.
+    lengths = np.linalg.norm(known, axis=1) * np.linalg.norm(seen, axis=1)
+    ours = dcm_from_directions(seen, known, 1 / np.sqrt(weights * lengths))
+    assert angle_between(ours, theirs) < 1e-10
+    assert angle_between(dcm_from_directions(seen, known, 1 / np.sqrt(lengths)), theirs) > 1e-6
+
+
+def test_its_matrices_are_transposes_and_its_quaternions_ours():
+    for dcm, quaternion in zip(TURNS, quaternion_from_dcm(TURNS), strict=True):
+        assert abs(ahrs.Quaternion(quaternion).to_DCM().T - dcm).max() < 1e-14
+        for back in (shepperd, itzhack, hughes):
+            found = np.real(back(dcm))
+            assert angle_between(dcm_from_quaternion(found / np.linalg.norm(found)), dcm) < 1e-6, back.__name__
+
+
+def test_a_gyroscope_is_integrated_as_it_does():
+    rates, step = np.random.default_rng(4).normal(size=(300, 3)), 0.01
+    theirs = AngularRate(gyr=rates, frequency=1 / step, method="closed", q0=np.array([1.0, 0, 0, 0])).Q
+    ours = dcms_after_turns(np.eye(3), step * rates[1:])  # of the first sample it keeps the start
+    assert angle_between(dcm_from_quaternion(theirs), ours).max() < 1e-12
+
+
+def test_distances_means_and_ways_between():
+    first, second = TURNS[:15], TURNS[15:]
+    angles = angle_between(first, second)
+    q, p = quaternion_from_dcm(first), quaternion_from_dcm(second)
+    for k, angle in enumerate(angles):
+        assert metrics.chordal(first[k], second[k]) == pytest.approx(np.sqrt(8) * np.sin(angle / 2), abs=1e-12)
+        assert metrics.qdist(q[k], p[k]) == pytest.approx(2 * np.sin(angle / 4), abs=1e-12)
+    scattered = dcm_from_rotation_vector(np.random.default_rng(5).normal(scale=0.4, size=(20, 3))) @ TURNS[0]
+    mean = ahrs.QuaternionArray(quaternion_from_dcm(scattered)).average()
+    assert angle_between(dcm_from_quaternion(mean), mean_orientation(scattered)) < 1e-12
+    shares = np.linspace(0, 1, 11)
+    theirs = slerp(q[0], p[0], shares)
+    theirs = theirs / np.linalg.norm(theirs, axis=1, keepdims=True)
+    ours = dcm_from_quaternion(interpolate_quaternions(q[0], p[0], shares))
+    assert angle_between(dcm_from_quaternion(theirs), ours).max() < 1e-7
+
+
+def test_the_kalman_filter_follows_the_recording_as_madgwicks_filter_does():
+    """Two filters of quite different kinds, from one start, stay within some degrees while it is carried about."""
+    x_imu, step = recordings.x_imu(), 1 / recordings.X_IMU_RATE
+    force, field = x_imu.specific_force[:128].mean(axis=0), x_imu.magnetic_field[:128].mean(axis=0)
+    level = np.cross(force, np.cross(field, force))
+    start = dcm_from_two_directions([force, level], [[0, 0, 1], [1, 0, 0]])
+    estimate = MultiplicativeKalmanFilter(start, np.diag([0.03**2] * 3 + [0.02**2] * 3), 0.005, 1e-4)
+    ours = []
+    for rate, force, field in zip(x_imu.angular_velocity, x_imu.specific_force, x_imu.magnetic_field, strict=True):
+        estimate.turn(rate, step)
+        estimate.observe(force, (0, 0, 1), np.hypot(0.1, np.linalg.norm(force) - 1))
+        x, y, z = estimate.dcm.T @ field
+        estimate.observe(field, (np.hypot(x, y), 0, z), 0.3)
+        ours.append(estimate.dcm)
+    theirs = Madgwick(
+        gyr=x_imu.angular_velocity,
+        acc=9.81 * x_imu.specific_force,
+        mag=1e5 * x_imu.magnetic_field,
+        frequency=recordings.X_IMU_RATE,
+        q0=quaternion_from_dcm(start),
+        gain=0.05,
+    ).Q
+    apart = np.degrees(angle_between(dcm_from_quaternion(theirs), np.array(ours)))
+    assert np.sqrt((apart**2).mean()) < 3 and apart.max() < 5
+    assert np.degrees(angle_between(np.array(ours), start)).max() > 90
