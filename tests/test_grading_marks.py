@@ -324,6 +324,18 @@ def test_the_work_on_a_hostile_answer_is_bounded():
     assert isinstance(huge[0], TooLarge) and huge[3] == 1
 
 
+def test_a_costly_answer_is_not_tried_on_every_variant(questions, monkeypatch):
+    question = {**questions["turns/sum"], "siblings": [questions["turns/sum"]] * 15}
+    judged, whole = [], marking.judge
+    monkeypatch.setattr(marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest))
+    monkeypatch.setattr(marking, "_marked", {})
+    long = {"value": ["expression", 1_500], "nodes": [["symbol", "alpha"], *(["sin", order] for order in range(1_500))]}
+    for plain, times in ((to_plain(sm.sin(alpha - beta)), 16), (long, 1)):
+        found = mark("turns/sum", question, {"outcome": "recorded", "plain": plain, "from": "check", "cell": 1})
+        assert found["outcome"] == "wrong" and len(judged) == times
+        judged.clear()
+
+
 def test_an_honest_long_answer_is_worked_out(questions):
     # A chain that was multiplied out: thousands of products of sines and cosines.
     expression = sm.expand((sm.sin(alpha) + sm.cos(beta) + sm.sin(beta) + 2) ** 16)

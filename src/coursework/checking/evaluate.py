@@ -17,7 +17,7 @@ ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
 #: Work on one answer at one point, in additions of real numbers; others cost as many as they take. An
 #: honest answer of thousands of nodes stays far below; a hostile one would take a minute.
-MOST_WORK = 200_000
+MOST_WORK = 100_000
 
 
 class Undefined(ArithmeticError):

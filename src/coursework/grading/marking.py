@@ -34,6 +34,9 @@ NEARLY = MP.mpf("1.5e-3")
 #: The share of the points of an answer that was reached with help, where its author names none, until a sibling of
 #: the question is solved without.
 WITH_HELP = 0.8
+#: A wrong answer of more nodes is not tried on the other variants of its question: nothing depends on it but what the
+#: student is told, and one that was made to cost time would cost it for each of them.
+LONGEST_FOR_SIBLINGS = 1_000
 #: Verdicts that are kept for those who hand in the same, at most.
 MOST_KEPT = 4096
 #: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
@@ -238,9 +241,8 @@ _marked = {}
 
 def _mark(name, question, answer, finished, limited):
     reply, text = judge(name, question, answer, finished, limited)
-    if reply.outcome == "wrong" and any(
-        judge(name, other, answer)[0].outcome == "correct" for other in question.get("siblings", [])
-    ):
+    short = reply.outcome == "wrong" and len(answer["plain"]["nodes"]) <= LONGEST_FOR_SIBLINGS
+    if short and any(judge(name, other, answer)[0].outcome == "correct" for other in question.get("siblings", [])):
         reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
     share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     if reply.outcome == "wrong" and question["partial"] and reply.note != "other numbers":
