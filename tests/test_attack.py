@@ -1,5 +1,6 @@
 """The attack on the seals, and whether wrong answers can pass them."""
 
+import json
 import random
 
 import numpy as np
@@ -14,8 +15,9 @@ from coursework.authoring.author import question
 from coursework.authoring.forms import flat, mutant, random_form, roots_for_cosines
 from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
-from coursework.checking.kinds import canonical, fingerprint, read
+from coursework.checking.kinds import calls_for, canonical, fingerprint, read
 from coursework.checking.plain import NotPlain, to_plain
+from coursework.grading import marking, secret
 from orientation import dcm_from_body_fixed, simple_dcm
 
 theta, alpha, phi = sm.symbols("theta alpha varphi")
@@ -177,18 +179,37 @@ def test_no_mutant_of_any_answer_passes():
     assert try_mutants(NAMES, 100) >= 6600
 
 
-@pytest.mark.long
-def test_every_form_of_every_right_answer_passes():
-    tried = 0
-    for name in NAMES:
+def try_forms(names, number):
+    """Check right answers in many forms, and mark them at the points of a secret too; gives how many were tried."""
+    tried, secretly = 0, 0
+    for name in names:
         for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
             chance = random.Random(f"{SEED} {one.name}")
-            for _ in range(45 if not hasattr(one.answer, "to_matrix") else 1):
+            known = marking.about(one, f"a secret of {SEED}".encode())
+            secretly += known["secret"] is not None
+            for _ in range(number if not hasattr(one.answer, "to_matrix") else 1):
                 form = random_form(one.public, one.answer, chance)
-                reply = one.reply_to(one.to_plain(form))
+                plain = one.to_plain(form)
+                reply = one.reply_to(plain)
                 assert reply.outcome == "correct", (one.name, form, reply, f"BOOK_TEST_SEED={SEED}")
+                said = {"outcome": "recorded", "plain": json.loads(json.dumps(plain))}
+                if known["secret"] and "calls" in known["secret"]:
+                    calls = calls_for({**one.public, "calls": known["secret"]["calls"]})
+                    said["secret"] = {"plain": to_plain(form, calls), "calls": secret.digest(known["secret"])}
+                found = marking.mark(one.name, known, said)
+                assert found["points"] == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
                 tried += 1
-    assert tried >= 6000
+    assert secretly
+    return tried
+
+
+def test_forms_of_right_answers_pass_and_lose_nothing_by_the_secret():
+    assert try_forms(["axis-and-angle"], 4) >= 20
+
+
+@pytest.mark.long
+def test_every_form_of_every_right_answer_passes():
+    assert try_forms(NAMES, 45) >= 6000
 
 
 @pytest.mark.parametrize("salt", range(12))
