@@ -64,6 +64,15 @@ def main():
             ("nbgrader autograde", *(theirs := of_nbgrader(sample, place))),
         )
         first = of_nbgrader(sample[:1], place / "one")
+        few = _only(good[:2], submissions, place / "two")
+        margins = {
+            what: _margin(of(few, place), of(honest, place))
+            for what, of in (
+                ("one worker", lambda *places: of_grading(*places, 1)),
+                ("two workers", lambda *places: of_grading(*places, 2)),
+                ("a Dask cluster of two workers, here", of_cluster),
+            )
+        }
         print(f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n")
         print(
             "| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times "
@@ -92,6 +101,19 @@ def main():
             "beyond the cells "
             f"a notebook costs {1000 * each:.0f} ms of processor time."
         )
+        print("\n| one notebook more | by the clock | processor time |\n|---|---|---|")
+        for what, (clock, processor) in margins.items():
+            print(f"| {what} | {1000 * clock:.0f} ms | {1000 * processor:.0f} ms |")
+        alone_clock, together, clustered = (clock for clock, _ in margins.values())
+        print(
+            f"\nTwo workers are {alone_clock / together:.2f} times as fast as one; the cluster costs "
+            f"{1000 * (clustered - together):.0f} ms more for each notebook, by the clock."
+        )
+
+
+def _margin(few, many):
+    """The seconds by the clock and of processor time for one notebook more."""
+    return tuple((many[number] - few[number]) / (many[0] - few[0]) for number in (1, 2))
 
 
 def _only(students, submissions, place):
@@ -116,11 +138,39 @@ def measured():
     seconds += [time.perf_counter() - clock, used() - processor]
 
 
-def of_grading(submissions, place, workers):
+def of_grading(submissions, place, workers, scheduler=None):
     out = Path(tempfile.mkdtemp(dir=place))
     with measured() as seconds:
-        done = grade(submissions, out, assignments={ASSIGNMENT: list(NOTEBOOKS)}, workers=workers, show=io.StringIO())
+        done = grade(
+            submissions,
+            out,
+            assignments={ASSIGNMENT: list(NOTEBOOKS)},
+            workers=workers,
+            scheduler=scheduler,
+            show=io.StringIO(),
+        )
     return done["graded"], *seconds
+
+
+def of_cluster(submissions, place):
+    """Grading on a scheduler and two workers in processes of their own; their start and end count, too."""
+    folder = Path(tempfile.mkdtemp(dir=place))
+    file = folder / "scheduler.json"
+    options = ["--scheduler-file", str(file), "--host", "127.0.0.1", "--no-dashboard"]
+    worker = ["worker", *options, "--nthreads", "1", "--local-directory", str(folder)]
+    with measured() as seconds:
+        processes = [
+            subprocess.Popen([sys.executable, "-m", "dask", *command], stderr=subprocess.DEVNULL)
+            for command in (["scheduler", *options, "--port", "0"], worker, worker)
+        ]
+        while not file.exists() or not file.read_text().endswith("}"):
+            time.sleep(0.05)
+        graded, *_ = of_grading(submissions, place, 2, json.loads(file.read_text())["address"])
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.wait()
+    return graded, *seconds
 
 
 def of_cells(paths):
