@@ -873,10 +873,16 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     page.try_code(page.asking, "figure.unobserve_all(); figure.observe(lambda change: 1 / 0, 'angle')")
     page.turn(60)
     page.says(page.figure, "ZeroDivisionError")
+    # Run below the figure itself makes it anew, as its code says, and a cell further down asks the new one.
+    page.cell(page.figure).locator("summary").first.click()
+    page.cell(page.figure).locator("button.run-cell").click()
+    page.page.wait_for_function("() => document.querySelector('.moving .field input').value === '34.38'")
+    page.wait()
+    assert page.page.locator(".moving").count() == 1
+    assert page.try_code(page.asking, "print(figure.angle)").startswith("0.6")
     assert page.outside() == [] and page.errors == []
 
 
-@pytest.mark.sampled(1, of="figures and code")
 def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
     """Where the server gives no shared memory, the first run loads the page again, by a service worker."""
     context = browser.new_context()
