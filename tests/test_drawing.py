@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from orientation import dcm_from_axis_angle, dcm_from_body_fixed, simple_dcm
+from orientation_figures import drawing as drawings
 from orientation_figures.animation import Animation, one_after_another
 from orientation_figures.drawing import BARB, HEADS, IN_SPACE, Drawing, looking_down, path_data, typeset, view_from
 from orientation_figures.objects import draw_book, draw_eye, gimbal_drawing, plane_drawing, turning_frames_animation
@@ -471,3 +472,23 @@ def test_without_a_script_the_figure_is_a_still(browser, tmp_path):
     assert page.screenshot() == first
     assert not page.query_selector("button").is_visible()
     context.close()
+
+
+def test_labels_at_hand_are_those_that_matplotlib_sets():
+    """``python -m website.live.labels`` writes them; a page draws with them where it has not fetched Matplotlib."""
+    kept = json.loads(drawings.LABELS.read_text("utf8"))
+    assert len(kept["labels"]) > 100
+    assert drawings.labels_to_keep(kept["labels"]) == kept
+
+
+def test_a_drawing_without_matplotlib_is_the_same(monkeypatch):
+    def one():
+        return Drawing("n x points right, n y up, and an arrow leads to the label of an angle.").triad("N", np.eye(3))
+
+    before = one().svg()
+    drawings.typeset.cache_clear()
+    monkeypatch.setitem(sys.modules, "matplotlib.font_manager", None)
+    assert one().svg() == before
+    with pytest.raises(ModuleNotFoundError):
+        drawings.typeset("$no such label$")
+    drawings.typeset.cache_clear()

@@ -9,8 +9,10 @@ for readers who do not see it.
 """
 
 import hashlib
+import json
 from functools import cache
 from html import escape
+from pathlib import Path
 
 import numpy as np
 
@@ -24,6 +26,9 @@ BARB = ((0, 0), (-13, 4.6), (-7.5, 0), (-13, -4.6))
 TRIANGLE = ((0, 0), (-14, 5.6), (-14, 0), (-14, -5.6))
 DIAMOND = ((0, 0), (-8, 5.4), (-16, 0), (-8, -5.4))
 HEADS = {"A": TRIANGLE, "B": TRIANGLE, "C": DIAMOND, "D": TRIANGLE, "E": TRIANGLE, "F": DIAMOND, "Z": TRIANGLE}
+
+#: How the labels of the book's drawings are set: ``python -m website.live.labels`` writes it.
+LABELS = Path(__file__).with_name("labels.json")
 
 ROUND = 0.5523  # a cubic with its inner points this far along the tangents is a quarter of a circle
 
@@ -382,11 +387,16 @@ def _element(mark, motion, outlines, decimals):
 def typeset(text):
     """Set ``text`` in Computer Modern, 1000 units to the em, right and down from the middle of a small letter.
 
-    Returns a list of (outline as path data, place, size), and the two corners of the ink.
+    Returns a list of (outline as path data, place, size), and the two corners of the ink. Where there is no Matplotlib,
+    as on a page that has not fetched it, the labels of the book's own drawings are at hand.
     """
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.textpath import text_to_path
-
+    try:
+        from matplotlib.font_manager import FontProperties
+        from matplotlib.textpath import text_to_path
+    except ModuleNotFoundError:
+        if text not in _kept_labels():
+            raise
+        return _kept_labels()[text]
     font = FontProperties(family="cmr10", math_fontfamily="cm")
     placed, shapes, rules = text_to_path.get_glyphs_mathtext(font, text)
     found = [(*shapes[name], (x, y), size) for name, x, y, size in placed] + [(*rule, (0, 0), 1) for rule in rules]
@@ -403,6 +413,28 @@ def typeset(text):
     corners = np.array([ink.min(axis=0), ink.max(axis=0)])
     middle = np.array((corners[:, 0].mean(), -220))
     return [(outline, corner - middle, size) for outline, corner, size in glyphs], corners - middle
+
+
+@cache
+def _kept_labels():
+    kept = json.loads(LABELS.read_text("utf8"))
+    return {
+        text: ([(kept["outlines"][k], np.array((x, y)), size) for k, x, y, size in glyphs], np.array(ink))
+        for text, (glyphs, ink) in kept["labels"].items()
+    }
+
+
+def labels_to_keep(texts):
+    """Return what ``labels.json`` holds: the outlines of glyphs, and for each text where they stand and its ink."""
+    outlines, labels = {}, {}
+    for text in sorted(texts):
+        placed, ink = typeset(text)
+        glyphs = [
+            [outlines.setdefault(outline, len(outlines)), *map(float, corner), float(size)]
+            for outline, corner, size in placed
+        ]
+        labels[text] = [glyphs, ink.tolist()]
+    return {"outlines": list(outlines), "labels": labels}
 
 
 def _outline(vertices, codes):

@@ -1,9 +1,9 @@
 """Which cells of the book run in the page, found out by running them as the page does.
 
 Every notebook is run once, from top to bottom, by the Python side of the page (``python/session.py``) with
-nothing but the standard library, SymPy and our own packages to import. A cell that then fails, or gives
-another result than the stored one, needs more; what it needs is what it failed to import, or what an earlier
-cell failed to import from which it takes a name.
+nothing but the standard library, SymPy and our own packages to import; plain Python stands in for NumPy as far as
+that goes (``python/plain_numpy.py``). A cell that then fails, or gives another result than the stored one, needs
+more; what it needs is what it failed to import, or what an earlier cell failed to import from which it takes a name.
 """
 
 import ast
@@ -47,8 +47,8 @@ class OnlyThese(dict):
 
 messages = []
 shell = session.start(lambda text: messages.append(json.loads(text)))
-OnlyThese.allowed = {"sympy", "mpmath", *sys.argv[2:], "IPython", "session", "__main__"}
-shell.missing.reasons = OnlyThese()
+OnlyThese.allowed = {"sympy", "mpmath", *sys.argv[2:], "IPython", "session", "plain_numpy", "__main__"}
+shell.lack({} if "everything" in sys.argv else OnlyThese())
 told = []
 for number, code in enumerate(json.load(sys.stdin)):
     outcome = json.loads(shell.run(code, f"cell {number + 1}"))
@@ -67,12 +67,12 @@ def write_python(folder):
     shutil.copyfile(Path(root, "lib", "pretty.py"), folder / "IPython" / "lib" / "pretty.py")
 
 
-def run_alone(codes):
-    """What the cells of a page put out, one after another, without NumPy."""
+def run_alone(codes, *more):
+    """What the cells of a page put out, one after another, without NumPy; or with ``"everything"``."""
     with tempfile.TemporaryDirectory() as folder:
         write_python(Path(folder, "python"))
         done = subprocess.run(
-            [sys.executable, "-c", ALONE, "python", *PACKAGES],
+            [sys.executable, "-c", ALONE, "python", *PACKAGES, *more],
             cwd=folder, input=json.dumps(codes), capture_output=True, text=True, check=True,
         )  # fmt: skip
     return json.loads(done.stdout)
@@ -156,6 +156,8 @@ def classify(cells):
             needs = needs_of_names(names_taken(cell.source), codes[:position], kinds)
             if outcome["status"] == "missing":
                 needs.add(outcome["package"])
+            if outcome.get("plain"):
+                needs.add("numpy")  # what plain Python makes of it is not what the book prints, to the last digit
             if not needs and known:
                 raise RuntimeError(
                     f"cell {position + 1} gives another result in the page than the stored one "

@@ -11,15 +11,21 @@ SOURCES = {
     "off": "Here NumPy and Matplotlib are not offered: those cells keep their printed results.",
     "folder": "Here NumPy and Matplotlib come with the pages, from the same place.",
 }
-COLUMNS = ("hold a moving figure", "draw with NumPy", "compute with NumPy", "need SciPy")
+WIDGET = "hold a moving figure"
+COLUMNS = (WIDGET, "draw with Matplotlib", "compute with NumPy", "need SciPy")
 
 
 def column(kind):
     if "scipy" in kind["needs"]:
         return "need SciPy"
-    if "anywidget" in kind["needs"]:
-        return "hold a moving figure"
-    return "draw with NumPy" if kind["figure"] else "compute with NumPy"
+    if set(kind["needs"]) & {"numpy", "matplotlib"}:
+        return "draw with Matplotlib" if kind["needs"] == ["matplotlib"] or kind["figure"] else "compute with NumPy"
+    return WIDGET
+
+
+def asks_nobody(kind):
+    """Whether a cell runs with what comes with this site; the Python side of a moving figure does."""
+    return set(kind["needs"]) <= {"anywidget"}
 
 
 def row(page, kinds):
@@ -28,7 +34,7 @@ def row(page, kinds):
         if kind["needs"]:
             cells[column(kind)].append(str(number))
     numbers = " | ".join(", ".join(cells[name]) for name in COLUMNS)
-    return f"| {{doc}}`/{page}` | {sum(not kind['needs'] for kind in kinds)}\u00a0of\u00a0{len(kinds)} | {numbers} |"
+    return f"| {{doc}}`/{page}` | {sum(map(asks_nobody, kinds))}\u00a0of\u00a0{len(kinds)} | {numbers} |"
 
 
 class NeedsMore(SphinxDirective):
@@ -37,15 +43,14 @@ class NeedsMore(SphinxDirective):
         pages = {page: on_the_page(kinds) for page, kinds in kinds_of_cells().items() if page in order}
         setting = self.config.numpy_in_the_page or "off"
         every = [kind for kinds in pages.values() for kind in kinds]
+        alone = sum(map(asks_nobody, every))
         some = [page for page, kinds in pages.items() if any(kind["needs"] for kind in kinds)]
         lines = [
             SOURCES.get(setting, SOURCES["folder"]),
-            f"Of {len(every)} cells, {sum(not kind['needs'] for kind in every)} need nothing but SymPy and this",
-            f"book's own packages, and run in the page with the results printed here; {len(pages) - len(some)} "
-            "pages run",
-            "whole. The other cells, by their numbers from the top of each page, are these; a cell that takes a "
-            "name from",
-            "one of them needs the same. What a moving figure needs comes with this site.",
+            f"Of {len(every)} cells, {alone} run in the page with what comes with this site, and ask no other server: "
+            f"{int(100 * alone / len(every))} per cent. {len(pages) - len(some)} pages need nothing but SymPy and this "
+            "book's own packages. The cells that need more, by their numbers from the top of each page, are these; a "
+            "cell that takes a name from one of them needs the same. What a moving figure needs comes with this site.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",
             "|---|---|" + "---|" * len(COLUMNS),

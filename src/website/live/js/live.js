@@ -190,7 +190,7 @@ class Page {
         next.box.classList.add("waiting");
       }
     }
-    this.tally ??= { ran: 0, failed: [], missing: new Set(), alone: true };
+    this.tally ??= { ran: 0, plain: 0, failed: [], missing: new Set(), alone: true };
     this.tally.alone &&= Boolean(cell);
     if (!this.busy) this.work();
   }
@@ -276,8 +276,10 @@ class Page {
     if (status === "ok") {
       cell.end();
       this.tally.ran += 1;
+      this.tally.plain += Boolean(outcome.plain);
       const words = cell.words.join(" ").trim();
-      this.last = `${cell.name} ran${words ? `. Result: ${words.length > 200 ? `${words.slice(0, 200)} ...` : words}` : ", without a result to show"}`;
+      const by = outcome.plain ? ", its numbers by plain Python in NumPy’s place" : "";
+      this.last = `${cell.name} ran${by}${words ? `. Result: ${words.length > 200 ? `${words.slice(0, 200)} ...` : words}` : ", without a result to show"}`;
     } else if (status === "missing") {
       if (!cell.edited) this.unreachable.set(outcome.package, outcome.reason);
       this.leave(cell, outcome.reason);
@@ -305,8 +307,9 @@ class Page {
   }
 
   report() {
-    const { ran, failed, missing, alone, stopped } = this.tally;
+    const { ran, plain, failed, missing, alone, stopped } = this.tally;
     const parts = [`${plural(ran, "cell")} ran.`];
+    if (plain) parts.push(`In ${plain} of them plain Python stood in for NumPy.`);
     const last = `${this.last[0].toUpperCase()}${this.last.slice(1)}`;
     if (missing.size) parts.push(`${plural(missing.size, "cell was", "cells were")} not run; the reason stands below each.`);
     this.bar.say(alone || stopped || failed.length ? last : parts.join(" "));

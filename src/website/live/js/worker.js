@@ -3,11 +3,13 @@ import display from "../python/IPython/display.py";
 import ipython from "../python/IPython/__init__.py";
 import interactiveshell from "../python/IPython/core/interactiveshell.py";
 import pretty from "../python/IPython/lib/pretty.py";
+import plainNumpy from "../python/plain_numpy.py";
 import session from "../python/session.py";
 import { named } from "./names.js";
 
 const FILES = {
   "session.py": session,
+  "plain_numpy.py": plainNumpy,
   "IPython/__init__.py": ipython,
   "IPython/core/interactiveshell.py": interactiveshell,
   "IPython/display.py": display,

@@ -19,6 +19,7 @@ import tokenize
 import traceback
 import types
 
+import plain_numpy
 from IPython.display import display
 from IPython.lib import pretty
 
@@ -191,8 +192,12 @@ class Shell:
 
     def lack(self, reasons):
         """Tell which packages are not here: a dictionary from their names to the reasons."""
-        self.missing.reasons = dict(reasons)
+        self.missing.reasons = reasons
         importlib.invalidate_caches()
+        if "numpy" in reasons:
+            plain_numpy.stand_in()
+        else:
+            plain_numpy.step_aside(self.names)
         for name, value in self.names.items():
             if isinstance(value, Absent) and value.__name__ not in reasons:
                 self.names[name] = importlib.import_module(value.__name__)
@@ -259,14 +264,15 @@ class Shell:
     def run(self, code, name):
         """Run one cell; return its outcome as JSON.
 
-        The outcome has a ``status``: 'ok', 'error' (with a ``traceback``), 'interrupted', or 'missing'
-        (with the ``package`` that is not here, and the reason).
+        The outcome has a ``status``: 'ok' (and whether ``plain`` Python computed in the place of NumPy), 'error' (with
+        a ``traceback``), 'interrupted', or 'missing' (with the ``package`` that is not here, and the reason).
         """
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
+        plain_numpy.begin()
         with self.printing():
             try:
                 self.execute(code, name)
-                outcome = {"status": "ok"}
+                outcome = {"status": "ok", "plain": plain_numpy.work > 0}
             except KeyboardInterrupt:
                 outcome = {"status": "interrupted"}
             except BaseException as error:
@@ -297,6 +303,8 @@ class Shell:
 
     def explain(self, error, name):
         package = self.missing.cause(error)
+        if package is None and "numpy" in self.missing.reasons and plain_numpy.is_at_fault(error):
+            package = "numpy"
         if package:
             return {"status": "missing", "package": package, "reason": self.missing.reasons[package]}
         told = traceback.TracebackException.from_exception(error, compact=True)

@@ -1,0 +1,2040 @@
+"""What answers ``import numpy`` on a page until the real NumPy is there: small arrays, in plain Python.
+
+It does what the book's cells do with a handful of orientations, with NumPy's results and in NumPy's way of writing
+them; ``tests/test_plain_numpy.py`` holds each function against the real one. What it does not do exactly so, it does
+not do: whatever is asked beyond it (another function, another option, a shape or a value that calls for a warning, or
+more work than plain Python gets through in a moment) is handed to the real NumPy, which the page then fetches.
+"""
+
+import functools
+import importlib
+import itertools
+import math
+import operator
+import sys
+import types
+
+MOST_WORK = 4_000_000  # entries that one cell may make: some seconds in a browser
+work = 0  # entries made since the page last asked
+nan = math.nan
+KINDS = {"b": bool, "i": int, "f": float}  # of entries: truth values, whole numbers, floats
+OFFERED = {"pi": math.pi, "e": math.e, "inf": math.inf, "nan": nan, "newaxis": None}  # by the names that NumPy has
+
+
+# --- the real one -------------------------------------------------------------------------------
+
+
+def real():
+    """The real NumPy; where it is not here, the error that makes the page fetch it."""
+    found = importlib.import_module("numpy")
+    if found is STAND_IN:
+        raise ModuleNotFoundError("this needs the real NumPy", name="numpy")
+    return found
+
+
+def handed_on(value):
+    """``value`` as the real NumPy takes it."""
+    if isinstance(value, Array):
+        return value.__array__()
+    if isinstance(value, Scalar):
+        return value.__array__()[()]
+    if isinstance(value, (list, tuple)):
+        return type(value)(map(handed_on, value))
+    return value
+
+
+class Told(Exception):
+    """Wraps an error in the reader's own use of an array, in NumPy's words: it is theirs, and needs no real NumPy."""
+
+
+def or_the_real_one(function, find):
+    """``function``; where it cannot answer, what the real NumPy has in its place, by ``find(real, arguments)``."""
+
+    @functools.wraps(function)
+    def careful(*arguments, **options):
+        try:
+            return function(*arguments, **options)
+        except Told as told:
+            raise told.args[0] from None
+        except ModuleNotFoundError:
+            error = None
+        except Exception as other:
+            error = other
+        try:
+            arguments = handed_on(arguments)
+            instead = find(real(), arguments)
+        except ModuleNotFoundError as missing:
+            raise missing from error
+        return instead(*arguments, **{name: handed_on(value) for name, value in options.items()})
+
+    return careful
+
+
+def offered(function, within=None, name=None):
+    """Offer ``function`` by its name, or in the part of NumPy that is called ``within``."""
+    name = name or function.__name__.rstrip("_")
+
+    def find(numpy, arguments):
+        return getattr(getattr(numpy, within) if within else numpy, name)
+
+    careful = or_the_real_one(function, find)
+    (PARTS[within].offered if within else OFFERED)[name] = careful
+    return careful
+
+
+def within(part):
+    return functools.partial(offered, within=part)
+
+
+class Part(types.ModuleType):
+    """What stands for ``numpy``, ``numpy.linalg`` or ``numpy.random``: whatever it does not offer, the real one has."""
+
+    __path__ = ()
+
+    def __init__(self, name, offered):
+        super().__init__(name)
+        self.offered = offered
+
+    def __getattr__(self, name):
+        if name in self.offered:
+            return self.offered[name]
+        if name.startswith("__") and name != "__version__":  # what Python asks of any module
+            raise AttributeError(name)
+        found = real()
+        for part in self.__name__.split(".")[1:]:
+            found = getattr(found, part)
+        return getattr(found, name)
+
+
+PARTS = {"linalg": Part("numpy.linalg", {}), "random": Part("numpy.random", {})}
+STAND_IN = Part("numpy", OFFERED)
+OFFERED.update(PARTS)
+
+
+def stand_in():
+    """Answer ``import numpy`` from now on."""
+    sys.modules.update({part.__name__: part for part in (STAND_IN, *PARTS.values())})
+
+
+def step_aside(names):
+    """Let the real NumPy take the place: in all modules that have imported this one, and among the reader's names."""
+    if sys.modules.get("numpy") is not STAND_IN:
+        return
+    for part in (STAND_IN, *PARTS.values()):
+        del sys.modules[part.__name__]
+    numpy = importlib.import_module("numpy")
+    for space in (
+        names,
+        *(vars(module) for module in list(sys.modules.values()) if isinstance(module, types.ModuleType)),
+    ):
+        for name, value in list(space.items()):
+            if value is STAND_IN:
+                space[name] = numpy
+    for name, value in names.items():
+        names[name] = handed_on(value)
+
+
+def is_at_fault(error):
+    """Whether an error speaks of what stands in for NumPy: with the real one there may be none, or another."""
+    return any(f"'{kind.__name__}'" in str(error) for kind in (Array, Number, Integer, Truth, Generator, Part))
+
+
+def begin():
+    """Count a cell's work from its start."""
+    global work
+    work = 0
+
+
+# --- numbers ------------------------------------------------------------------------------------
+
+
+class DType:
+    """The type of an array's entries."""
+
+    names = {"b": "bool", "i": "int64", "f": "float64"}
+
+    def __init__(self, kind):
+        self.kind, self.char, self.name, self.itemsize = kind, {"b": "?", "i": "l", "f": "d"}[kind], self.names[kind], 8
+
+    def __eq__(self, other):
+        if isinstance(other, DType):
+            return self.kind == other.kind
+        return other in (self.name, KINDS[self.kind], SCALARS[self.kind])
+
+    def __hash__(self):
+        return hash(self.kind)
+
+    def __str__(self):
+        return self.name
+
+    def __repr__(self):
+        return f"dtype('{self.name}')"
+
+
+class Scalar:
+    """What the numbers of NumPy have beyond Python's own."""
+
+    ndim, shape, size = 0, (), 1
+
+    def tolist(self):
+        return KINDS[self.kind](self)
+
+    item = tolist
+
+    def __array__(self, dtype=None, copy=None):
+        return real().asarray(self.tolist(), dtype)
+
+    @property
+    def dtype(self):
+        return DType(self.kind)
+
+    @property
+    def T(self):
+        return self
+
+    def round(self, decimals=0):
+        return around(self, decimals)
+
+    def sum(self):
+        return self
+
+    mean = max = min = sum
+
+    def reshape(self, *shape):
+        return array(self).reshape(*shape)
+
+    def __getitem__(self, index):
+        return array(self)[index]
+
+    def astype(self, dtype):
+        return as_array(self, dtype)[()]
+
+    def __getattr__(self, name):
+        if name not in METHODS:  # others ask anything for its ``free_symbols``
+            raise AttributeError(f"'numpy.{self.dtype}' object has no attribute {name!r}")
+        return getattr(real().asarray(self.tolist())[()], name)
+
+
+class Number(Scalar, float):
+    kind = "f"
+
+    def __repr__(self):
+        return f"np.float64({float(self)!r})"
+
+    def __str__(self):
+        return float.__repr__(self)
+
+    def __round__(self, digits=None):
+        return round(float(self)) if digits is None else around(self, digits)
+
+    __hash__ = float.__hash__
+
+
+class Integer(Scalar, int):
+    kind = "i"
+
+    def __repr__(self):
+        return f"np.int64({int(self)!r})"
+
+    def __str__(self):
+        return int.__repr__(self)
+
+    __hash__ = int.__hash__
+
+
+class Truth(Scalar):
+    """``numpy.True_`` or ``numpy.False_``."""
+
+    kind = "b"
+
+    def __init__(self, value):
+        self.value = bool(value)
+
+    def __bool__(self):
+        return self.value
+
+    def __repr__(self):
+        return f"np.{self.value}_"
+
+    def __str__(self):
+        return str(self.value)
+
+    def __format__(self, form):
+        return format(str(self), form) if form else str(self)
+
+    def __hash__(self):
+        return hash(self.value)
+
+    def __int__(self):
+        return int(self.value)
+
+    __index__ = __int__
+
+    def __float__(self):
+        return float(self.value)
+
+
+SCALARS = {"f": Number, "i": Integer, "b": Truth}
+OFFERED.update({"float64": Number, "int64": Integer, "bool_": Truth, "generic": Scalar})
+
+
+#: What the real array has; some of it is offered here, for the rest that is asked.
+METHODS = set(
+    """
+    T all any argmax argmin argpartition argsort astype base byteswap choose clip compress conj conjugate copy
+    ctypes cumprod cumsum data device diagonal dot dtype dump dumps fill flags flat flatten getfield imag item
+    itemsize mT max mean min nbytes ndim nonzero partition prod put ravel real repeat reshape resize round
+    searchsorted setfield setflags shape size sort squeeze std strides sum swapaxes take to_device tobytes tofile
+    tolist trace transpose var view
+    """.split()
+)
+
+
+def kind_of(dtype):
+    for kind, python in KINDS.items():
+        if dtype is python or dtype is SCALARS[kind] or (isinstance(dtype, (DType, str)) and DType(kind) == dtype):
+            return kind
+    raise TypeError(dtype)
+
+
+def scalar(kind, value):
+    return SCALARS[kind](value)
+
+
+# --- arrays -------------------------------------------------------------------------------------
+
+
+class Array:
+    """Entries in a list, which views share; where in it the entries stand, in order; the shape; and their kind."""
+
+    __array_priority__ = -1  # where it meets the real one, that decides
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, entries, shape, kind, places=None):
+        global work
+        self.entries, self.shape, self.kind = entries, tuple(shape), kind
+        self.places = range(len(entries)) if places is None else places
+        work += len(self.places) + 20
+        if work > MOST_WORK:
+            real()
+
+    # What it is.
+
+    ndim = property(lambda self: len(self.shape))
+    size = property(lambda self: len(self.places))
+    dtype = property(lambda self: DType(self.kind))
+
+    @property
+    def values(self):
+        """The entries in order, as a list that is not to be changed."""
+        places, entries = self.places, self.entries
+        if isinstance(places, range) and places.step == 1:
+            return entries if len(places) == len(entries) else entries[places.start : places.stop]
+        return [entries[place] for place in places]
+
+    def view(self, shape, places):
+        return Array(self.entries, shape, self.kind, places)
+
+    def __array__(self, dtype=None, copy=None):
+        return real().array(self.values, dtype or self.dtype.name).reshape(self.shape)
+
+    def __getattr__(self, name):
+        if name not in METHODS:
+            raise AttributeError(f"'numpy.ndarray' object has no attribute {name!r}")
+        return getattr(self.__array__(), name)
+
+    def __reduce__(self):
+        raise TypeError("an array of the page's own cannot be copied so")
+
+    def tolist(self):
+        return nested(self.values, self.shape)
+
+    def item(self):
+        (value,) = self.values
+        return value
+
+    def __len__(self):
+        if not self.shape:
+            raise TypeError("len() of unsized object")
+        return self.shape[0]
+
+    def __iter__(self):
+        return iter([self[position] for position in range(len(self))])
+
+    def __bool__(self):
+        if self.size != 1:
+            raise Told(ValueError("The truth value of an array with more than one element is ambiguous. "
+                                  "Use a.any() or a.all()"))  # fmt: skip
+        return bool(self.values[0])
+
+    def __float__(self):
+        return float(self.zero_dimensional())
+
+    def __int__(self):
+        return int(self.zero_dimensional())
+
+    def __index__(self):
+        if self.kind != "i":
+            raise TypeError("only integer scalar arrays can be converted to a scalar index")
+        return self.zero_dimensional()
+
+    def zero_dimensional(self):
+        if self.shape:
+            raise TypeError("only 0-dimensional arrays can be converted to Python scalars")
+        return self.values[0]
+
+    # Shapes.
+
+    def reshape(self, *shape):
+        shape = shape_of(shape)
+        if -1 in shape:
+            rest = math.prod(length for length in shape if length != -1)
+            shape = tuple(self.size // rest if length == -1 else length for length in shape)
+        if math.prod(shape) != self.size:
+            raise Told(ValueError(f"cannot reshape array of size {self.size} into shape {written(shape)}"))
+        alike = isinstance(self.places, range)
+        return self.view(shape, self.places) if alike else Array(self.values, shape, self.kind)
+
+    def ravel(self):
+        return self.reshape(-1)
+
+    def flatten(self):
+        return self.copy().reshape(-1)
+
+    flat = property(lambda self: iter([scalar(self.kind, value) for value in self.values]))
+
+    def transpose(self, *order):
+        order = shape_of(order) if order else tuple(range(self.ndim))[::-1]
+        order = [position % self.ndim for position in order]
+        if sorted(order) != list(range(self.ndim)):
+            raise ValueError(order)
+        steps = steps_of(self.shape)
+        shape = [self.shape[position] for position in order]
+        found = places_of(shape, [steps[position] for position in order])
+        return self.view(shape, [self.places[place] for place in found])
+
+    T = property(lambda self: self.transpose() if self.ndim > 1 else self)
+
+    def swapaxes(self, one, two):
+        order = list(range(self.ndim))
+        order[one], order[two] = order[two], order[one]
+        return self.transpose(order)
+
+    def squeeze(self):
+        return self.reshape([length for length in self.shape if length != 1])
+
+    def copy(self):
+        return Array(list(self.values), self.shape, self.kind)
+
+    def astype(self, dtype, copy=True):
+        return as_array(self, dtype).copy() if copy else as_array(self, dtype)
+
+    # Parts.
+
+    def select(self, index):
+        """The shape of the part at ``index``, its places, and whether it is a view."""
+        if type(index) is int and self.shape:
+            length = self.shape[0]
+            if not -length <= index < length:
+                raise Told(IndexError(f"index {index} is out of bounds for axis 0 with size {length}"))
+            rest = len(self.places) // length
+            index %= length
+            return self.shape[1:], self.places[index * rest : (index + 1) * rest], True
+        if type(index) is slice and self.ndim == 1:
+            places = self.places[index]
+            return (len(places),), places, True
+        index = index if isinstance(index, tuple) else (index,)
+        simple = (int, slice, type(None), type(Ellipsis))
+        index = [
+            part if isinstance(part, simple) and not isinstance(part, (bool, Truth)) else as_array(part)
+            for part in index
+        ]
+        index = [
+            part.item() if isinstance(part, Array) and part.shape == () and part.kind == "i" else part for part in index
+        ]
+        wanted = sum(part.ndim if isinstance(part, Array) and part.kind == "b" else part is not None
+                     for part in index if part is not Ellipsis)  # fmt: skip
+        if wanted > self.ndim:
+            raise Told(IndexError(f"too many indices for array: array is {self.ndim}-dimensional, "
+                                  f"but {wanted} were indexed"))  # fmt: skip
+        if Ellipsis not in [part for part in index if not isinstance(part, Array)]:
+            index.append(Ellipsis)
+        lists = [position for position, part in enumerate(index) if isinstance(part, Array)]
+        singles = [position for position, part in enumerate(index) if isinstance(part, int)]
+        if len(lists) > 1 or (lists and any(abs(position - lists[0]) > 1 for position in singles)):
+            raise NotImplementedError("lists of places along two axes")
+        shape, found, axis, steps = [], [0], 0, steps_of(self.shape)
+        for part in index:
+            if part is None:
+                shape.append(1)
+            elif part is Ellipsis:
+                skipped = range(axis, axis + self.ndim - wanted)
+                shape += [self.shape[k] for k in skipped]
+                found = [
+                    place + more
+                    for place in found
+                    for more in places_of(self.shape[axis : skipped.stop], steps[axis : skipped.stop])
+                ]
+                axis = skipped.stop
+            elif isinstance(part, int):
+                length = self.shape[axis]
+                if not -length <= part < length:
+                    raise Told(IndexError(f"index {part} is out of bounds for axis {axis} with size {length}"))
+                found = [place + part % length * steps[axis] for place in found]
+                axis += 1
+            elif isinstance(part, slice):
+                taken = range(*part.indices(self.shape[axis]))
+                shape.append(len(taken))
+                found = [place + k * steps[axis] for place in found for k in taken]
+                axis += 1
+            elif part.kind == "b":
+                if part.shape != self.shape[axis : axis + part.ndim] or not part.ndim:
+                    raise IndexError(part.shape)
+                end, step = axis + part.ndim, steps[axis + part.ndim - 1]
+                taken = [k * step for k, chosen in enumerate(part.values) if chosen]
+                shape.append(len(taken))
+                found = [place + more for place in found for more in taken]
+                axis = end
+            else:
+                length = self.shape[axis]
+                if part.kind != "i" and part.size:
+                    raise IndexError("arrays used as indices must be of integer (or boolean) type")
+                for k in part.values:
+                    if not -length <= k < length:
+                        raise Told(IndexError(f"index {k} is out of bounds for axis {axis} with size {length}"))
+                shape += part.shape
+                found = [place + k % length * steps[axis] for place in found for k in part.values]
+                axis += 1
+        return tuple(shape), [self.places[place] for place in found], not lists
+
+    def __getitem__(self, index):
+        shape, places, view = self.select(index)
+        if not shape and view:
+            return scalar(self.kind, self.entries[places[0]])
+        return self.view(shape, places) if view else Array([self.entries[place] for place in places], shape, self.kind)
+
+    def __setitem__(self, index, value):
+        shape, places, _ = self.select(index)
+        value = as_array(value)
+        while value.ndim > len(shape) and value.shape[0] == 1:
+            value = value[0]
+        if KINDS[value.kind] is float and self.kind != "f" or value.kind == "i" and self.kind == "b":
+            raise TypeError("another kind of number")
+        convert = KINDS[self.kind]
+        for place, entry in zip(places, list(spread(value, shape))):
+            self.entries[place] = convert(entry)
+
+    # Arithmetic; the rest of the operators follow below.
+
+    def __matmul__(self, other):
+        return product(self, other) if can_join(other) else NotImplemented
+
+    def __rmatmul__(self, other):
+        return product(other, self) if can_join(other) else NotImplemented
+
+    def round(self, decimals=0):
+        return around(self, decimals)
+
+    def dot(self, other):
+        return dot(self, other)
+
+    def trace(self):
+        return trace(self)
+
+    def __str__(self):
+        return written_array(self, " ", "")
+
+    def __repr__(self):
+        if not self.size and self.shape != (0,):
+            raise NotImplementedError("empty")
+        ending = ")" if self.size or self.kind != "f" else ", dtype=float64)"
+        if not self.size and self.kind != "f":
+            raise NotImplementedError("empty")
+        return f"array({written_array(self, ', ', 'array(')}{ending}"
+
+    def __format__(self, form):
+        if form:
+            raise Told(TypeError("unsupported format string passed to numpy.ndarray.__format__"))
+        return str(self)
+
+
+OFFERED["ndarray"] = Array
+
+
+def nested(values, shape):
+    if not shape:
+        return values[0]
+    if len(shape) == 1:
+        return list(values)
+    step = math.prod(shape[1:])
+    return [nested(values[k * step : (k + 1) * step], shape[1:]) for k in range(shape[0])]
+
+
+def shape_of(shape):
+    shape = shape[0] if len(shape) == 1 and not isinstance(shape[0], int) else shape
+    return tuple(operator.index(length) for length in shape)
+
+
+def written(shape):
+    return f"({','.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+
+
+def steps_of(shape):
+    steps = [1]
+    for length in reversed(shape[1:]):
+        steps.insert(0, steps[0] * length)
+    return steps[: len(shape)]
+
+
+def places_of(shape, steps):
+    found = [0]
+    for length, step in zip(shape, steps):
+        taken = range(0, length * step, step) if step else [0] * length
+        found = [place + more for place in found for more in taken]
+    return found
+
+
+def spread(value, shape):
+    """The entries of an array as they stand for those of a larger shape."""
+    if value.shape == shape:
+        return value.values
+    steps = [step if length > 1 else 0 for length, step in zip(value.shape, steps_of(value.shape))]
+    new = len(shape) - value.ndim
+    if new < 0 or any(length not in (1, there) for length, there in zip(value.shape, shape[new:])):
+        raise Told(
+            ValueError(f"could not broadcast input array from shape {written(value.shape)} into shape {written(shape)}")
+        )
+    if value.size == 1:
+        return value.values * math.prod(shape)
+    values = value.values
+    return [values[place] for place in places_of(shape, [0] * new + steps)]
+
+
+def common_shape(*shapes):
+    if len(set(shapes)) == 1:
+        return shapes[0]
+    longest = max(map(len, shapes))
+    padded = [(1,) * (longest - len(shape)) + tuple(shape) for shape in shapes]
+    together = []
+    for lengths in zip(*padded):
+        other = set(lengths) - {1}
+        if len(other) > 1:
+            told = " ".join(map(written, shapes))
+            raise Told(ValueError(f"operands could not be broadcast together with shapes {told} "))
+        together.append(other.pop() if other else 1)
+    return tuple(together)
+
+
+def can_join(value):
+    return isinstance(value, (Array, Scalar, int, float, list, tuple))
+
+
+def as_array(value, dtype=None):
+    """``value`` as an array, itself if it is one of the right kind."""
+    if isinstance(value, Array):
+        found = value
+    elif isinstance(value, (bool, Truth)):
+        found = Array([bool(value)], (), "b")
+    elif isinstance(value, int):
+        found = Array([in_range(int(value))], (), "i")
+    elif isinstance(value, float):
+        found = Array([float(value)], (), "f")
+    elif isinstance(value, str) and dtype is float:
+        found = Array([float(value)], (), "f")
+    elif isinstance(value, (list, tuple, range)):
+        value = list(value)
+        if value and all(type(entry) is float for entry in value):
+            found = Array(value, (len(value),), "f")
+        else:
+            parts = [as_array(entry, dtype) for entry in value]
+            shapes = {part.shape for part in parts}
+            if len(shapes) > 1:
+                raise ValueError("ragged")
+            kind = max([part.kind for part in parts], key="bif".index, default="f")
+            found = Array([KINDS[kind](entry) for part in parts for entry in part.values],
+                          (len(parts), *(shapes.pop() if shapes else ())), kind)  # fmt: skip
+    elif hasattr(value, "tolist") and hasattr(value, "rows"):  # a matrix of SymPy
+        if dtype is None:
+            raise TypeError(type(value))
+        found = as_array(value.tolist(), dtype)
+    elif hasattr(value, "shape") and not type(value).__module__.startswith("numpy"):  # an array of orientation's own
+        found = as_array(value.tolist(), dtype)
+    elif dtype is not None and kind_of(dtype) == "f" and hasattr(value, "is_number"):  # a number of SymPy
+        found = Array([float(value)], (), "f")
+    else:
+        raise TypeError(type(value))
+    if dtype is None or found.kind == (kind := kind_of(dtype)):
+        return found
+    if kind == "i" and not all(map(math.isfinite, found.values)):
+        raise ValueError("not finite")
+    return Array([KINDS[kind](entry) for entry in found.values], found.shape, kind)
+
+
+def in_range(value):
+    if not -(2**63) <= value < 2**63:
+        raise OverflowError(value)
+    return value
+
+
+def result(values, shape, kind):
+    return Array(values, shape, kind) if shape else scalar(kind, values[0])
+
+
+# --- entry by entry -----------------------------------------------------------------------------
+
+
+def entry_by_entry(function, *arguments, kind=None, quiet=False):
+    """Apply ``function`` to the entries. What would be infinite or no number, of numbers that are, is left to the
+    real one, which warns."""
+    arrays = [as_array(argument) for argument in arguments]
+    kind = kind or max([array.kind for array in arrays], key="bif".index)
+    if len(arrays) == 1:
+        shape, values = arrays[0].shape, list(map(function, arrays[0].values))
+    else:
+        shape = common_shape(*[array.shape for array in arrays])
+        values = list(map(function, *[spread(array, shape) for array in arrays]))
+    if kind == "i":
+        list(map(in_range, values))
+    elif kind == "f" and not quiet and not all_finite(values):
+        if all(all_finite(array.values) for array in arrays):
+            raise ArithmeticError("infinite")
+    return result(values, shape, kind)
+
+
+def all_finite(values):
+    return (total := sum(values)) - total == 0 or all(map(math.isfinite, values))
+
+
+def arithmetic(name, function, kind=None):
+    """An operator, both ways round, for arrays and for numbers, and the function of NumPy's that does the same."""
+
+    def there(self, other):
+        return joined(self, other) if can_join(other) else NotImplemented
+
+    def back(self, other):
+        return joined(other, self) if can_join(other) else NotImplemented
+
+    def joined(one, two):
+        found = entry_by_entry(function, one, two, kind=kind)
+        if kind is None and found.dtype.kind == "b":
+            raise TypeError("truth values, with which NumPy does not count")
+        return found
+
+    for owner in (Array, Number, Integer, Truth):
+        setattr(owner, f"__{name}__", there)
+        if kind != "b":
+            setattr(owner, f"__r{name}__", back)
+
+
+def raised(base, exponent):
+    if exponent == 2:
+        return base * base
+    if exponent == 0.5 and isinstance(exponent, float):
+        return math.sqrt(base)
+    found = base**exponent
+    if isinstance(base, int) and isinstance(exponent, int) and exponent < 0 or isinstance(found, complex):
+        raise ValueError("needs another kind of number")
+    return found
+
+
+def rest(value, divisor):
+    if isinstance(value, float) or isinstance(divisor, float):
+        return value % divisor
+    return operator.mod(value, divisor)
+
+
+for _name, _function, _kind in (
+    ("add", operator.add, None), ("sub", operator.sub, None), ("mul", operator.mul, None),
+    ("truediv", operator.truediv, "f"), ("pow", raised, None), ("mod", rest, None),
+    ("floordiv", operator.floordiv, None),
+    ("eq", operator.eq, "b"), ("ne", operator.ne, "b"), ("lt", operator.lt, "b"), ("le", operator.le, "b"),
+    ("gt", operator.gt, "b"), ("ge", operator.ge, "b"),
+):  # fmt: skip
+    arithmetic(_name, _function, _kind)
+
+
+def of_booleans(function):
+    def there(self, other):
+        if (
+            isinstance(other, (bool, Truth, Array))
+            and (not isinstance(other, Array) or other.kind == "b")
+            and self.kind == "b"
+        ):
+            return entry_by_entry(lambda one, two: function(bool(one), bool(two)), self, other, kind="b")
+        raise TypeError("not truth values")
+
+    return there
+
+
+for _owner in (Array, Truth):
+    _owner.__and__ = _owner.__rand__ = of_booleans(operator.and_)
+    _owner.__or__ = _owner.__ror__ = of_booleans(operator.or_)
+    _owner.__xor__ = of_booleans(operator.xor)
+    _owner.__invert__ = lambda self: entry_by_entry(operator.not_, self | False, kind="b")
+Truth.__hash__ = lambda self: hash(self.value)
+for _owner in (Array, Number, Integer):
+    _owner.__neg__ = lambda self: no_truth_values(operator.neg, self)
+    _owner.__abs__ = lambda self: no_truth_values(abs, self)
+    _owner.__pos__ = lambda self: self
+
+
+def no_truth_values(function, value):
+    if as_array(value).kind == "b":
+        raise TypeError("not for truth values")
+    return entry_by_entry(function, value)
+
+
+def in_place(name):
+    def change(self, other):
+        changed = getattr(self, f"__{name}__")(other)
+        if changed is NotImplemented:
+            return changed
+        if changed.shape != self.shape or changed.kind != self.kind:
+            raise TypeError("another shape or kind")
+        self[...] = changed
+        return self
+
+    return change
+
+
+for _name in ("add", "sub", "mul", "truediv", "pow", "mod"):
+    setattr(Array, f"__i{_name}__", in_place(_name))
+
+
+def of_numbers(name, function, kind="f"):
+    """Offer a function of floats, entry by entry."""
+
+    def applied(*arguments):
+        return entry_by_entry(function, *arguments, kind=kind)
+
+    applied.__name__ = name
+    offered(applied)
+
+
+def nearest_whole(value):
+    return math.copysign(round(value), value) if math.isfinite(value) else value
+
+
+def larger(one, two):
+    return one if one >= two or one != one else two
+
+
+def smaller(one, two):
+    return one if one <= two or one != one else two
+
+
+def sign_of(value):
+    return float((value > 0) - (value < 0)) if value == value else value
+
+
+PER_DEGREE, PER_RADIAN = math.pi / 180, 180 / math.pi
+for _name, _function in {
+    "sin": math.sin, "cos": math.cos, "tan": math.tan, "arcsin": math.asin, "arccos": math.acos,
+    "arctan": math.atan, "arctan2": math.atan2, "exp": math.exp, "log": math.log, "log10": math.log10,
+    "log2": math.log2, "log1p": math.log1p, "sqrt": math.sqrt, "hypot": math.hypot,
+    "radians": lambda value: value * PER_DEGREE, "degrees": lambda value: value * PER_RADIAN,
+    "sinh": math.sinh, "cosh": math.cosh, "tanh": math.tanh,
+    "rint": nearest_whole, "sinc": lambda value: math.sin(math.pi * value) / (math.pi * value) if value else 1.0,
+    "true_divide": operator.truediv, "divide": operator.truediv,
+    "floor": lambda value: float(math.floor(value)), "ceil": lambda value: float(math.ceil(value)),
+}.items():  # fmt: skip
+    of_numbers(_name, _function)
+for _name, _function in {
+    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "power": raised, "mod": rest,
+    "minimum": smaller, "maximum": larger, "negative": operator.neg, "square": lambda value: value * value,
+}.items():  # fmt: skip
+    of_numbers(_name, _function, None)
+for _name, _function in {
+    "isfinite": math.isfinite, "isnan": math.isnan, "isinf": math.isinf, "logical_not": operator.not_,
+}.items():  # fmt: skip
+    of_numbers(_name, _function, "b")
+OFFERED.update({"deg2rad": OFFERED["radians"], "rad2deg": OFFERED["degrees"]})
+
+
+@offered
+def abs_(value):
+    return no_truth_values(abs, value)
+
+
+OFFERED["absolute"] = abs_
+
+
+@offered
+def sign(value):
+    value = as_array(value)
+    return entry_by_entry(sign_of if value.kind == "f" else lambda entry: (entry > 0) - (entry < 0), value)
+
+
+@offered
+def round_(value, decimals=0):
+    return around(value, decimals)
+
+
+@offered
+def around(value, decimals=0):
+    value = as_array(value)
+    if value.kind != "f":
+        if value.kind == "i" and decimals >= 0:
+            return value[()] if not value.shape else value.copy()
+        raise TypeError("not floats")
+    scale = 10.0 ** abs(decimals)
+    if decimals < 0:
+        return entry_by_entry(lambda entry: nearest_whole(entry / scale) * scale, value)
+    return entry_by_entry(lambda entry: nearest_whole(entry * scale) / scale, value)
+
+
+@offered
+def clip(value, low, high):
+    found = as_array(value)
+    if low is not None:
+        found = OFFERED["maximum"](found, low)
+    return OFFERED["minimum"](found, high) if high is not None else found
+
+
+@offered
+def where(condition, yes, no):
+    kind = max(as_array(yes).kind, as_array(no).kind, key="bif".index)
+    convert = KINDS[kind]
+    return entry_by_entry(lambda c, y, n: convert(y if c else n), condition, yes, no, kind=kind, quiet=True)
+
+
+@offered
+def choose(number, choices):
+    return entry_by_entry(lambda k, *entries: entries[k], number, *choices,
+                          kind=as_array(choices[0]).kind, quiet=True)  # fmt: skip
+
+
+@offered
+def isclose(one, two, rtol=1e-5, atol=1e-8):
+    def close(a, b):
+        return abs(a - b) <= atol + rtol * abs(b) if math.isfinite(a) and math.isfinite(b) else a == b
+
+    return entry_by_entry(close, one, two, kind="b")
+
+
+@offered
+def allclose(one, two, rtol=1e-5, atol=1e-8):
+    return all(as_array(isclose(one, two, rtol, atol)).values)
+
+
+@offered
+def array_equal(one, two):
+    one, two = as_array(one), as_array(two)
+    return one.shape == two.shape and one.values == two.values
+
+
+# --- arrays made --------------------------------------------------------------------------------
+
+
+@offered
+def array(value, dtype=None, copy=True):
+    return as_array(value, dtype).copy()
+
+
+@offered
+def asarray(value, dtype=None):
+    return as_array(value, dtype)
+
+
+@offered
+def ascontiguousarray(value):
+    return as_array(value)
+
+
+@offered
+def atleast_1d(value):
+    value = as_array(value)
+    return value if value.shape else value.reshape(1)
+
+
+@offered
+def atleast_2d(value):
+    value = as_array(value)
+    return value if value.ndim > 1 else value.reshape(1, -1)
+
+
+@offered
+def full(shape, value, dtype=None):
+    value = as_array(value, dtype)
+    return Array(value.values * math.prod(shape := shape_of((shape,))), shape, value.kind)
+
+
+@offered
+def zeros(shape, dtype=float):
+    return full(shape, 0, dtype)
+
+
+@offered
+def ones(shape, dtype=float):
+    return full(shape, 1, dtype)
+
+
+@offered
+def empty(shape, dtype=float):
+    return zeros(shape, dtype)
+
+
+@offered
+def zeros_like(value):
+    value = as_array(value)
+    return zeros(value.shape, value.dtype)
+
+
+@offered
+def ones_like(value):
+    value = as_array(value)
+    return ones(value.shape, value.dtype)
+
+
+@offered
+def full_like(value, filling):
+    value = as_array(value)
+    return full(value.shape, filling, value.dtype)
+
+
+@offered
+def eye(count, dtype=float):
+    convert = KINDS[kind_of(dtype)]
+    return Array(
+        [convert(row == column) for row in range(count) for column in range(count)], (count, count), kind_of(dtype)
+    )
+
+
+OFFERED["identity"] = eye
+
+
+@offered
+def arange(start, stop=None, step=1):
+    start, stop = (0, start) if stop is None else (start, stop)
+    if all(isinstance(value, int) for value in (start, stop, step)):
+        values = list(range(int(start), int(stop), int(step)))
+        return Array(values, (len(values),), "i")
+    count = max(0, math.ceil((stop - start) / step))
+    delta = float(start + step) - start
+    return Array([float(start + k * delta) for k in range(count)], (count,), "f")
+
+
+@offered
+def linspace(start, stop, num=50, endpoint=True):
+    start, stop, parts = float(start), float(stop), num - 1 if endpoint else num
+    step = (stop - start) / parts
+    if num < 2 or not step:
+        raise ValueError("too few")
+    values = [k * step + start for k in range(num)]
+    if endpoint:
+        values[-1] = stop
+    return Array(values, (num,), "f")
+
+
+@offered
+def logspace(start, stop, num=50):
+    return entry_by_entry(lambda value: 10.0**value, linspace(start, stop, num))
+
+
+@offered
+def loadtxt(file, delimiter, skiprows=0):
+    rows = [[float(entry) for entry in line.split(delimiter)] for line in list(file)[skiprows:] if line.strip()]
+    return as_array(rows)
+
+
+@offered
+def broadcast_to(value, shape):
+    value = as_array(value)
+    shape = shape_of((shape,))
+    return Array(list(spread(value, shape)), shape, value.kind)
+
+
+@offered
+def broadcast_shapes(*shapes):
+    return common_shape(*map(tuple, shapes))
+
+
+@offered
+def reshape(value, shape):
+    return as_array(value).reshape(shape)
+
+
+@offered
+def ravel(value):
+    return as_array(value).ravel()
+
+
+@offered
+def transpose(value, axes=None):
+    return as_array(value).transpose(*([axes] if axes else []))
+
+
+@offered
+def swapaxes(value, one, two):
+    return as_array(value).swapaxes(one, two)
+
+
+@offered
+def shape(value):
+    return as_array(value).shape
+
+
+@offered
+def ndim(value):
+    return as_array(value).ndim
+
+
+@offered
+def concatenate(arrays, axis=0):
+    arrays = [as_array(array) for array in arrays]
+    axis %= arrays[0].ndim
+    kind = max([array.kind for array in arrays], key="bif".index)
+    if len({array.shape[:axis] + array.shape[axis + 1 :] for array in arrays}) > 1:
+        raise ValueError("shapes")
+    shape = list(arrays[0].shape)
+    shape[axis] = sum(array.shape[axis] for array in arrays)
+    chunks = [(array.values, math.prod(array.shape[axis:])) for array in arrays]
+    values = [KINDS[kind](entry) for k in range(math.prod(shape[:axis]))
+              for values, length in chunks for entry in values[k * length : (k + 1) * length]]  # fmt: skip
+    return Array(values, shape, kind)
+
+
+@offered
+def stack(arrays, axis=0):
+    arrays = [as_array(array) for array in arrays]
+    axis %= arrays[0].ndim + 1
+    return concatenate([array.reshape(*array.shape[:axis], 1, *array.shape[axis:]) for array in arrays], axis)
+
+
+@offered
+def vstack(arrays):
+    return concatenate([atleast_2d(array) for array in arrays])
+
+
+@offered
+def hstack(arrays):
+    arrays = [atleast_1d(array) for array in arrays]
+    return concatenate(arrays, 0 if arrays[0].ndim == 1 else 1)
+
+
+@offered
+def column_stack(arrays):
+    return concatenate([array.reshape(-1, 1) if array.ndim < 2 else array for array in map(as_array, arrays)], 1)
+
+
+@offered
+def append(one, two):
+    return concatenate([as_array(one).ravel(), as_array(two).ravel()])
+
+
+@offered
+def tile(value, counts):
+    value, counts = as_array(value), shape_of((counts,))
+    longest = max(value.ndim, len(counts))
+    value = value.reshape((1,) * (longest - value.ndim) + value.shape)
+    for axis, count in enumerate((1,) * (longest - len(counts)) + counts):
+        value = concatenate([value] * count, axis)
+    return value
+
+
+@offered
+def repeat(value, count):
+    value = as_array(value).ravel()
+    return Array([entry for entry in value.values for _ in range(count)], (value.size * count,), value.kind)
+
+
+@offered
+def diag(value):
+    value = as_array(value)
+    if value.ndim == 1:
+        found = zeros((value.size, value.size), value.dtype)
+        for k, entry in enumerate(value.values):
+            found[k, k] = entry
+        return found
+    return Array([value[k, k].tolist() for k in range(min(value.shape))], (min(value.shape),), value.kind)
+
+
+# --- along an axis ------------------------------------------------------------------------------
+
+
+def pairwise(values):
+    """The sum of floats in the order in which NumPy adds them up."""
+    count = len(values)
+    if count < 8:
+        total = 0.0 if count == 0 else values[0]
+        for value in values[1:]:
+            total += value
+        return total
+    if count <= 128:
+        r = list(values[:8])
+        for start in range(8, count - count % 8, 8):
+            r = [one + two for one, two in zip(r, values[start : start + 8])]
+        total = ((r[0] + r[1]) + (r[2] + r[3])) + ((r[4] + r[5]) + (r[6] + r[7]))
+        for value in values[count - count % 8 :]:
+            total += value
+        return total
+    half = count // 2
+    half -= half % 8
+    return pairwise(values[:half]) + pairwise(values[half:])
+
+
+def in_turn(values):
+    total = values[0]
+    for value in values[1:]:
+        total += value
+    return total
+
+
+def along(value, axis, function, kind=None, keepdims=False, other=None):
+    """Apply ``function`` to the lists of entries along one axis, several, or all (None).
+
+    ``other`` is for an axis that is not the last: there NumPy adds up in another order.
+    """
+    value = as_array(value)
+    kind = kind or value.kind
+    axes = range(value.ndim) if axis is None else [axis] if isinstance(axis, int) else axis
+    axes = sorted(k + value.ndim if k < 0 else k for k in axes)
+    if any(k not in range(value.ndim) for k in axes) or len(set(axes)) < len(axes):
+        raise Told(ValueError(f"axis {axis} is out of bounds for array of dimension {value.ndim}"))
+    kept = [k for k in range(value.ndim) if k not in axes]
+    if kept and axes and axes[-1] < kept[-1] and other:
+        if len(axes) > 1:
+            raise NotImplementedError("several axes that are not the last")
+        function = other
+    count = math.prod(value.shape[k] for k in axes)
+    entries = (value.transpose(*kept, *axes) if kept and axes else value).values
+    shape = tuple(value.shape[k] for k in kept)
+    values = (
+        [function(entries[start : start + count]) for start in range(0, count * math.prod(shape), count)]
+        if count
+        else []
+    )
+    if not count:
+        raise ValueError("nothing along the axis")
+    if keepdims:
+        shape = tuple(1 if k in axes else length for k, length in enumerate(value.shape))
+    return result(values, shape, kind)
+
+
+def reduction(name, function, kind=None, other=None):
+    """Offer a reduction as a function and as a method."""
+
+    def applied(value, axis=None, keepdims=False):
+        return along(value, axis, function, kind, keepdims, other)
+
+    applied.__name__ = name
+    offered(applied)
+    setattr(Array, name, applied)
+
+
+def largest(values):
+    found = max(values)
+    return found if all_finite(values) or not any(map(math.isnan, values)) else nan
+
+
+def smallest(values):
+    found = min(values)
+    return found if all_finite(values) or not any(map(math.isnan, values)) else nan
+
+
+reduction("max", largest)
+reduction("min", smallest)
+reduction("all", all, "b")
+reduction("any", any, "b")
+reduction("ptp", lambda values: largest(values) - smallest(values))
+reduction("count_nonzero", lambda values: sum(map(bool, values)), "i")
+OFFERED.update({"amax": OFFERED["max"], "amin": OFFERED["min"]})
+
+
+def place_of(choose):
+    def found(values):
+        if not all_finite(values):
+            raise ValueError("not finite")
+        return values.index(choose(values))
+
+    return found
+
+
+def place(name, choose):
+    def applied(value, axis=None):
+        return along(value, axis, place_of(choose), "i")
+
+    applied.__name__ = name
+    offered(applied)
+    setattr(Array, name, applied)
+
+
+place("argmax", max)
+place("argmin", min)
+
+
+def sum_(value, axis=None, keepdims=False):
+    value = as_array(value)
+    if value.kind != "f":
+        return along(value, axis, sum, "i", keepdims)
+    if axis is None and not isinstance(value.places, range) and value.ndim > 1:
+        raise NotImplementedError("NumPy adds the entries of such a view in another order")
+    return along(value, axis, pairwise, "f", keepdims, in_turn)
+
+
+def mean(value, axis=None, keepdims=False):
+    value = as_array(value, float)
+    total = sum_(value, axis, keepdims)
+    return total / (value.size // max(as_array(total).size, 1))
+
+
+def var(value, axis=None):
+    value = as_array(value, float)
+    return mean((value - mean(value, axis, True)) ** 2, axis)
+
+
+def std(value, axis=None):
+    return OFFERED["sqrt"](var(value, axis))
+
+
+for _function in (sum_, mean, var, std):
+    setattr(Array, _function.__name__.rstrip("_"), _function)
+    offered(_function)
+
+
+@offered
+def median(value, axis=None):
+    def middle(values):
+        if not all_finite(values):
+            raise ValueError("not finite")
+        ordered, half = sorted(values), len(values) // 2
+        return ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2
+
+    return along(as_array(value, float), axis, middle)
+
+
+@offered
+def percentile(value, q, axis=None):
+    value, q = as_array(value, float), as_array(q)
+
+    def at(part):
+        def found(values):
+            if not all_finite(values) or not 0 <= part <= 100:
+                raise ValueError("not finite")
+            ordered, exact = sorted(values), part / 100 * (len(values) - 1)
+            below = math.floor(exact)
+            low, high, share = ordered[below], ordered[min(below + 1, len(values) - 1)], exact - below
+            return high - (high - low) * (1 - share) if share >= 0.5 else low + (high - low) * share
+
+        return found
+
+    if not q.shape:
+        return along(value, axis, at(q.item()))
+    return stack([along(value, axis, at(part)) for part in q.values])
+
+
+@offered
+def cumsum(value, axis=None):
+    value = as_array(value)
+    if axis is None:
+        value, axis = value.ravel(), 0
+    last = value.swapaxes(axis, -1)
+    length = last.shape[-1]
+    rows = [last.values[start : start + length] for start in range(0, last.size, length)]
+    found = Array(
+        [entry for row in rows for entry in itertools.accumulate(row)],
+        last.shape,
+        "i" if value.kind == "b" else value.kind,
+    )
+    return found.swapaxes(axis, -1)
+
+
+def between(value, axis):
+    """All but the first along an axis, and all but the last."""
+    front = (slice(None),) * (axis % value.ndim)
+    return value[(*front, slice(1, None))], value[(*front, slice(None, -1))]
+
+
+@offered
+def diff(value, axis=-1, prepend=None):
+    value = as_array(value)
+    if value.kind == "b":
+        raise TypeError("truth values")
+    if prepend is not None:
+        if value.ndim != 1:
+            raise NotImplementedError("prepend")
+        value = concatenate([atleast_1d(prepend), value])
+    after, before = between(value, axis)
+    return after - before
+
+
+@offered
+def gradient(value, *spacing, axis=None):
+    value = as_array(value, float)
+    if axis is None and value.ndim != 1 or len(spacing) > 1:
+        raise NotImplementedError("several axes")
+    moved = value.swapaxes(axis or 0, 0)
+    spaces = diff(as_array(spacing[0], float)) if spacing and as_array(spacing[0]).ndim else None
+    found = empty(moved.shape)
+    if spaces is not None and any(space != spaces.values[0] for space in spaces.values):
+        one, two = (part.reshape(-1, *[1] * (value.ndim - 1)) for part in (spaces[:-1], spaces[1:]))
+        a, b, c = -two / (one * (one + two)), (two - one) / (one * two), one / (two * (one + two))
+        found[1:-1] = a * moved[:-2] + b * moved[1:-1] + c * moved[2:]
+        first, last = spaces[0], spaces[-1]
+    else:
+        first = last = spaces[0] if spaces is not None else spacing[0] if spacing else 1.0
+        found[1:-1] = (moved[2:] - moved[:-2]) / (2.0 * first)
+    found[0] = (moved[1] - moved[0]) / first
+    found[-1] = (moved[-1] - moved[-2]) / last
+    return found.swapaxes(axis or 0, 0)
+
+
+@offered
+def unwrap(value, period=2 * math.pi, axis=-1):
+    value = as_array(value)
+    if value.kind != "f" and not isinstance(period, float):
+        raise NotImplementedError("whole numbers")
+    value, half = as_array(value, float), period / 2
+    steps = diff(value, axis)
+    wrapped = entry_by_entry(lambda step: half if (step + half) % period == 0 and step > 0
+                             else (step + half) % period - half, steps)  # fmt: skip
+    corrections = where(abs_(steps) < half, 0.0, wrapped - steps)
+    found = value.copy()
+    front = (slice(None),) * (axis % value.ndim)
+    found[(*front, slice(1, None))] = value[(*front, slice(1, None))] + cumsum(corrections, axis)
+    return found
+
+
+@offered
+def flatnonzero(value):
+    found = [place for place, entry in enumerate(as_array(value).values) if entry]
+    return Array(found, (len(found),), "i")
+
+
+@offered
+def argwhere(value):
+    value = as_array(value)
+    return as_array(
+        [unravel_index(place, value.shape) for place in flatnonzero(value).values] or zeros((0, value.ndim), int)
+    )
+
+
+@offered
+def unravel_index(place, shape):
+    found = []
+    for step, length in zip(steps_of(tuple(shape)), shape):
+        found.append(Integer(place // step % length))
+    return tuple(found)
+
+
+@offered
+def searchsorted(ordered, value, side="left"):
+    import bisect
+
+    find, ordered = {"left": bisect.bisect_left, "right": bisect.bisect_right}[side], as_array(ordered)
+    if ordered.ndim != 1:
+        raise ValueError("one axis")
+    values = ordered.values
+    return entry_by_entry(lambda entry: find(values, entry), value, kind="i")
+
+
+@offered
+def unique(value):
+    found = sorted(set(as_array(value).values))
+    return Array(found, (len(found),), as_array(value).kind)
+
+
+@offered
+def sort(value):
+    value = as_array(value)
+    if value.ndim != 1 or not all_finite(value.values):
+        raise NotImplementedError("several axes")
+    return Array(sorted(value.values), value.shape, value.kind)
+
+
+@offered
+def argsort(value):
+    value = as_array(value)
+    if value.ndim != 1 or not all_finite(value.values) or len(set(value.values)) < value.size:
+        raise NotImplementedError("several axes, or equal entries")
+    return Array(sorted(range(value.size), key=value.values.__getitem__), value.shape, "i")
+
+
+# --- products, and matrices ---------------------------------------------------------------------
+
+
+def spend(count):
+    global work
+    work += count
+    if work > MOST_WORK:
+        real()
+
+
+def product(one, two):
+    """``one @ two``, rows times columns."""
+    one, two = as_array(one), as_array(two)
+    if not one.shape or not two.shape:
+        raise Told(ValueError("matmul: Input operand does not have enough dimensions"))
+    left = one.reshape(1, -1) if one.ndim == 1 else one
+    right = two.reshape(-1, 1) if two.ndim == 1 else two
+    if left.shape[-1] != right.shape[-2]:
+        said = f"size {right.shape[-2]} is different from {left.shape[-1]}"
+        raise Told(
+            ValueError(
+                "matmul: Input operand 1 has a mismatch in its core dimension 0, with gufunc signature "
+                f"(n?,k),(k,m?)->(n?,m?) ({said})"
+            )
+        )
+    kind = max(one.kind, two.kind, key="bif".index)
+    if kind == "b":
+        raise TypeError("truth values")
+    batch = common_shape(left.shape[:-2], right.shape[:-2])
+    (n, k), m = left.shape[-2:], right.shape[-1]
+    spend(math.prod(batch) * n * k * m // 4)
+    lefts = spread(left, (*batch, n, k))
+    rights = spread(right.swapaxes(-1, -2), (*batch, m, k))
+    values = []
+    for b in range(math.prod(batch)):
+        rows = [lefts[start : start + k] for start in range(b * n * k, (b + 1) * n * k, k)]
+        columns = [rights[start : start + k] for start in range(b * m * k, (b + 1) * m * k, k)]
+        values += [in_turn(list(map(operator.mul, row, column))) for row in rows for column in columns]
+    shape = batch + ((n,) if one.ndim > 1 else ()) + ((m,) if two.ndim > 1 else ())
+    return result(values, shape, kind)
+
+
+@offered
+def matmul(one, two):
+    return product(one, two)
+
+
+@offered
+def dot(one, two):
+    one, two = as_array(one), as_array(two)
+    if not one.shape or not two.shape:
+        return one * two
+    if two.ndim > 2 or one.ndim > 2:
+        raise NotImplementedError("stacks")
+    return product(one, two)
+
+
+@offered
+def outer(one, two):
+    return as_array(one).reshape(-1, 1) * as_array(two).reshape(1, -1)
+
+
+@offered
+def cross(one, two):
+    one, two = as_array(one), as_array(two)
+    if one.shape[-1] != 3 or two.shape[-1] != 3:
+        raise ValueError("three components")
+    (a, b, c), (x, y, z) = ([value[..., k] for k in range(3)] for value in (one, two))
+    return stack([b * z - c * y, c * x - a * z, a * y - b * x], -1)
+
+
+@offered
+def trace(value):
+    return sum_(diag(as_array(value)))
+
+
+@offered
+def tensordot(one, two, axes):
+    one, two = as_array(one), as_array(two)
+    if axes != 1 or one.ndim != 1:
+        raise NotImplementedError("other axes")
+    return (one @ two.reshape(two.shape[0], -1)).reshape(two.shape[1:])
+
+
+@offered
+def einsum(formula, *arrays):
+    arrays = [as_array(array) for array in arrays]
+    inputs, _, output = formula.replace(" ", "").partition("->")
+    inputs = inputs.split(",")
+    if not output or any(array.kind != "f" for array in arrays):
+        raise NotImplementedError(formula)
+    dots = max(array.ndim - len(names.replace("...", "")) for array, names in zip(arrays, inputs))
+    batch = "".join(chr(ord("A") + k) for k in range(dots))
+    names, lengths = [], {}
+    for k, array in enumerate(arrays):
+        own = inputs[k].replace("...", batch[len(batch) - (array.ndim - len(inputs[k].replace("...", ""))) :])
+        if len(set(own)) < len(own) or len(own) != array.ndim:
+            raise NotImplementedError(formula)
+        names.append(own)
+        for name, length in zip(own, array.shape):
+            if lengths.setdefault(name, length) != length:
+                raise NotImplementedError(formula)
+    output = output.replace("...", batch)
+    added = [name for name in lengths if name not in output]
+    order = [*output, *added]
+    shape = [lengths[name] for name in order]
+    spend(math.prod(shape) * len(arrays))
+    columns = []
+    for own, array in zip(names, arrays):
+        steps = dict(zip(own, steps_of(array.shape)))
+        values = array.values
+        columns.append([values[place] for place in places_of(shape, [steps.get(name, 0) for name in order])])
+    products = columns[0]
+    for column in columns[1:]:
+        products = list(map(operator.mul, products, column))
+    count = math.prod(lengths[name] for name in added)
+    values = [in_turn(products[start : start + count]) for start in range(0, len(products), count)]
+    return result(values, tuple(lengths[name] for name in output), "f")
+
+
+def matrices(value):
+    """The square matrices of a stack, as lists of rows, and the shape of the stack."""
+    value = as_array(value, float)
+    if value.ndim < 2 or value.shape[-1] != value.shape[-2] or not all_finite(value.values):
+        raise ValueError("square matrices")
+    n = value.shape[-1]
+    spend(value.size * n * 12)
+    return nested(value.values, (value.size // (n * n), n, n)), value.shape[:-2], n
+
+
+def inner(one, two):
+    return sum(map(operator.mul, one, two))
+
+
+def eliminated(rows, right):
+    """Solve by Gauss's elimination with row exchanges; returns the solution and the determinant."""
+    rows, right, n, determinant = [row[:] for row in rows], [row[:] for row in right], len(rows), 1.0
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(rows[i][k]))
+        if best != k:
+            rows[k], rows[best], right[k], right[best] = rows[best], rows[k], right[best], right[k]
+            determinant = -determinant
+        determinant *= rows[k][k]
+        for i in range(k + 1, n):
+            if not rows[k][k]:
+                break
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k])]
+            right[i] = [a - factor * b for a, b in zip(right[i], right[k])]
+    if right[0]:
+        for k in reversed(range(n)):
+            right[k] = [entry / rows[k][k] for entry in right[k]]
+            for i in range(k):
+                right[i] = [a - rows[i][k] * b for a, b in zip(right[i], right[k])]
+    return right, determinant
+
+
+@within("linalg")
+def solve(matrix, right):
+    stack_of, batch, n = matrices(matrix)
+    right = as_array(right, float)
+    if batch or right.ndim > 2:
+        if right.ndim != len(batch) + 2:
+            raise NotImplementedError("stacks")
+        right = broadcast_to(right, (*batch, *right.shape[-2:]))
+    columns = right.shape[-1] if right.ndim > 1 else 1
+    rights = nested(right.values, (len(stack_of), n, columns))
+    values = [entry for rows, own in zip(stack_of, rights) for row in eliminated(rows, own)[0] for entry in row]
+    return Array(values, right.shape, "f")
+
+
+@within("linalg")
+def inv(matrix):
+    stack_of, batch, n = matrices(matrix)
+    unit = eye(n).tolist()
+    return Array(
+        [entry for rows in stack_of for row in eliminated(rows, unit)[0] for entry in row], (*batch, n, n), "f"
+    )
+
+
+@within("linalg")
+def det(matrix):
+    stack_of, batch, n = matrices(matrix)
+    return result([eliminated(rows, [[]] * n)[1] for rows in stack_of], batch, "f")
+
+
+def of_symmetric(rows):
+    """Eigenvalues in rising order and eigenvectors, as rows, by Jacobi's turns."""
+    a, n = [row[:] for row in rows], len(rows)
+    vectors = eye(n).tolist()
+    for _ in range(60):
+        if sum(a[p][q] ** 2 for p in range(n) for q in range(p)) < 1e-40 * sum(a[p][p] ** 2 for p in range(n)):
+            break
+        for p in range(n):
+            for q in range(p + 1, n):
+                if not a[p][q]:
+                    continue
+                theta = (a[q][q] - a[p][p]) / (2 * a[p][q])
+                t = math.copysign(1, theta) / (abs(theta) + math.hypot(theta, 1))
+                c = 1 / math.hypot(t, 1)
+                s = t * c
+                for row in a:
+                    row[p], row[q] = c * row[p] - s * row[q], s * row[p] + c * row[q]
+                a[p], a[q] = ([c * x - s * y for x, y in zip(a[p], a[q])], [s * x + c * y for x, y in zip(a[p], a[q])])
+                vectors[p], vectors[q] = ([c * x - s * y for x, y in zip(vectors[p], vectors[q])],
+                                          [s * x + c * y for x, y in zip(vectors[p], vectors[q])])  # fmt: skip
+    order = sorted(range(n), key=lambda k: a[k][k])
+    return [a[k][k] for k in order], [vectors[k] for k in order]
+
+
+@within("linalg")
+def eigh(matrix):
+    stack_of, batch, n = matrices(matrix)
+    found = [of_symmetric(rows) for rows in stack_of]
+    # A vector and its opposite are both right, and no rule says which LAPACK gives.
+    vectors = [entry for _, rows in found for column in zip(*rows) for entry in column]
+    return (Array([value for values, _ in found for value in values], (*batch, n), "f"),
+            Array(vectors, (*batch, n, n), "f"))  # fmt: skip
+
+
+@within("linalg")
+def eigvalsh(matrix):
+    stack_of, batch, n = matrices(matrix)
+    return Array([value for rows in stack_of for value in of_symmetric(rows)[0]], (*batch, n), "f")
+
+
+def singular(rows):
+    """Columns of the left factor, singular values, and rows of the right factor, by turning columns (Hestenes)."""
+    n = len(rows)
+    columns, right = [list(column) for column in zip(*rows)], eye(n).tolist()
+    for _ in range(60):
+        turned = False
+        for p in range(n):
+            for q in range(p + 1, n):
+                alpha, beta = inner(columns[p], columns[p]), inner(columns[q], columns[q])
+                gamma = inner(columns[p], columns[q])
+                if abs(gamma) <= 1e-17 * math.sqrt(alpha * beta):
+                    continue
+                turned = True
+                zeta = (beta - alpha) / (2 * gamma)
+                t = math.copysign(1, zeta) / (abs(zeta) + math.hypot(zeta, 1))
+                c = 1 / math.hypot(t, 1)
+                s = c * t
+                for pair in (columns, right):
+                    pair[p], pair[q] = ([c * x - s * y for x, y in zip(pair[p], pair[q])],
+                                        [s * x + c * y for x, y in zip(pair[p], pair[q])])  # fmt: skip
+        if not turned:
+            break
+    sizes = [math.hypot(*column) for column in columns]
+    order = sorted(range(n), key=lambda k: -sizes[k])
+    return [columns[k] for k in order], [sizes[k] for k in order], [right[k] for k in order]
+
+
+def orthonormal(columns, sizes):
+    """Columns that are at right angles, of unit length; where one has shrunk to nothing, another at right angles."""
+    found = []
+    for column, size in zip(columns, sizes):
+        if size <= 1e-14 * sizes[0] or not size:
+            rests = []
+            for unit in eye(len(columns)).tolist():
+                for _ in range(2):
+                    for other in found:
+                        share = inner(unit, other)
+                        unit = [a - share * b for a, b in zip(unit, other)]
+                rests.append(unit)
+            column = max(rests, key=lambda rest: inner(rest, rest))
+            size = math.hypot(*column)
+        found.append([entry / size for entry in column])
+    return found
+
+
+@within("linalg")
+def svd(matrix, compute_uv=True):
+    stack_of, batch, n = matrices(matrix)
+    lefts, sizes, rights = [], [], []
+    for rows in stack_of:
+        columns, own, right = singular(rows)
+        if compute_uv:
+            columns = orthonormal(columns, own)
+            # LAPACK's signs are not to be had; the product of the factors is.
+            lefts += [entry for row in zip(*columns) for entry in row]
+            rights += [entry for row in right for entry in row]
+        sizes += own
+    sizes = Array(sizes, (*batch, n), "f")
+    if not compute_uv:
+        return sizes
+    return Array(lefts, (*batch, n, n), "f"), sizes, Array(rights, (*batch, n, n), "f")
+
+
+@within("linalg")
+def norm(value, axis=None, keepdims=False):
+    value = as_array(value, float)
+    if axis is None and value.ndim < 3 or isinstance(axis, tuple) and len(axis) > 2:
+        value, axis = (value.ravel(), None) if not keepdims else (value, axis)
+    return OFFERED["sqrt"](sum_(value * value, axis, keepdims))
+
+
+@within("linalg")
+def matrix_power(matrix, exponent):
+    found, matrix = None, as_array(matrix)
+    if exponent < 1:
+        raise ValueError("positive powers")
+    if exponent == 3:
+        return product(product(matrix, matrix), matrix)
+    while exponent:
+        exponent, odd = divmod(exponent, 2)
+        found = (matrix if found is None else product(found, matrix)) if odd else found
+        matrix = product(matrix, matrix) if exponent else matrix
+    return found
+
+
+@within("linalg")
+def matrix_rank(matrix):
+    sizes = svd(matrix, compute_uv=False)
+    if sizes.ndim != 1:
+        raise NotImplementedError("stacks")
+    limit = sizes.values[0] * as_array(matrix).shape[-1] * sys.float_info.epsilon
+    return Integer(sum(size > limit for size in sizes.values))
+
+
+class Quiet:
+    """Nothing here warns: what would is left to the real NumPy."""
+
+    def __init__(self, **settings):
+        pass
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        return None
+
+
+OFFERED["errstate"] = Quiet
+
+
+# --- random numbers: PCG64, seeded and shaped as NumPy does it (O'Neill 2014; Marsaglia and Tsang 2000) -----------
+
+WORD, LONG, HUGE = 2**32 - 1, 2**64 - 1, 2**128 - 1
+
+
+def seeded(seed):
+    """The state and the increment of PCG64 for a whole number: NumPy's SeedSequence."""
+    words = []
+    while seed or not words:
+        words.append(seed & WORD)
+        seed >>= 32
+    constant = 0x43B0D7E5
+
+    def hashed(value):
+        nonlocal constant
+        value ^= constant
+        constant = constant * 0x931E8875 & WORD
+        value = value * constant & WORD
+        return value ^ value >> 16
+
+    def mixed(x, y):
+        found = (0xCA01F9DD * x - 0x4973F715 * y) & WORD
+        return found ^ found >> 16
+
+    pool = [hashed(words[k] if k < len(words) else 0) for k in range(4)]
+    for source, target in itertools.product(range(4), range(4)):
+        if source != target:
+            pool[target] = mixed(pool[target], hashed(pool[source]))
+    for word, target in itertools.product(words[4:], range(4)):
+        pool[target] = mixed(pool[target], hashed(word))
+    constant, parts = 0x8B51F9DD, []
+    for k in range(8):
+        value = pool[k % 4] ^ constant
+        constant = constant * 0x58F38DED & WORD
+        value = value * constant & WORD
+        parts.append(value ^ value >> 16)
+    first, second, third, fourth = (parts[k] | parts[k + 1] << 32 for k in range(0, 8, 2))
+    return first << 64 | second, third << 64 | fourth
+
+
+#: NumPy's table of widths was made with rounded numbers: so far it is from the exact ones, in units in the last place.
+ROUNDED = """
+    -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7 -8 -8 -8 -7 -8
+    -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4 -3 -4 -3 -3 -3 -3 -4 -3 -4 -3
+    -3 -4 -3 -2 -2 -3 -3 -3 -4 -3 -3 -3 -3 -3 -3 -3 -2 -2 -2 -2 -2 -1 -1 -1 -1 -1 -2 -2 -1 -2 -2 -2 -2 -2 -1 -2 -2
+    -2 -2 -2 -3 -3 -3 -2 -2 -2 -1 -1 -2 -2 -2 -2 -1 -1 -1 -1 -1 -2 -2 -2 -1 -1 -2 -2 -2 -2 -2 -2 -2 -2 -3 -4 -4 -4
+    -3 -3 -3 -3 -2 -2 -2 -1 -1 -1 -1 -1 0 0 0 0 0 -1 -1 0 -1 0 -1 -1 -1 0 0 0 1 2 3 3 3 2 2 1 0 0 0 0 0 0 0 0 -1 0 0
+    0 0 0 0 -1 -1 -1 -1 -1 -2 -1 -2 -2 -2 -2 -2 -2 -1 -1 -1 -1 -1 0 -1 -1 -1 0 0 0 -1 -1 0 0 0 0 0 0 -1 0 0 -1 0 -1
+    -1 -1 -1 -1 -1 -1 -1 0 1 0 1 1 1 1 1 1 0 0 0 1 1 0
+""".split()
+
+
+@functools.cache
+def ziggurat():
+    """The 256 layers of equal area under the bell curve: their bounds as whole numbers, widths and heights."""
+    import mpmath
+
+    with mpmath.workdps(60):
+        start = mpmath.mpf("3.6541528853610087963519472518")
+        height = lambda x: mpmath.exp(-x * x / 2)  # noqa: E731
+        area = start * height(start) + mpmath.sqrt(mpmath.pi / 2) * mpmath.erfc(start / mpmath.sqrt(2))
+        edges = [start]
+        for _ in range(254):
+            edges.append(mpmath.sqrt(-2 * mpmath.log(area / edges[-1] + height(edges[-1]))))
+        edges = [area / height(start), *edges]  # from the widest, which stands for the tail, to the narrowest
+        scale = mpmath.mpf(2) ** 52
+        widths = [edges[0], *reversed(edges[1:])]
+        bounds = [edges[1] / edges[0], 0, *(widths[k - 1] / widths[k] for k in range(2, 256))]
+        widths = [float(width / scale) for width in widths]
+        heights = [1.0, *(float(height(width * scale)) for width in widths[1:])]
+        bounds = [int(bound * scale) for bound in bounds]
+    return bounds, [width + int(more) * math.ulp(width) for width, more in zip(widths, ROUNDED)], heights
+
+
+class Generator:
+    """``numpy.random.default_rng``, for uniform and normal numbers."""
+
+    def __init__(self, seed):
+        start, increment = seeded(seed)
+        self.increment = (increment << 1 | 1) & HUGE
+        self.state = self.increment
+        self.state = (self.state + start) & HUGE
+        self.step()
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.as_real(), name)
+
+    def as_real(self):
+        bits = real().random.PCG64(0)
+        inner = {"state": self.state, "inc": self.increment}
+        bits.state = {"bit_generator": "PCG64", "state": inner, "has_uint32": 0, "uinteger": 0}
+        return real().random.Generator(bits)
+
+    def step(self):
+        self.state = (self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment) & HUGE
+
+    def bits(self):
+        state = self.state = (self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment) & HUGE
+        value, turn = (state >> 64 ^ state) & LONG, state >> 122
+        return (value >> turn | value << (64 - turn)) & LONG
+
+    def share(self):
+        return (self.bits() >> 11) * 2.0**-53
+
+    def bell(self):
+        bounds, widths, heights = ziggurat()
+        while True:
+            bits = self.bits()
+            layer, sign, whole = bits & 0xFF, bits >> 8 & 1, bits >> 9 & (2**52 - 1)
+            value = -whole * widths[layer] if sign else whole * widths[layer]
+            if whole < bounds[layer]:
+                return value
+            if layer == 0:
+                edge = 3.6541528853610088
+                while True:
+                    beyond = -math.log1p(-self.share()) * 0.27366123732975828
+                    if -2 * math.log1p(-self.share()) > beyond * beyond:
+                        return -(edge + beyond) if whole >> 8 & 1 else edge + beyond
+            elif (heights[layer - 1] - heights[layer]) * self.share() + heights[layer] < math.exp(-0.5 * value * value):
+                return value
+
+    def drawn(self, draw, size):
+        if size is None:
+            return draw()
+        shape = shape_of((size,))
+        spend(4 * math.prod(shape))
+        return Array([draw() for _ in range(math.prod(shape))], shape, "f")
+
+    def random(self, size=None):
+        return self.drawn(self.share, size)
+
+    def uniform(self, low=0.0, high=1.0, size=None):
+        low, width = float(low), float(high) - float(low)
+        return self.drawn(lambda: low + width * self.share(), size)
+
+    def standard_normal(self, size=None):
+        return self.drawn(self.bell, size)
+
+    def normal(self, loc=0.0, scale=1.0, size=None):
+        loc, scale = float(loc), float(scale)
+        if scale < 0:
+            raise ValueError("scale")
+        return self.drawn(lambda: loc + scale * self.bell(), size)
+
+
+def _from_here_on(name):
+    """A method of a generator; where it cannot answer, a real one goes on from the same state."""
+
+    def find(numpy, arguments):
+        return lambda self, *rest, **options: getattr(self.as_real(), name)(*rest, **options)
+
+    return or_the_real_one(vars(Generator)[name], find)
+
+
+for _name in ("random", "uniform", "standard_normal", "normal"):
+    setattr(Generator, _name, _from_here_on(_name))
+
+
+@within("random")
+def default_rng(seed):
+    if isinstance(seed, Generator):
+        return seed
+    if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
+        raise TypeError("not a whole number")
+    return Generator(int(seed))
+
+
+# --- writing ------------------------------------------------------------------------------------
+
+
+def places_after(value, form):
+    return len(format(value, form).partition("e")[0].rstrip("0").partition(".")[2])
+
+
+def writer(values, kind):
+    """The function that writes each entry, all in one width, as NumPy's default settings have it."""
+    if kind == "b":
+        return lambda value: f"{value!s:>5}"
+    if kind == "i":
+        width = max((len(str(value)) for value in values), default=0)
+        return lambda value: f"{value:>{width}}"
+    finite = [value for value in values if math.isfinite(value)]
+    sizes = [abs(value) for value in finite if value]
+    exponents = bool(sizes) and (max(sizes) >= 1e8 or min(sizes) < 1e-4 or max(sizes) / min(sizes) > 1000)
+    form = "e" if exponents else "f"
+    digits = max((min(places_after(value, f".8{form}"), shortest(value, form)) for value in finite), default=0)
+
+    def one(value):
+        if not math.isfinite(value):
+            return str(value)
+        text = format(value, f".{digits}{form}")
+        if digits:
+            head, _, tail = text.partition("e")
+            if form == "f":
+                whole, _, rest = head.partition(".")
+                return f"{whole}.{rest.rstrip('0'):<{digits}}"
+            return text
+        return text.replace("e", ".e") if exponents else f"{text}."
+
+    width = max((len(one(value)) for value in values), default=0)
+    return lambda value: f"{one(value):>{width}}"
+
+
+def shortest(value, form):
+    """Digits after the point of the shortest decimal that is this float."""
+    import decimal
+
+    digits, exponent = decimal.Decimal(repr(value)).as_tuple()[1:]
+    if form == "e":
+        return len("".join(map(str, digits)).rstrip("0") or "0") - 1
+    return max(-exponent, 0)
+
+
+def written_array(value, between, prefix):
+    """An array as NumPy writes it: lines of at most 75 characters."""
+    if value.size > 1000:
+        raise NotImplementedError("NumPy leaves out the middle")
+    write = writer(value.values, value.kind)
+    if not value.shape:
+        text = write(value.values[0])
+        return text if value.kind != "f" or between == ", " else str(value.values[0])
+    room = 75 - len(")" if prefix else "")
+
+    def lines(part, hanging, depth):
+        if part.ndim == 1:
+            text, line = "", hanging
+            entries = [write(entry) for entry in part.values]
+            for k, entry in enumerate(entries):
+                last = k == len(entries) - 1
+                if len(line) + len(entry) > room - depth and len(line) > len(hanging):
+                    text += line.rstrip() + "\n"
+                    line = hanging
+                line += entry + ("" if last else between)
+            return f"[{(text + line)[len(hanging) :]}]"
+        joint = between.rstrip() + "\n" * (part.ndim - 1) + hanging
+        return f"[{joint.join(lines(own, hanging + ' ', depth + 1) for own in part)}]"
+
+    return lines(value, " " * (len(prefix) + 1), 1)
+
+
+# Whatever the methods of an array or a number cannot answer, those of the real ones can.
+_OWN = {"__init__", "__getattr__", "__array__", "__reduce__", "__hash__", "view", "select", "__repr__", "__str__"}
+for _owner in (Array, Number, Integer, Truth):
+    for _name, _method in list(vars(_owner).items()):
+        if callable(_method) and (_name not in _OWN or _owner is Array and _name in ("__repr__", "__str__")):
+
+            def _find(numpy, arguments, name=_name):
+                return lambda self, *rest, **options: getattr(self, name)(*rest, **options)
+
+            setattr(_owner, _name, or_the_real_one(_method, _find))
