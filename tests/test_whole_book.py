@@ -1,5 +1,6 @@
 """The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk without a network."""
 
+import io
 import re
 import shutil
 import subprocess
@@ -322,6 +323,15 @@ def test_same_files_give_the_same_zip(monkeypatch):
     one = offline.pack({"b/page.html": b"words", "a.txt": b"more"}, "book", "A Book")
     other = offline.pack({"a.txt": b"more", "b/page.html": b"words"}, "book", "A Book")
     assert one == other
+
+
+def test_pages_in_the_zip_ask_for_nothing_ahead():
+    """Of a typeface that is to be fetched ahead, Chromium says on every page from a disk that it cannot use it."""
+    page = '<head>\n  <link rel="preload" as="font" crossorigin href="a.woff2">\n  <style></style></head>'
+    packed = offline.pack({"page.html": page.encode(), "kept.js": b'<link rel="preload">'}, "book", "A Book")
+    with zipfile.ZipFile(io.BytesIO(packed)) as archive:
+        assert archive.read("book/page.html") == b"<head>\n  <style></style></head>"
+        assert archive.read("book/kept.js") == b'<link rel="preload">'
 
 
 @pytest.mark.long

@@ -4,11 +4,14 @@ Its bytes depend on what is in it and on nothing else: files stand in order, wit
 """
 
 import io
+import re
 import zipfile
 
 from .paths import WEBSITE, moment_of_sources
 
 SERVER = WEBSITE / "serve.py"
+#: What a page asks for ahead of its turn: from a disk nothing is, and browsers complain of the hint.
+AHEAD = re.compile(rb'\s*<link rel="preload"[^>]*>')
 LICENCES = "Text: CC BY 4.0. Code: BSD 3-Clause."
 README = """{title}
 {line}
@@ -35,6 +38,7 @@ two from the network the first time, and say so.)
 def pack(files, name, title):
     """The zip of ``files``, contents by path, in a folder called ``name``."""
     readme = README.format(title=title, line="=" * len(title), licences=LICENCES)
+    files = {path: AHEAD.sub(b"", content) if path.endswith(".html") else content for path, content in files.items()}
     files = {"README.txt": readme.encode(), "serve.py": SERVER.read_bytes(), **files}
     date = moment_of_sources().timetuple()[:6]
     packed = io.BytesIO()
