@@ -1,5 +1,6 @@
 """What the built pages say of themselves to others, and what a published book adds when it knows its address."""
 
+import io
 import re
 from collections import Counter
 from functools import cache
@@ -10,9 +11,12 @@ import pytest
 import yaml
 from bs4 import BeautifulSoup
 from conftest import HTML, REPOSITORY
+from PIL import Image, ImageChops
 from test_website import build, chapter
 
 import orientation
+from orientation_figures.style import LIGHT
+from website import pictures
 from website.finish import pages_of
 from website.paths import pages
 from website.publish import LICENCE, LONGEST
@@ -99,3 +103,28 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
     asked = parse_qs(urlsplit(unescape(report)).query)
     assert "(chapter)" in asked["body"][0] and "Edition: 3.0" in asked["body"][0]
     assert 'href="https://github.com/example/tiny-book/edit/main/chapter.ipynb"' in text
+    picture = meta(text, "og:image").removeprefix("https://example.org/books/tiny/")
+    assert Image.open(io.BytesIO((site / picture).read_bytes())).size == (1200, 630)
+    assert meta(text, "og:image:alt") and meta(text, "twitter:card") == "summary_large_image"
+
+
+def test_picture_of_a_page_is_its_first_figure():
+    """In the colours of the light page, as large as it fits, and small enough for those who show it."""
+    for name in ("index", "chapters/euler-angles", "chapters/orientation-from-sensors"):
+        figure, box, words = pictures.first_figure((HTML / f"{name}.html").read_text("utf8"))
+        content = pictures.drawn(figure, box)
+        picture = Image.open(io.BytesIO(content)).convert("RGB")
+        assert picture.size == (1200, 630) and len(content) < pictures.LARGEST and len(words) > 40
+        colours = {colour for _, colour in picture.getcolors(10**6)}
+        known = [tuple(bytes.fromhex(LIGHT[name][1:])) for name in "ABD"]
+        assert (255, 255, 255) in colours and len(colours.intersection(known)) >= 2
+        ink = ImageChops.difference(picture, Image.new("RGB", picture.size, "white")).getbbox()
+        assert ink[0] >= 20 and ink[1] >= 20 and ink[2] <= 1180 and ink[3] <= 610
+        assert ink[2] - ink[0] > 600 or ink[3] - ink[1] > 400
+    assert pictures.first_figure("<p>no figure</p>") is None
+
+
+def test_labels_are_drawn_in_the_picture():
+    page = (HTML / "index.html").read_text("utf8")
+    figure, box, _ = pictures.first_figure(page)
+    assert pictures.drawn(figure, box) != pictures.drawn(re.sub("<use [^>]*>", "", figure), box)

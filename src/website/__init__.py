@@ -17,6 +17,7 @@ from . import (
     mathematics,
     moving,
     page,
+    pictures,
     progress,
     publish,
     questions,
@@ -27,6 +28,6 @@ from . import (
 
 def setup(app):
     pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress, subject_index)
-    for module in (*pages, take_away, page, publish, moving, live, lite, install, finish):
+    for module in (*pages, take_away, page, publish, pictures, moving, live, lite, install, finish):
         module.setup(app)
     return {"version": "1.0", "parallel_read_safe": True, "parallel_write_safe": True}

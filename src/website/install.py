@@ -10,6 +10,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from .live.runtime import FOLDER, LOCK
+from .pictures import FOLDER as PICTURES
 
 LIST = "offline.json"
 MANIFEST = "manifest.webmanifest"
@@ -63,7 +64,7 @@ def write_list(site):
     python = [site / FOLDER / LOCK, *(site / FOLDER).glob("pyodide-*/*"), *wheels, *sealed]
     pages = [
         path for path in site.rglob("*")
-        if path.suffix in KEPT and path.relative_to(site).parts[0] != "lite" and path not in python
+        if path.suffix in KEPT and path.relative_to(site).parts[0] not in ("lite", PICTURES) and path not in python
         and path.name not in ("service-worker.js", "404.html")
     ]  # fmt: skip
 
