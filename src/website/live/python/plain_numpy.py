@@ -1724,6 +1724,7 @@ def orthonormal(columns, sizes):
 @within("linalg")
 def svd(matrix, compute_uv=True):
     stack_of, batch, n = matrices(matrix)
+    spend(len(stack_of) * n**3 * 90)
     lefts, sizes, rights = [], [], []
     for rows in stack_of:
         columns, own, right = singular(rows)
