@@ -198,7 +198,6 @@ class Page {
   async work() {
     this.busy = true;
     this.retry = true; // what could not be fetched before is tried again
-    this.unreachable = new Map();
     this.show();
     try {
       if (!this.python) await this.load();
@@ -249,18 +248,16 @@ class Page {
     const needs = cell.edited ? [] : cell.kind.needs ?? [];
     const lacking = needs.filter((module) => !this.has.modules.includes(module));
     cell.begin();
-    if (lacking.length) {
-      return this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
-    }
-    const reason = needs.map((module) => this.unreachable.get(module)).find(Boolean);
-    if (reason) return this.leave(cell, reason);
     if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
     // Code that the page hides above this cell; what it puts out belongs to no cell.
     const { before } = cell.kind;
+    const show = lacking.length ? { take() {} } : cell; // it cannot run whole, but others use names that it gives before
     const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }, this.retry, coursework.all()) : { status: "ok" };
-    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, cell, this.retry, coursework.all()) : hidden;
+    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, show, this.retry, coursework.all()) : hidden;
     this.retry = false;
-    this.settle(cell, outcome);
+    if (lacking.length && ["ok", "error", "missing"].includes(outcome.status)) {
+      this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
+    } else this.settle(cell, outcome);
     cell.asked = false;
   }
 
@@ -281,7 +278,6 @@ class Page {
       const by = outcome.plain ? ", its numbers by plain Python in NumPy’s place" : "";
       this.last = `${cell.name} ran${by}${words ? `. Result: ${words.length > 200 ? `${words.slice(0, 200)} ...` : words}` : ", without a result to show"}`;
     } else if (status === "missing") {
-      if (!cell.edited) this.unreachable.set(outcome.package, outcome.reason);
       this.leave(cell, outcome.reason);
     } else if (status === "error") {
       const text = preformatted("stream", outcome.traceback);
@@ -331,7 +327,6 @@ class Page {
   // Python is gone, and with it every name: the next run begins with the first cell.
   forget() {
     this.python = null;
-    this.unreachable = new Map();
     for (const cell of this.cells) cell.ran = false;
   }
 

@@ -35,6 +35,8 @@ const absentModules = () =>
     .filter(([name]) => !(name in python.loadedPackages))
     .flatMap(([name, { imports }]) => imports.map((module) => [module, name]));
 
+const packageOf = (module) => absentModules().find(([found]) => found === module)?.[1];
+
 function tellWhatIsMissing() {
   const reasons = {};
   for (const name of NUMERICAL.filter((name) => !(name in packages))) {
@@ -192,7 +194,7 @@ function takeFiles() {
 
 // Load the package that brings a module, and say why if it does not come.
 async function bring(module) {
-  const name = absentModules().find(([found]) => found === module)?.[1];
+  const name = packageOf(module);
   if (!name || name in refused) return false;
   const { file_name: file } = packages[name];
   const place = file.includes("://") ? new URL(file).host : "this site";
@@ -220,15 +222,22 @@ async function bring(module) {
 async function run({ code, name, needs = [], retry, kept }) {
   if (retry) refused = {};
   putFiles(kept);
-  for (const module of needs) if (!(await bring(module))) break;
+  let lacked;
+  for (const module of needs) {
+    if (!lacked && packageOf(module) && !(await bring(module))) lacked = module;
+  }
   for (;;) {
     const outcome = JSON.parse(shell.run(code, name));
     takeFiles();
+    // The build knows that without it the cell fails, or gives another number than the book prints. It runs all the
+    // same, as it did there: the cells below may use the names that it gives before it fails.
+    if (lacked && ["ok", "error"].includes(outcome.status)) {
+      return { status: "missing", package: lacked, reason: refused[packageOf(lacked)] };
+    }
     if (outcome.status !== "missing") return outcome;
     if (!(await bring(outcome.package))) {
       // It may have been asked for only now: the reason is the newest one.
-      const name = absentModules().find(([module]) => module === outcome.package)?.[1];
-      return { ...outcome, reason: refused[name] ?? outcome.reason };
+      return { ...outcome, reason: refused[packageOf(outcome.package)] ?? outcome.reason };
     }
     postMessage({ type: "output", job, message: { type: "clear" } });
   }
