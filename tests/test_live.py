@@ -37,6 +37,10 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   copy.querySelectorAll('.katex').forEach((formula) =>
     formula.replaceChildren(formula.dataset.tex ?? formula.querySelector('annotation').textContent));
   copy.querySelectorAll('.katex').forEach((formula) => formula.removeAttribute('data-tex'));
+  // The figures of a built page share one style, and one set of outlines for their letters.
+  copy.querySelectorAll('use').forEach((use) => use.setAttribute('href',
+    document.getElementById(use.getAttribute('href').slice(1))?.getAttribute('d') ?? 'none'));
+  copy.querySelectorAll('svg defs, figure style').forEach((shared) => shared.remove());
   copy.querySelectorAll('*').forEach((box) => 
     ['tabindex', 'role', 'aria-label', 'data-name'].forEach((n) => box.removeAttribute(n)));
   copy.querySelectorAll('pre > span:empty, button.copybtn').forEach((extra) => extra.remove());
