@@ -10,27 +10,46 @@
   // A step is a heading with what follows it, up to and with a figure, an equation, a cell or a box.
   const SHOWS = "figure, .cell, div.math, .admonition, .question, table, .pst-scrollable-table-container";
   const steps = [];
-  const collect = (section) => {
+  const isHeading = (block) => /^H\d$/.test(block.tagName);
+  const collect = (parent, around = []) => {
     let step = [];
     const close = () => {
-      if (step.length) steps.push(step);
+      if (step.length) steps.push([...around, ...step]);
       step = [];
     };
-    for (const block of section.children) {
+    for (const block of parent.children) {
       if (block.tagName === "SECTION") {
         close();
         collect(block);
+      } else if (block.matches(".covered, .uncovered")) {
+        // What a prediction covers comes in steps as well, and each is covered until somebody has answered.
+        close();
+        collect(block, [block]);
       } else if (block.matches(".recap")) {
         // Its questions come one by one; what stands beside them comes with each.
         close();
         for (const question of block.querySelectorAll(":scope > .question")) steps.push([block, question]);
       } else {
+        // A figure that is turned needs the height of the screen for itself, and a drawing leaves room for two paragraphs.
+        const before = step.filter((one) => !isHeading(one)).length;
+        if (block.querySelector(".moving") ? before : block.querySelector("figure") && before > 2) close();
         step.push(block);
         // A heading waits for what follows it.
         if (block.matches(SHOWS) || block.querySelector(":scope > figure")) close();
       }
     }
     close();
+  };
+
+  // The height of a drawing, as a share of the window's, and the size of the type: the largest with which the step
+  // is seen whole. What does not fit with the last of them is longer than a slide, and is scrolled.
+  const SIZES = [[58, 1], [48, 1], [42, 0.9], [38, 0.8], [34, 0.72], [30, 0.72], [30, 0.64]];
+  const fit = () => {
+    for (const [drawing, type] of SIZES) {
+      root.style.setProperty("--lecture-drawing", `${drawing}vh`);
+      root.style.setProperty("--lecture-type", type);
+      if (root.scrollHeight <= innerHeight) return;
+    }
   };
 
   let now = -1;
@@ -42,6 +61,7 @@
     for (const block of [...steps[now], ...(heading ? [heading] : [])]) block.classList.add("in-step");
     bar.textContent = `${now + 1} of ${steps.length}`;
     scrollTo(0, 0);
+    fit();
     dispatchEvent(new Event("resize"));
   };
   const begin = () => {
@@ -57,7 +77,8 @@
     root.classList.remove("lecture");
     button.setAttribute("aria-pressed", "false");
     bar.remove();
-    steps[now]?.[0].scrollIntoView();
+    // The box round what was covered has no place of its own.
+    steps[now]?.find((block) => block.getBoundingClientRect().height)?.scrollIntoView();
   };
   const toggle = () => (root.classList.contains("lecture") ? end() : begin());
   button.addEventListener("click", toggle);
