@@ -914,6 +914,32 @@ def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser
 
 
 @pytest.mark.sampled(1, of="figures and code")
+def test_a_figure_is_set_from_a_matrix_of_the_readers_own(context, site):
+    page = Page(context, site, "chapters/direction-cosine-matrices.html")
+    text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
+    number = page.page.evaluate(text, "TriadFigure(") + 1
+    cell = page.cell(number)
+    cell.locator("summary").first.click()
+    cell.locator("button.run-cell").click()
+    page.wait()
+    turned = "from orientation_figures.moving import TriadFigure\nfigure = TriadFigure(axis=(0, 0, 1), angle=1.0)\n"
+    for matrix, angle, entry in (
+        ("[[0, 1, 0], [0, 0, 1], [1, 0, 0]]", "120", "a x dot n y: \u20071.000"),
+        ("sm.Matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]])", "-90", "a z dot n y: \u20071.000"),
+        ("simple_dcm('y', 0.5)", "28.65", "a z dot n x: \u20070.479"),
+    ):
+        page.try_code(
+            number, f"import sympy as sm\nfrom orientation import simple_dcm\n{turned}figure.dcm = {matrix}\nfigure"
+        )
+        cell.get_by_role("button", name=entry, exact=True).wait_for()
+        shown = abs(float(cell.get_by_label("theta in degrees").input_value()))
+        assert shown == abs(float(angle)), matrix  # about the opposite axis it is the opposite angle
+    # A reflection is refused, and the figure says why.
+    assert "left-handed" in page.try_code(number, f"{turned}figure.dcm = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\nfigure")
+    assert page.errors == []
+
+
+@pytest.mark.sampled(1, of="figures and code")
 def test_the_explorer_of_sequences_works_in_the_page(context, site):
     page = Page(context, site, "chapters/euler-angles.html")
     text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"

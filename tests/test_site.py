@@ -1,6 +1,7 @@
 """The built site in a real browser, page by page."""
 
 import gzip
+import io
 import json
 import os
 import random
@@ -12,6 +13,7 @@ from urllib.parse import quote, unquote, urldefrag, urljoin
 
 import pytest
 from conftest import HTML, REPOSITORY, html_pages
+from PIL import Image
 from playwright.sync_api import TimeoutError
 
 from website import mathematics
@@ -372,3 +374,17 @@ def test_nothing_in_the_site_is_idle():
     everything = "\n".join(path.read_text("utf8") for path in HTML.rglob("*") if path.suffix in kinds)
     idle = [p.name for p in (HTML / "_static").rglob("*") if p.is_file() and p.name not in everything]
     assert idle == []
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_drawings_of_exercises_stand_on_the_papers_colour(browser, site, theme):
+    """They are pictures, black on white, and would be white boxes in a dark page."""
+    with Visit(browser, site, "exercises/simple-orientations.html", theme, WIDE) as visit:
+        picture = visit.page.locator(".bd-article img").first
+        picture.scroll_into_view_if_needed()
+        seen = Image.open(io.BytesIO(picture.screenshot())).convert("RGB")
+        paper = visit.page.evaluate("getComputedStyle(document.body).backgroundColor")
+        assert seen.getpixel((4, 4)) == tuple(map(int, re.findall(r"\d+", paper)))
+        # What is drawn can be seen on it.
+        dark, light = seen.convert("L").getextrema()
+        assert light - dark > 150
