@@ -53,7 +53,7 @@
     const figure = make("div", { className: "dial" });
     figure.innerHTML = `<svg viewBox="-100 -100 200 200" width="200" height="200" aria-hidden="true">
       <circle r="72"/><path class="axes" d="M0 0H80M0 0V-80"/><path class="tips" d="M80 -4l9 4l-9 4zM-4 -80l4 -9l4 9z"/>
-      <text x="84" y="20">n\u0302<tspan dy="4">x</tspan></text><text x="-22" y="-82">n\u0302<tspan dy="4">y</tspan></text>
+      <text x="84" y="20">n\u0302<tspan dy="4">x</tspan></text><text x="-32" y="-82">n\u0302<tspan dy="4">y</tspan></text>
       <g class="needle"><path d="M0 0H60"/><path class="tip" d="M60 -6l14 6l-14 6z"/></g></svg>`;
     figure.tabIndex = 0;
     let angle = 0, touched = false;
