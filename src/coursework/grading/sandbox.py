@@ -172,8 +172,8 @@ class Sandbox:
         except BaseException:
             self.close()
             raise
-        if self.report["scratch in memory"]:
-            self.remove_base()
+        if self.process is None:
+            self.remove_base()  # a copy is tried there and works in memory
         else:
             scratch.remove_folder(os.path.join(self.base, OUTSIDE))
         lacking = isolation.lacking(self.report)
@@ -192,7 +192,9 @@ class Sandbox:
             return False
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
-        self.base = tempfile.mkdtemp(prefix="coursework-")
+        # Within the folder of the other: should this process be killed, it goes with that.
+        self.base = tempfile.mkdtemp(dir=self.like.base)
+        os.chmod(self.base, 0o755)
         about = {"user": new_user(), "target": target | {"files": [self.file_outside()]}}
         try:
             with other:
