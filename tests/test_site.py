@@ -6,16 +6,19 @@ import json
 import os
 import random
 import re
+import zipfile
 from contextlib import suppress
 from functools import cache
 from html import unescape
 from urllib.parse import quote, unquote, urldefrag, urljoin
 
+import numpy as np
 import pytest
 from conftest import HTML, REPOSITORY, html_pages
 from PIL import Image
 from playwright.sync_api import TimeoutError
 
+import orientation_recordings as recordings
 from website import mathematics
 
 PAGES = html_pages()
@@ -352,6 +355,9 @@ def test_the_search_finds_what_engineers_call_it(browser, site):
             ), name
 
 
+WITH_RECORDINGS = ("chapters/orientation-from-sensors.html", "chapters/cases-from-practice.html")
+
+
 def test_take_away_menu(browser, site):
     chapters = [name for name in PAGES if name.startswith("chapters/")]
     with Visit(browser, site, chapters[0], "light", WIDE) as visit:
@@ -365,7 +371,15 @@ def test_take_away_menu(browser, site):
         assert not page.is_visible("details.take-away ul")
     for name in chapters:
         menu = text(name).partition('<details class="take-away">')[2].partition("</details>")[0]
-        assert re.findall(r'href="[^"]*\.(\w+)"', menu) == ["ipynb", "py", "whl"]
+        data = ["zip"] if name in WITH_RECORDINGS else []
+        assert re.findall(r'href="[^"]*\.(\w+)"', menu) == ["ipynb", "py", "whl", *data]
+    with zipfile.ZipFile(HTML / "take-away" / "recordings.zip") as archive:
+        names = archive.namelist()
+        assert "recordings/LICENSE.txt" in names and len(names) == len(set(names))
+        leg = np.loadtxt(archive.open("recordings/lower_leg.csv"), delimiter=",", skiprows=1)
+    assert np.array_equal(leg, recordings.table("lower_leg"))
+    questions = text("exercises/orientation-from-sensors.html")
+    assert "recordings.zip" in questions and "recordings.zip" not in text("exercises/euler-angles.html")
 
 
 def test_nothing_in_the_site_is_idle():

@@ -7,6 +7,7 @@ they cannot be old. The package that the code imports lies beside them.
 """
 
 import shutil
+import zipfile
 from pathlib import Path
 
 import jupytext
@@ -22,6 +23,8 @@ from .paths import REPOSITORY, pages
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
+RECORDINGS = REPOSITORY / "src" / "orientation_recordings" / "data"
+RECORDINGS_ARCHIVE = "recordings.zip"
 EXERCISES = REPOSITORY / "exercises"
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
@@ -90,6 +93,18 @@ def write_page(app, pagename, templatename, context, doctree):
     context["downloads"] = []
     if not is_notebook(app, pagename, doctree):
         return
+    add_downloads(app, pagename, context, doctree)
+    if "orientation_recordings" in Path(app.env.doc2path(pagename)).read_text("utf8"):
+        context["downloads"].append(
+            {
+                "path": f"{FOLDER}/{RECORDINGS_ARCHIVE}",
+                "text": "Measured data",
+                "note": "what the instruments recorded, as CSV",
+            }
+        )
+
+
+def add_downloads(app, pagename, context, doctree):
     if pagename.startswith("exercises/"):
         context["downloads"] = exercise_downloads(app, pagename)
         return
@@ -131,6 +146,16 @@ def pack_exercises(app, exception):
         pack(find_course(), archive)
 
 
+def pack_recordings(app, exception):
+    """Put what instruments measured into the site as it stands in the package, with its licences."""
+    if exception or app.builder.format != "html":
+        return
+    with zipfile.ZipFile(Path(app.outdir) / FOLDER / RECORDINGS_ARCHIVE, "w") as archive:
+        for path in sorted(RECORDINGS.iterdir()):
+            entry = zipfile.ZipInfo(f"recordings/{path.name}")  # with a fixed date: the same data are the same bytes
+            archive.writestr(entry, path.read_bytes(), zipfile.ZIP_DEFLATED)
+
+
 def build_wheel(app, exception):
     """Build our packages into the site, as one wheel; its name tells what it was built from."""
     if exception or app.builder.format != "html":
@@ -154,3 +179,4 @@ def setup(app):
     app.connect("html-page-context", write_page)
     app.connect("build-finished", build_wheel)
     app.connect("build-finished", pack_exercises)
+    app.connect("build-finished", pack_recordings)
