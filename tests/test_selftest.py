@@ -5,8 +5,9 @@ from test_release import CELLS, COURSE, made_in, needs_solutions, write_source
 
 from coursework.__main__ import main
 from coursework.authoring import release
+from coursework.authoring.attack import BUDGET
 from coursework.authoring.packing import archive as pack
-from coursework.authoring.selftest import leaks, released_texts, selftest, try_question, write_page
+from coursework.authoring.selftest import _try_notebook, leaks, released_texts, selftest, try_question, write_page
 
 SOURCES = {path.stem: path for path in sorted(COURSE.sources.glob("*.ipynb"))}
 
@@ -22,6 +23,16 @@ def test_every_question_passes_and_names_its_mistakes(name):
     if name != release.CHAPTERS:
         assert len(findings) >= 4
         assert leaks([source], released_texts(COURSE.exercises, COURSE.sealed, "none")) == []
+
+
+@needs_solutions
+@pytest.mark.long
+@pytest.mark.parametrize("name", SOURCES)
+def test_no_variant_at_all_is_guessed_sooner_than_its_author_declared(name, monkeypatch):
+    """The self-test attacks three variants of each question."""
+    monkeypatch.setattr("coursework.authoring.selftest.ATTACKED", 99)
+    findings, _ = _try_notebook(SOURCES[name], COURSE, BUDGET)
+    assert [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] == []
 
 
 @needs_solutions
