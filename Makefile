@@ -103,15 +103,15 @@ check: $(VENV)/ready-test book
 	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_chapters.py \
 	  tests/test_site.py::test_links_lead_somewhere
 
-# As many tests side by side as there are cores. What takes long and rarely breaks is left to `make test-all`.
+# Tests run side by side, one more than there are cores. What takes long and rarely breaks is left to `make test-all`.
 test: $(VENV)/ready-test book
 	@$(RUN) -m website.browser || true
-	@$(RUN) -m pytest -n logical -m "not long"
+	@$(RUN) -m pytest -n auto -m "not long"
 
 # The PDF is printed by a browser; where there is none, the tests that need one are skipped.
 test-all: $(VENV)/ready-test book
 	@if $(RUN) -m website.browser; then $(RUN) -m website.whole_book; fi
-	@$(RUN) -m pytest -n logical $(TABLE)
+	@$(RUN) -m pytest -n auto $(TABLE)
 
 times: TABLE := --write-times
 times: test-all

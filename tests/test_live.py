@@ -380,6 +380,7 @@ def test_numpy_is_fetched_and_checked(context, site, made_wheels):
     assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
     page = Page(context, site, QUIET)
     page.page.click("button.run-cell >> nth=2")  # with it comes the editor
