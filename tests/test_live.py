@@ -537,6 +537,7 @@ def test_exercise_is_checked_in_the_page(context, site):
     assert page.outside() == [] and page.errors == []
 
 
+@pytest.mark.sampled(1, of="what a page keeps")
 def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question]["variants"]
@@ -576,6 +577,7 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     again.page.wait_for_selector(f".live-who:has-text('those of {students[0]}')")
 
 
+@pytest.mark.sampled(1, of="what a page keeps")
 def test_tries_and_hints_of_a_page_outlive_it(context, site):
     name = "exercises/simple-orientations.html"
     places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}

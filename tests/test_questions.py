@@ -195,7 +195,7 @@ LECTURE = """() => {
 }"""
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", [path.stem for path in sorted((HTML / "chapters").glob("*.html"))])
 def test_every_block_of_a_page_is_in_a_step_of_its_lecture_and_on_its_handout(context, site, name):
     page = opened(context, site, f"chapters/{name}")
