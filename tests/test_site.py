@@ -342,7 +342,8 @@ def test_the_search_finds_what_engineers_call_it(browser, site):
     with Visit(browser, site, "search.html", "light", WIDE) as visit:
         for name in names:
             visit.page.goto(f"{site}search.html?q={quote(name)}")
-            visit.page.wait_for_selector("#search-results .search li a")
+            # What is found comes one by one.
+            visit.page.wait_for_selector("#search-results .search-summary:has-text('Search finished')")
             first = visit.page.eval_on_selector_all(
                 "#search-results li a", "links => links.slice(0, 4).map((a) => a.href)"
             )
