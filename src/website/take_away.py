@@ -7,7 +7,6 @@ they cannot be old. The package that the code imports lies beside them.
 """
 
 import shutil
-import zipfile
 from pathlib import Path
 
 import jupytext
@@ -15,6 +14,7 @@ import nbformat
 
 from coursework.authoring.course import find_course
 from coursework.authoring.packing import archive as pack
+from coursework.authoring.packing import write_zip
 
 from . import packing
 from .markdown import MarkdownWriter
@@ -93,7 +93,8 @@ def write_page(app, pagename, templatename, context, doctree):
     context["downloads"] = []
     if not is_notebook(app, pagename, doctree):
         return
-    add_downloads(app, pagename, context, doctree)
+    downloads = exercise_downloads if pagename.startswith("exercises/") else chapter_downloads
+    context["downloads"] = downloads(app, pagename, doctree)
     if "orientation_recordings" in Path(app.env.doc2path(pagename)).read_text("utf8"):
         context["downloads"].append(
             {
@@ -104,17 +105,14 @@ def write_page(app, pagename, templatename, context, doctree):
         )
 
 
-def add_downloads(app, pagename, context, doctree):
-    if pagename.startswith("exercises/"):
-        context["downloads"] = exercise_downloads(app, pagename)
-        return
+def chapter_downloads(app, pagename, doctree):
     notebook = make_notebook(app, pagename, doctree)
     target = Path(app.outdir) / FOLDER / pagename.rsplit("/", 1)[-1]
     target.parent.mkdir(exist_ok=True)
     nbformat.write(notebook, target.with_suffix(".ipynb"))
     notebook.metadata = {"jupytext": NO_METADATA}
     target.with_suffix(".py").write_text(jupytext.writes(notebook, fmt="py:percent"), "utf8")
-    context["downloads"] = [
+    return [
         {"path": notebook_address(pagename), "text": "Notebook", "note": "for Jupyter, with the prose"},
         {"path": f"{FOLDER}/{target.name}.py", "text": "Python script", "note": "the prose as comments"},
         {
@@ -125,7 +123,7 @@ def add_downloads(app, pagename, context, doctree):
     ]
 
 
-def exercise_downloads(app, pagename):
+def exercise_downloads(app, pagename, doctree):
     """An exercise is taken away as it was released: graders know its cells by their metadata."""
     target = Path(app.outdir) / FOLDER / f"{pagename}.ipynb"
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -150,10 +148,8 @@ def pack_recordings(app, exception):
     """Put what instruments measured into the site as it stands in the package, with its licences."""
     if exception or app.builder.format != "html":
         return
-    with zipfile.ZipFile(Path(app.outdir) / FOLDER / RECORDINGS_ARCHIVE, "w") as archive:
-        for path in sorted(RECORDINGS.iterdir()):
-            entry = zipfile.ZipInfo(f"recordings/{path.name}")  # with a fixed date: the same data are the same bytes
-            archive.writestr(entry, path.read_bytes(), zipfile.ZIP_DEFLATED)
+    files = {f"recordings/{path.name}": path.read_bytes() for path in RECORDINGS.iterdir()}
+    write_zip(Path(app.outdir) / FOLDER / RECORDINGS_ARCHIVE, files)
 
 
 def build_wheel(app, exception):
