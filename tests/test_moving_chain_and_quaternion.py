@@ -235,6 +235,23 @@ def test_ways_show_the_numbers_of_the_module(open_figure, ends):
     assert numbers(page, "Lengths of the rows of the blended matrix") == pytest.approx(lengths, abs=5.01e-4)
 
 
+@pytest.mark.sampled(1)
+@pytest.mark.parametrize("ends", ENDS)
+def test_speeds_in_the_words_are_those_of_the_table(open_figure, ends):
+    """The slowest and the fastest of the way by Euler angles: nowhere does the table show another one."""
+    figure = QuaternionFigure(view="way", **ends)
+    page = open_figure(figure)
+    said = re.search(r"at ([\d.]+) to ([\d.]+) °/s", words(page))
+    shares = np.linspace(0, 1, 401)
+    speeds = np.degrees([figure.speeds(share)[1] for share in shares])
+    for word, place in ((said[1], speeds.argmin()), (said[2], speeds.argmax())):
+        page.evaluate(
+            "share => { const { model } = document.querySelector('.moving'); model.move({ ...model.moved, share }); }",
+            float(shares[place]),
+        )
+        assert numbers(page, "The three ways")[1, 1] == pytest.approx(float(word), abs=0.0501), place
+
+
 def test_half_a_turn_is_said(open_figure):
     page = open_figure(QuaternionFigure(view="way", first=(0, 0, 0), second=(math.pi, 0, 0)))
     assert "half a turn apart" in words(page)

@@ -243,18 +243,33 @@ function wayView(model) {
 function sampled(ways) {
   const tracks = ways.dcms.map((at) => Array.from({ length: SAMPLES + 1 }, (_, k) => at(k / SAMPLES)));
   const speeds = tracks.map((track) => track.slice(1).map((dcm, k) => (dcm && track[k] ? between(track[k], dcm) * SAMPLES / SECONDS : NaN)));
-  return { ...ways, tracks, speeds, angle: between(ways.from, ways.to) };
+  return { ...ways, tracks, speeds, angle: between(ways.from, ways.to), range: slowestAndFastest(ways.dcms[1]) };
 }
 
-function wayText({ angle, speeds }, [slerped, , repaired], sizes) {
+// The least and the greatest speed that the table shows on a way, also between the even times.
+function slowestAndFastest(way) {
+  const speeds = Array.from({ length: SAMPLES + 1 }, (_, k) => speedAt(way, k / SAMPLES));
+  return [Math.min, Math.max].map((best) => {
+    const k = speeds.indexOf(best(...speeds));
+    let early = Math.max(0, k - 1) / SAMPLES, late = Math.min(SAMPLES, k + 1) / SAMPLES;
+    for (let step = 0; step < 24; step += 1) { // in thirds: the one without the better of two speeds is left out
+      const [one, other] = [early + (late - early) / 3, late - (late - early) / 3];
+      if (best(speedAt(way, one), speedAt(way, other)) === speedAt(way, one)) late = other;
+      else early = one;
+    }
+    return best(speeds[k], speedAt(way, (early + late) / 2));
+  });
+}
+
+function wayText({ angle, speeds, range }, [slerped, , repaired], sizes) {
   if (!slerped) return '$A$ and $B$ are half a turn apart: both ways round are equally long, and slerp has no shorter one to take.';
   if (!repaired) return 'The blended entries are as near to one orientation as to another: no matrix is the nearest to them.';
-  const euler = degrees(Math.min(...speeds[1])), fast = degrees(Math.max(...speeds[1])), short = Math.min(...sizes);
+  const [slow, fast] = range.map(degrees), short = Math.min(...sizes);
   const { beyond } = plotted(speeds);
   const way = speeds[1].reduce((sum, speed) => sum + speed, 0) * SECONDS / SAMPLES;
   return `Slerp turns through ${inDegrees(angle)} at ${number(degrees(angle) / SECONDS, 1)} °/s. Euler angles turn through ${inDegrees(way)} in all, `
-    + `at ${number(euler, 1)} to ${number(fast, 1)} °/s. ${short < 0.9995 ? `The blended rows are too short now, the shortest ${number(short)}.` : ''}${
-    beyond ? ` The plot is cut off: the fastest speed is ${number(beyond, 0)} °/s.` : ''}`;
+    + `at ${number(slow, 1)} to ${number(fast, 1)} °/s. ${short < 0.9995 ? `The blended rows are too short now, the shortest ${number(short)}.` : ''}${
+    beyond ? ` The plot is cut off: the fastest speed is ${number(Math.max(beyond, fast), 0)} °/s.` : ''}`;
 }
 
 function wayPicture(sheet, { from, to, tracks, speeds }, now, raw, k, share) {
