@@ -213,8 +213,8 @@ def test_times_are_those_of_the_system_and_no_students(tmp_path):
         "Ann 101": "2026-11-21T20:01:00",
         "X - Nov 1, 2026 801 AM 102": "2026-11-21T20:01:00",
     }
-    assert times(("HW_ann_attempt_2026-11-21-20-01-00_turns.ipynb", GOOD)) == {"ann": "2026-11-21T20:01:00"}
-    assert times(("HW_ann_attempt_2026-13-41-20-01-00_turns.ipynb", GOOD)) == {"ann": ""}
+    assert times(("HW_ann_attempt_2026-11-21-20-01-00_turns.ipynb", GOOD)) == {"HW_ann": "2026-11-21T20:01:00"}
+    assert times(("HW_ann_attempt_2026-13-41-20-01-00_turns.ipynb", GOOD)) == {"HW_ann": ""}
 
 
 # --- statistics ---------------------------------------------------------------------------------

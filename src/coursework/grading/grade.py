@@ -22,7 +22,7 @@ from .identity import BadRoster, Roster
 from .ledger import DECISIONS, Ledger, digest_of_answer
 from .secret import secret_beside
 from .store import FORMAT, Store, as_text, write
-from .tables import number, readable, table
+from .tables import in_a_line, number, table
 from .versions import software
 from .workers import processors, side_by_side
 
@@ -271,13 +271,17 @@ def _say_whose(work, refused, roster, store, show):
         for notebook in (*one.notebooks, *one.superseded)
     ]
     write(store.folder / WHOSE, table(("student", "assignment", "file", "known by"), rows))
+    around = {one.file.partition(one.claim.place)[0].strip("/") for each in work for one in each.notebooks} - {""}
+    if len(around) == 1:
+        (folder,) = around
+        print(f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for nobody's name.", file=show)
     for student, assignment, file, matched in rows[:MOST_SHOWN]:
-        print(f"  {readable(student, 60)} <- {readable(file, 120)}  ({assignment}; {matched})", file=show)
+        print(f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})", file=show)
     if len(rows) > MOST_SHOWN:
         print(f"  ... and {len(rows) - MOST_SHOWN} more: {store.folder / WHOSE}", file=show)
     asked = [one for one in refused if one.why.endswith(("whose are they?", intake.NOT_MATCHED))]
     for one in asked[:MOST_SHOWN]:
-        print(f"  ? <- {readable(one.file, 120)}: {readable(one.why, 300)}", file=show)
+        print(f"  ? <- {in_a_line(one.file, 120)}: {in_a_line(one.why, 300)}", file=show)
     if roster:
         missing = sorted(set(roster.people) - {one.student for one in work})
         if missing:

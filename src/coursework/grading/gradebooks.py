@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..checking.reply import plain_text
+from .identity import local_parts
 from .store import file_name, write
-from .tables import number, readable, table
+from .tables import in_a_line, number, readable, table
 
 NBGRADER = (
     "assignment",
@@ -222,7 +223,7 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
     for heading, names in (
         ("In the gradebook, and nothing was handed in", without),
         ("Handed in, and not in the gradebook", unmatched),
-        ("Of a name that is there more than once, so not filled in", several),
+        ("Of a name that is there more than once, or that two go by, so not filled in", several),
         ("Not filled in, because a person has still to decide", waiting),
         ("Not filled in, because the system allows no change", closed),
         (
@@ -232,7 +233,7 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
     ):
         if names:
             said.append(f"{heading} ({len(names)}):")
-            said += [f"  {readable(name, 200)}" for name in names]
+            said += [f"  {in_a_line(name, 200)}" for name in names]
     return said
 
 
@@ -307,21 +308,26 @@ def _shown(book, system):
 
 def _match(book, system, marks, first):
     """The student of each line; and students whom several lines could mean."""
-    lines = {}
+    lines, addresses = {}, {}
     for line in range(first, len(book.lines)):
         for key in _keys_of_line(book, system, line):
             lines.setdefault(key, set()).add(line)
-    found, several = {}, []
+        addresses[line] = book.says(line, book.column("email address")).lower()
+    for line, own in local_parts(addresses).items():
+        lines.setdefault(("own", own), set()).add(line)
+    wanting, several = {}, []
     for student in marks.students:
         for key in _keys_of_student(system, student, marks.identity(student)):
             candidates = lines.get(key, ())
-            if len(candidates) == 1 and (line := next(iter(candidates))) not in found:
-                found[line] = student
+            if len(candidates) == 1:
+                wanting.setdefault(next(iter(candidates)), []).append(student)
                 break
             if candidates:
                 several.append(student)
                 break
-    return found, several
+    # Who comes first has no better claim: a line that two could mean is filled in for neither.
+    several += [student for students in wanting.values() if len(students) > 1 for student in students]
+    return {line: students[0] for line, students in wanting.items() if len(students) == 1}, several
 
 
 def _keys_of_line(book, system, line):
@@ -340,7 +346,7 @@ def _keys_of_line(book, system, line):
             ("id", of("identifier").removeprefix("participant ").strip()),
             ("own", of("id number")),
             ("own", of("username")),
-            ("own", of("email address").partition("@")[0]),
+            ("own", of("email address")),
             ("name", of("full name")),
         ]
     else:
@@ -359,7 +365,7 @@ def _keys_of_student(system, student, identity):
     for own in identity.get("own", ()):
         yield "own", own.lower()
     if "email" in identity:
-        yield "own", identity["email"].lower().partition("@")[0]
+        yield "own", identity["email"].lower()
     if not identity:
         yield "own", student.lower()  # the folder's name is all that is known
     if "name" in identity:

@@ -56,6 +56,8 @@ class Claim(NamedTuple):
         When, by the system's own clock; empty where it does not say.
     reply : str
         How the name of a file begins that the system gives back to this student: what it wrote itself.
+    place : str
+        The name of the outermost folder or file, as it stands in what was handed in.
     """
 
     student: str
@@ -67,6 +69,7 @@ class Claim(NamedTuple):
     given_by_system: bool = False
     handed_in: str = ""
     reply: str = ""
+    place: str = ""
 
 
 class Layout:
@@ -104,7 +107,8 @@ class Layout:
         if self.kind == "blackboard":
             # The assignment's name comes first, and is the same for all.
             self.prefix = _shared({BLACKBOARD.fullmatch(top)["who"] for top in tops if BLACKBOARD.fullmatch(top)}, "_")
-        elif repositories and self.kind == "own":
+        elif self.kind == "own" and 2 * len(set(tops) & self._inside(repositories)) > len(set(tops)):
+            # Of most: a repository inside the own folder changes nobody's name.
             self.prefix = _shared(set(tops), "-")
             self.kind = "github"
 
@@ -116,6 +120,8 @@ class Layout:
             inner = [parts[1:] for parts in notebooks]
             inside = {parts[0] for parts in inner}
             known = self.roster and self.roster.find(_own(enclosing))[0]
+            # What a system wrote of somebody is nothing that encloses others, whatever lies inside.
+            known = known or any(fits((enclosing, "")) for _, fits in SYSTEMS)
             if not known and (
                 inside <= NBGRADER
                 or any(2 * sum(map(fits, inner)) > len(inner) for _, fits in SYSTEMS)
@@ -128,6 +134,11 @@ class Layout:
         #: Whether nbgrader collected it, which says in a file when each was handed in.
         self.is_nbgraders = self.enclosing[-1:] == ("submitted",)
 
+    def _inside(self, folders):
+        """The names of those folders that lie where the students' own do."""
+        all_parts = [PurePosixPath(folder).parts for folder in folders]
+        return {parts[-1] for parts in all_parts if parts and parts[:-1] == self.enclosing}
+
     def _is_inside(self, parts):
         return len(parts) > len(self.enclosing) and parts[: len(self.enclosing)] == self.enclosing
 
@@ -137,7 +148,8 @@ class Layout:
         if not self._is_inside(parts):
             return None
         parts = parts[len(self.enclosing) :]
-        return getattr(self, f"_{self.kind}")(parts)
+        found = getattr(self, f"_{self.kind}")(parts)
+        return found and found._replace(place=parts[0])
 
     # -- the systems: a part of the name that does not fit claims nothing
 
@@ -183,7 +195,8 @@ class Layout:
         name, own, when = known
         return Claim(
             _clean(own or name),
-            (("own", own), ("name", name)),
+            # The number or address is the course's; what people are called they may change.
+            ((("gradescope", own),) if own else ()) + (("name", name),),
             f"gradescope {parts[0]}",
             _inside(parts),
             given_by_system=True,
@@ -227,7 +240,7 @@ class Layout:
         found = BLACKBOARD.fullmatch(parts[0])
         if not found:
             return None
-        user = found["who"].removeprefix(self.prefix) if self.prefix else found["who"].rpartition("_")[2]
+        user = self._blackboard_user(found["who"])
         when = tuple(map(int, found["when"].split("-")))
         return Claim(
             _clean(user),
@@ -240,9 +253,23 @@ class Layout:
             reply=_before_the_file(found) if found["file"] else f"{PurePosixPath(parts[0]).stem}_",
         )
 
+    def _blackboard_user(self, who):
+        """The user's name, which stands behind the assignment's; both may hold the sign that joins them.
+
+        Where several of the roster could be meant it is no name, so that a person is asked.
+        """
+        if self.roster:
+            words = who.split("_")
+            ends = ["_".join(words[number:]) for number in range(1, len(words))]
+            known = [end for end in ends if self.roster.find((("own", end),))[0] is not None]
+            if known:
+                return known[0] if len(known) == 1 else who
+        return who.removeprefix(self.prefix)  # of one alone nobody knows where the name begins
+
     def _github(self, parts):
         user = parts[0].removeprefix(self.prefix)
-        keys = (("github", user), ("own", user))
+        # Everybody chooses that name: it is not compared with the names that the course gave.
+        keys = (("github", user),)
         return Claim(_clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/")
 
     def _own(self, parts):
@@ -334,10 +361,37 @@ def _clean(name):
     return " ".join(unicodedata.normalize("NFC", name).split())[:120] or "without a name"
 
 
+#: Cyrillic and Greek letters, small ones for both sizes, and the Latin ones that they are taken for: of the table of
+#: confusables of Unicode Technical Standard 39, what a keyboard writes.
+LOOK_ALIKES = str.maketrans(
+    dict(zip("\u0430\u0432\u0435\u043d\u043a\u043c\u043e\u0440\u0441\u0442\u0443\u0445", "abehkmopctyx", strict=True))
+    | dict(zip("\u0456\u0458\u0455\u0501\u04bb\u051b\u051d\u04cf", "ijsdhqwl", strict=True))
+    | dict(
+        zip(
+            "\u03b1\u03b2\u03b5\u03b6\u03b7\u03b9\u03ba\u03bc\u03bd\u03bf\u03c1\u03c4\u03c5\u03c7",
+            "abezhikmnoptyx",
+            strict=True,
+        )
+    )
+    | {"\u0131": "i"}
+)
+
+
+#: What is not seen and is neither a control nor a format sign: joiners, fillers, variation selectors, an empty Braille.
+UNSEEN = frozenset(
+    map(chr, (0x034F, 0x115F, 0x1160, 0x17B4, 0x17B5, *range(0x180B, 0x1810), 0x2800, *range(0xFE00, 0xFE10)))
+) | frozenset(map(chr, range(0xE0100, 0xE01F0)))
+
+
 def looks_like(name):
-    """What a person sees of a name: wide letters as narrow ones, and nothing of signs that are not seen."""
-    plain = unicodedata.normalize("NFKC", name)
-    return "".join(sign for sign in plain if unicodedata.category(sign) not in ("Cf", "Cc"))
+    """What a person sees of a name, and what some file systems and gradebooks tell apart.
+
+    Wide letters as narrow ones, capitals as small letters, letters of another script as those they look like, and
+    nothing of signs that are not seen, nor of what stands at the end and may be lost.
+    """
+    plain = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
+    seen = "".join(sign for sign in plain if unicodedata.category(sign) not in ("Cf", "Cc") and sign not in UNSEEN)
+    return seen.translate(LOOK_ALIKES).strip(" .")
 
 
 def _when(text):
@@ -374,6 +428,7 @@ WORDS = {
     "canvas": "Canvas's number",
     "canvas anonymous": "Canvas's anonymous name",
     "moodle": "Moodle's number",
+    "gradescope": "the number or address in Gradescope",
     "brightspace": "Brightspace's number",
     "github": "the GitHub name",
     "handed in as": "the roster's own word",
@@ -419,23 +474,35 @@ class Roster:
                         self.index.setdefault(("letters", _same("letters", value)), set()).add(student)
                         self.index.setdefault(("letters", _same("letters", _turned(value))), set()).add(student)
                     if kind == "email":
-                        for own in (value, value.partition("@")[0]):
-                            self.index.setdefault(("own", _same("own", own)), set()).add(student)
+                        self.index.setdefault(("own", _same("own", value)), set()).add(student)
+                    if kind in ("own", "email"):
+                        self.index.setdefault(("gradescope", _same("own", value)), set()).add(student)
         if not self.people:
             raise BadRoster(f"{path} names no student. Its columns may be called {', '.join(sorted(COLUMNS))}.")
+        self.local_parts = local_parts(
+            {student: known["email"][0] for student, known in self.people.items() if known.get("email")}
+        )
+        for student, own in self.local_parts.items():
+            self.index.setdefault(("own", _same("own", own)), set()).add(student)
         self.kinds = {kind for kind, _ in self.index}
 
-    def find(self, keys, source=""):
-        """The student that a claim's keys mean and the kind that told, or ``None`` and why nobody is meant."""
-        keys = (("handed in as", source.partition(" ")[2]), *keys) if source else keys
+    def find(self, keys, place=""):
+        """The student that a claim's keys mean and the kind that told, or ``None`` and why nobody is meant.
+
+        ``place`` is the name of the folder or file, for which the roster may have a word of its own.
+        """
+        names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
+        keys = (*(("handed in as", name) for name in names), *keys)
         for kind, value in keys:
             found = self.index.get((kind, _same(kind, value)), ())
             if len(found) == 1:
                 return next(iter(found)), WORDS[kind]
             if found:
                 return None, f"Several students of the roster fit: {', '.join(sorted(found))}."
-            if kind in self.kinds and kind in ("canvas", "canvas anonymous", "moodle"):
+            if kind in self.kinds and kind in ("canvas", "canvas anonymous", "moodle", "gradescope"):
                 break  # the system's number is known of others, so a name does not overrule it
+            if kind == "github" and kind not in self.kinds:
+                return None, "The roster has no column `github`, and that name anybody may choose."
         return None, "Nobody in the roster fits."
 
     def identity(self, student):
@@ -444,7 +511,8 @@ class Roster:
         single = {
             kind: known[kind][0] for kind in ("canvas", "moodle", "brightspace", "name", "email") if known.get(kind)
         }
-        return {**single, "own": known.get("own", [])}
+        own = [*known.get("own", []), *([self.local_parts[student]] if student in self.local_parts else [])]
+        return {**single, "own": own}
 
 
 def _rows(path):
@@ -496,6 +564,19 @@ def _known(row):
         known["name"].append(f"{first} {last}".strip())
     known["handed in as"] = [part.strip() for value in known["handed in as"] for part in value.split(";")]
     return {kind: values for kind, values in known.items() if values}
+
+
+def local_parts(addresses):
+    """What stands before the sign in addresses, of those alone that are of the same place as most.
+
+    The others anybody may have chosen, to be called at home what somebody else is called here.
+
+    >>> local_parts({1: 'ann@uni.example', 2: 'bob@uni.example', 3: 'ann@mail.example'})
+    {1: 'ann', 2: 'bob'}
+    """
+    parts = {key: address.partition("@")[::2] for key, address in addresses.items() if "@" in address}
+    places = Counter(place.casefold() for _, place in parts.values()).most_common(1)
+    return {key: own for key, (own, place) in parts.items() if place.casefold() == places[0][0]}
 
 
 def _turned(name):

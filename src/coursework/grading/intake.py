@@ -182,7 +182,7 @@ def take_in(path, assignments=(), roster=None, student=None):
         else:
             _take(found, others, refused, layout, name, when, read, name)
     notebooks = [_with_student(one, roster, student, refused) for one in found]
-    notebooks = _without_conflicts([one for one in notebooks if one], refused)
+    notebooks = _without_conflicts([one for one in notebooks if one], roster, refused)
     have = {one.claim.source for one in found}
     for source, beside in others.items():
         for claim, name, _ in beside:
@@ -291,7 +291,7 @@ def _with_student(one, roster, student, refused):
         return one._replace(student=student, matched="as you said", identity=roster.identity(student) if roster else {})
     if roster is None:
         return one._replace(matched="as its name or folder says", identity=known if one.claim.given_by_system else {})
-    found, how = roster.find(one.claim.keys, one.claim.source)
+    found, how = roster.find(one.claim.keys, one.claim.place)
     if found is None:
         refused.append(Refused(one.file, one.claim.student, f"{how} Whose is it? {NOT_MATCHED}"))
         return None
@@ -301,13 +301,14 @@ def _with_student(one, roster, student, refused):
 NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of the roster."
 
 
-def _without_conflicts(notebooks, refused):
+def _without_conflicts(notebooks, roster, refused):
     """Leave out what two submissions claim to be: one of them may be a classmate's."""
     claims = {}
     for one in notebooks:
         if one.matched != "as you said":
-            # A name that only looks the same, by a sign that nobody sees, claims the same.
-            for identity in (looks_like(one.student), *_numbers(one.claim)):
+            # A name that only looks the same, or that differs in capitals alone, claims the same. Those of a roster
+            # are told apart by it.
+            for identity in (looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)):
                 claims.setdefault(identity, {}).setdefault(one.claim.source, set()).add(one.student)
     unsure = {}
     for sources in claims.values():

@@ -92,7 +92,10 @@ class Store:
         # Names of folders alone, and not all paths: a class may have a hundred thousand.
         for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
             for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
-                yield json.loads(path.read_text("utf8"))
+                record = json.loads(path.read_text("utf8"))
+                # Not what lies where it would not be written: a copy, or what another version called so.
+                if path == self.place(record["student"], record["assignment"]):
+                    yield record
 
     def log(self, line):
         """Write a line of what happened, with its time; nothing that is graded depends on it."""
@@ -114,14 +117,21 @@ def as_text(value):
     return "[\n" + ",\n".join(json.dumps(inner, ensure_ascii=False) for inner in value) + "\n]\n"
 
 
+#: What Windows keeps for itself, whatever follows a dot: folders of it are what containers there write to.
+RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")
+
+
 def file_name(name):
     """A name for a file that a student's name cannot lead astray; different names stay different."""
     plain = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip(".-")[:60]
     # The letter's case counts too: some file systems do not tell a from A. And what looks like a name with a
-    # digest gets one as well, or somebody could call himself what another is called here.
-    if plain and plain == name == name.lower() and not re.search(r"-[0-9a-f]{8}$", name):
+    # digest gets one as well, or somebody could call himself what another is called here. It is as long as it is
+    # because a name of the same digest could be searched for.
+    if RESERVED.fullmatch(plain.lower()):
+        plain = ""
+    if plain and plain == name == name.lower() and not re.search(r"-[0-9a-f]{20}$", name):
         return plain
-    return f"{plain.lower() or 'student'}-{hashlib.sha256(name.encode('utf8', 'surrogatepass')).hexdigest()[:8]}"
+    return f"{plain.lower() or 'student'}-{hashlib.sha256(name.encode('utf8', 'surrogatepass')).hexdigest()[:20]}"
 
 
 def write(path, text, lasting=True):

@@ -16,7 +16,7 @@ def as_cell(value):
     """
     if isinstance(value, (int, float)):
         return number(value)
-    text = " ".join(readable(str(value)).split())
+    text = in_a_line(str(value), 2_000)
     # Also what looks the same to some spreadsheets: the wide forms of these signs.
     starts = unicodedata.normalize("NFKC", text[:1])
     return f"'{text}" if starts.startswith(STARTS_A_FORMULA) or str(value).startswith(STARTS_A_FORMULA) else text
@@ -47,6 +47,11 @@ def lines(header, rows):
         yield file.getvalue()
         file.seek(0)
         file.truncate()
+
+
+def in_a_line(text, most):
+    """Text of strangers as part of one line: it cannot begin another, which would seem to be ours."""
+    return " ".join(readable(text, most).split())
 
 
 def readable(text, most=2_000):
