@@ -23,8 +23,9 @@ from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
 
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
-from coursework.grading import gradebooks, pages, sample_class, term
+from coursework.grading import gradebooks, languages, pages, sample_class, term
 from coursework.grading.grade import NothingToGrade, grade, regrade
+from coursework.grading.identity import Roster
 from coursework.grading.ledger import Ledger
 from coursework.grading.reports import write_all
 from coursework.grading.sandbox import Limits, Sandbox, WeakIsolation, WorkerDied, given_up
@@ -841,16 +842,55 @@ def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
     assert [line.rpartition(",")[2] for line in after[1:]] == ["6", "4", "0", "6"] and "Written over" in said
 
 
-def test_columns_of_another_language_can_be_named(marks, tmp_path):
+@pytest.mark.parametrize("language", languages.LANGUAGES)
+def test_a_worksheet_of_moodle_in_another_language_is_filled(marks, tmp_path, language):
+    words = [word.partition("|")[0] for word in languages.LANGUAGES[language]]
+    identifier, name, number, email, _, grade, most, may, no = words
     path = tmp_path / "book.csv"
-    path.write_text("ID,Vollst\xe4ndiger Name,ID-Nummer,Bewertung,Bestwertung\nTeilnehmer/in9,A,right,,6\n", "utf8")
-    with pytest.raises(gradebooks.CannotExport, match="--name 'identifier="):
+    path.write_text(
+        f"{identifier},{name},{number},{email},{grade},{most},{may or 'x'}\n"
+        f'A1,Right,right,r@x.example,,"3,00",+\nA2,Mistaken,mistaken,m@x.example,,"3,00",{no}\n'
+        'A3,Broken,broken,b@x.example,,"3,00",+\n',
+        "utf8",
+    )
+    said = "\n".join(gradebooks.fill(path, marks))
+    lines = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
+    assert f"Moodle: column {grade!r}" in said and 'x.example,3,"3,00"' in lines[1] and '"2,5","3,00"' in lines[3]
+    closed = "mistaken" in said.partition("allows no change")[2]
+    assert ('x.example,,"3,00"' in lines[2] and closed) == bool(may)
+    assert Roster(path).find((("moodle", "1"),))[0] == Roster(path).find((("own", "r@x.example"),))[0] == "right"
+
+
+def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
+    path = tmp_path / "book.csv"
+    path.write_text("Tunniste,Koko nimi,Numero,Arvosana,Paras\nOsallistuja9,A,right,,6\n", "utf8")
+    with pytest.raises(gradebooks.CannotExport, match="German, .*--name 'identifier=") as found:
         gradebooks.fill(path, marks)
-    names = {"identifier": "ID", "full name": "Vollst\xe4ndiger Name", "id number": "ID-Nummer", "grade": "Bewertung"}
+    assert "Its columns: Tunniste, Koko nimi" in str(found.value)
+    names = {"identifier": "Tunniste", "full name": "Koko nimi", "id number": "Numero", "grade": "Arvosana"}
     gradebooks.fill(path, marks, names=names)
-    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[1] == "Teilnehmer/in9,A,right,6,6"
+    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[1] == "Osallistuja9,A,right,6,6"
     with pytest.raises(gradebooks.CannotExport, match="no column 'Note'"):
         gradebooks.fill(path, marks, names={"grade": "Note"})
+
+
+def test_a_gradebook_of_canvas_with_names_in_two_columns_and_other_numbers(marks, tmp_path):
+    """Its columns are English everywhere; numbers are as the language writes them."""
+    path = tmp_path / "book.csv"
+    path.write_text(
+        "\ufeffLastName;FirstName;ID;SIS Login ID;Section;Turns (7)\n    Points Possible;;;;;12,00\n"
+        "A;Right;1;right;x;\nB;Broken;2;broken;x;\nC;Excused;3;mistaken;x;N/A\n",
+        "utf8",
+    )
+    said = "\n".join(gradebooks.fill(path, marks))
+    lines = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
+    assert lines[2:] == ["A;Right;1;right;x;12", "B;Broken;2;broken;x;10", "C;Excused;3;mistaken;x;N/A"]
+    assert "mistaken: N/A, and graded 8" in said
+    path.write_text(path.read_text("utf8").replace("12,00", "3,00"), "utf8")
+    gradebooks.fill(path, marks)
+    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[3] == "B;Broken;2;broken;x;2,5"
+    assert Roster(path).find((("canvas", "2"),)) == ("broken", "Canvas's number")
+    assert Roster(path).find((("name", "Right A"),))[0] == "right"
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from ..checking.reply import plain_text
 from .identity import local_parts
+from .languages import LANGUAGES, in_english
 from .store import file_name, write
 from .tables import in_a_line, number, readable, table
 
@@ -91,7 +92,8 @@ class Gradebook:
         if len(self.lines) < 2:
             raise CannotExport("The gradebook has no students.")
         self.header = [field.says.strip() for field in self.lines[0][0]]
-        self.ours = {theirs.casefold(): ours.casefold() for ours, theirs in (names or {}).items()}
+        known, self.no = in_english(self.header)
+        self.ours = known | {theirs.casefold(): ours.casefold() for ours, theirs in (names or {}).items()}
         there = {name.casefold() for name in self.header}
         unknown = [theirs for theirs in (names or {}).values() if theirs.casefold() not in there]
         if unknown:
@@ -200,7 +202,7 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
     for line, student in sorted(found.items()):
         if marks.undecided(student):
             waiting.append(student)
-        elif system == "Moodle" and book.says(line, book.column("grade can be changed")).lower() == "no":
+        elif system == "Moodle" and book.says(line, book.column("grade can be changed")).casefold() == book.no:
             closed.append(student)
         else:
             text = number(round(marks.points(student) * scale, 2))
@@ -249,11 +251,13 @@ def _system(book):
         return "Moodle"
     if book.column("orgdefinedid") is not None or book.column("end-of-line indicator") is not None:
         return "Brightspace"
-    if book.column("student") is not None and book.column("id") is not None:
+    # Canvas gives the name in one column, or on request in two.
+    if book.column("student", "lastname") is not None and book.column("id") is not None:
         return "Canvas"
     raise CannotExport(
         "This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or Brightspace "
-        f"(OrgDefinedId, End-of-Line Indicator). In another language, say which is which: --name 'identifier=...'. "
+        "(OrgDefinedId, End-of-Line Indicator), nor one of Moodle in a language that is known here "
+        f"({', '.join(LANGUAGES)}). Say which column is which: --name 'identifier=...' --name 'grade=...'. "
         f"Its columns: {', '.join(book.header)[:300]}"
     )
 
@@ -266,7 +270,11 @@ def _column(book, system, column):
     elif system == "Moodle":
         places = [book.column("grade")]
     elif system == "Brightspace":
-        places = [place for place, name in enumerate(book.header) if "points grade" in name.lower()]
+        places = [
+            place
+            for place, name in enumerate(book.header)
+            if "points grade" in name.lower() or "maxpoints:" in name.lower()
+        ]
     else:
         # Canvas puts the number of an assignment behind its name.
         places = [place for place, name in enumerate(book.header) if re.search(r"\(\d+\)$", name)]
@@ -278,7 +286,7 @@ def _column(book, system, column):
 
 def _scale(book, system, place):
     """What the column is out of, the first line of a student, and whether numbers have a comma."""
-    first, said, comma = 1, "", False
+    first, said = 1, ""
     if system == "Canvas":
         while first < len(book.lines) and (
             book.says(first, 0).lower() == POSSIBLE or not book.says(first, book.column("id"))
@@ -291,7 +299,7 @@ def _scale(book, system, place):
         said = found[1] if found else ""
     else:
         said = book.says(1, book.column("maximum grade"))
-        comma = bool(re.fullmatch(r"\d+,\d+", said))
+    comma = bool(re.fullmatch(r"\d+,\d+", said))  # as the language writes numbers
     try:
         return float(said.replace(",", ".")), first, comma
     except ValueError:
@@ -343,7 +351,8 @@ def _keys_of_line(book, system, line):
         ]
     elif system == "Moodle":
         given = [
-            ("id", of("identifier").removeprefix("participant ").strip()),
+            # Behind the word for a participant, in whatever language: "Teilnehmer/in9".
+            ("id", re.sub(r"\D", "", of("identifier"))),
             ("own", of("id number")),
             ("own", of("username")),
             ("own", of("email address")),

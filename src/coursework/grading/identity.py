@@ -14,6 +14,8 @@ from collections import Counter
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
+from .languages import in_english
+
 # What a system writes of a person's name holds none of its own marks: the first one is its own. Moodle leaves no
 # underscore in a name, and Canvas none with a number between two of them.
 CANVAS = re.compile(r"(?P<name>.+?)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
@@ -527,6 +529,8 @@ def _rows(path):
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:
         raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
+    english, _ = in_english(header)
+    header = [english.get(name, name) for name in header]
     for number, cells in enumerate(reader, 2):
         yield number, dict(zip(header, (cell.strip() for cell in cells), strict=False))
 
@@ -546,8 +550,10 @@ def _known(row):
     """What a line of a roster says of a student: lists of values by kind."""
     columns = dict(COLUMNS)
     row = dict(row)
-    if "student" in row and "id" in row and ("section" in row or "sis login id" in row or "sis user id" in row):
-        row["name"], row["canvas"] = row.pop("student"), row.pop("id")  # Canvas's gradebook
+    of_canvas = "section" in row or "sis login id" in row or "sis user id" in row
+    if "id" in row and ("student" in row or "lastname" in row) and of_canvas:
+        # Canvas's gradebook, with the name in one column or in two.
+        row["name"], row["canvas"] = row.pop("student", ""), row.pop("id")
         if not row["canvas"]:
             return {}
         if "," in row["name"]:

@@ -1,0 +1,267 @@
+"""What the columns of gradebooks are called in other languages.
+
+Canvas writes its columns in English, whatever the language (`lib/gradebook_exporter.rb` of instructure/canvas-lms: the
+headers are constants, and only numbers follow the language). Moodle's worksheet has the words of the language packs
+(`mod/assign/gradingtable.php` of moodle/moodle: `recordid`, `maxgrade` and `gradecanbechanged` of `assign`, the others
+of `moodle`; the packs as projectestac/moodle-langpacks keeps them, June 2026, and for Portuguese also the `grade` of
+earlier versions, as in mudrd8mz/moodle-lang). Of Brightspace's other languages no public source was found: there the
+columns are named by hand.
+"""
+
+#: The columns of Moodle's worksheet in English, and how "no" is said in them.
+MOODLE = (
+    "identifier",
+    "full name",
+    "id number",
+    "email address",
+    "username",
+    "grade",
+    "maximum grade",
+    "grade can be changed",
+)
+#: The same in other languages, and the word for "no"; what was called otherwise earlier stands behind a stroke.
+LANGUAGES = {
+    "German": (
+        "ID",
+        "Vollständiger Name",
+        "ID-Nummer",
+        "E-Mail-Adresse",
+        "Anmeldename",
+        "Bewertung",
+        "Bestwertung",
+        "Bewertung kann geändert werden",
+        "Nein",
+    ),
+    "French": (
+        "Identifiant",
+        "Nom complet",
+        "Numéro d’identification",
+        "Adresse de courriel",
+        "Nom d’utilisateur",
+        "Note",
+        "Note maximale",
+        "La note peut être modifiée",
+        "Non",
+    ),
+    "Spanish": (
+        "Identificador",
+        "Nombre completo",
+        "Número de ID",
+        "Dirección de correo",
+        "Nombre de usuario",
+        "Calificación",
+        "Calificación máxima",
+        "La calificación puede ser cambiada",
+        "No",
+    ),
+    "Italian": (
+        "Identificativo",
+        "Nome",
+        "Codice identificativo",
+        "Indirizzo email",
+        "Username",
+        "Valutazione",
+        "Valutazione massima",
+        "La valutazione può essere cambiata",
+        "No",
+    ),
+    "Portuguese": (
+        "Identificador",
+        "Nome completo",
+        "Número de identificação (ID)",
+        "E-mail",
+        "Nome de utilizador",
+        "Avaliação|Nota",
+        "Nota máxima",
+        "A nota pode ser alterada.",
+        "Não",
+    ),
+    "Dutch": (
+        "Identificatie",
+        "Volledige naam",
+        "Nummer (ID)",
+        "E-mailadres",
+        "Gebruikersnaam",
+        "Cijfer",
+        "Maximaal cijfer",
+        "Het cijfer kan gewijzigd worden",
+        "Nee",
+    ),
+    "Catalan": (
+        "Identificador",
+        "Nom complet",
+        "Número ID",
+        "Adreça electrònica",
+        "Nom d'usuari",
+        "Qualificació",
+        "Qualificació màxima",
+        "Es pot canviar la qualificació",
+        "No",
+    ),
+    "Swedish": (
+        "Identifierare",
+        "Fullständigt namn",
+        "ID nummer",
+        "E-postadress",
+        "Användarnamn",
+        "Betyg",
+        "Maxbetyg",
+        "Betyg kan ändras",
+        "Nej",
+    ),
+    "Greek": (
+        "Αναγνωριστικό",
+        "Πλήρες όνομα",
+        "Αναγνωριστικός αριθμός",
+        "Διεύθυνση ηλε.ταχυδρομείου",
+        "Όνομα χρήστη",
+        "Βαθμός",
+        "Μέγιστος Βαθμός",
+        "Ο βαθμός μπορεί να αλλάξει",
+        "Όχι",
+    ),
+    "Basque": (
+        "Identifikatzailea",
+        "Izen osoa",
+        "ID zenbakia",
+        "Helbide elektronikoa",
+        "Erabiltzaile-izena",
+        "Kalifikazioa",
+        "Gehieneko kalifikazioa",
+        "Kalifikazioa alda daiteke",
+        "Ez",
+    ),
+    "Galician": (
+        "Identificador",
+        "Nome completo",
+        "Número ID",
+        "Enderezo de correo",
+        "Nome de usuario",
+        "Cualificación",
+        "Cualificación máxima",
+        "A cualificación pode seren cambiada",
+        "Non",
+    ),
+    "Japanese": (
+        "ID",
+        "フルネーム",
+        "IDナンバ",
+        "メールアドレス",
+        "ユーザ名",
+        "評点",
+        "最大評点",
+        "評点変更可",
+        "No",
+    ),
+    "Korean": (
+        "식별자",
+        "전체 이름",
+        "id 번호",
+        "이메일 주소",
+        "사용자 아이디",
+        "성적",
+        "최대 성적",
+        "",
+        "아니오",
+    ),
+    "Lithuanian": (
+        "Identifikatorius",
+        "Visas pavadinimas",
+        "ID numeris",
+        "El. pašto adresas",
+        "Naudotojo vardas",
+        "Įvertinimas",
+        "Didžiausias įvertinimas",
+        "Įvertinimas gali būti pakeistas",
+        "Ne",
+    ),
+    "Romanian": (
+        "Identificator",
+        "Nume complet",
+        "Număr ID",
+        "Adresa de e-mail",
+        "Nume de utilizator",
+        "Notă",
+        "Notă maximă",
+        "Nota poate fi schimbată",
+        "Nu",
+    ),
+    "Russian": (
+        "Идентификатор",
+        "Полное имя",
+        "Индивидуальный номер",
+        "Адрес электронной почты",
+        "Логин",
+        "Оценка",
+        "Максимальная оценка",
+        "Оценка может быть изменена",
+        "Нет",
+    ),
+    "Turkish": (
+        "Tanımlayıcı",
+        "Tam adı",
+        "ID numarası",
+        "E-posta adresi",
+        "Kullanıcı adı",
+        "Not",
+        "Enyüksek not",
+        "Not değiştirilebilir",
+        "Hayır",
+    ),
+    "Ukrainian": (
+        "Ідентифікатор",
+        "Повна назва",
+        "Індивідуальний номер",
+        "Електронна пошта",
+        "Ім’я входу",
+        "Оцінка",
+        "Максимальна оцінка",
+        "Оцінка може бути змінена",
+        "Ні",
+    ),
+    "Chinese": (
+        "标识符",
+        "全名",
+        "学号",
+        "电子邮件地址",
+        "用户名",
+        "成绩",
+        "最高分",
+        "允许更改成绩",
+        "否",
+    ),
+    "Arabic": (
+        "المُعرَّف",
+        "ًالاسم كاملا",
+        "رقم المُعرَّف",
+        "عنوان البريد الإلكتروني",
+        "اسم المستخدم",
+        "الدرجة",
+        "أعلى تقدير",
+        "يمكن تغيير الدرجة",
+        "لا",
+    ),
+}
+
+
+def in_english(header):
+    """What the columns of a worksheet of Moodle in another language are called in English, and how "no" is said there.
+
+    Told from the two columns that no worksheet lacks: who it is, and the grade.
+
+    >>> in_english(["ID", "Vollst\xe4ndiger Name", "Bewertung"])
+    ({'id': 'identifier', 'vollst\xe4ndiger name': 'full name', 'bewertung': 'grade'}, 'nein')
+    >>> in_english(["Student", "ID", "Section"])
+    ({}, 'no')
+    """
+    there = {name.strip().casefold() for name in header}
+    for *words, no in LANGUAGES.values():
+        known = {
+            theirs.casefold(): ours
+            for ours, word in zip(MOODLE, words, strict=True)
+            for theirs in word.split("|")
+            if theirs and theirs.casefold() in there
+        }
+        if {"identifier", "grade"} <= set(known.values()):
+            return known, no.casefold()
+    return {}, "no"
