@@ -3,6 +3,7 @@
 The image is not built here, which needs a registry: the files of this machine are laid out in its place.
 """
 
+import io
 import json
 import os
 import re
@@ -16,6 +17,7 @@ from pathlib import Path
 import pytest
 from grading_class import handed_in, put, write_sources
 
+from coursework.grading.grade import grade
 from coursework.grading.isolation import readable_paths
 from coursework.grading.store import Store
 
@@ -116,3 +118,13 @@ def test_a_class_is_graded_inside(place):
     assert "2 of 2 graded" in done.stderr and "WEAK" not in done.stderr
     store = Store(folder / "graded")
     assert [store.read(student, "turns")["points"] for student in ("right", "mistaken")] == [6, 5]
+    # Whoever grades outside gets the same bytes: records, marks, report and every page of feedback.
+    grade(folder / "submissions", place / "outside", solutions=solutions, show=io.StringIO())
+    inside, outside = (
+        {str(path.relative_to(out)): path.read_bytes() for path in out.rglob("*") if path.is_file()}
+        for out in (folder / "graded", place / "outside")
+    )
+    for found in (inside, outside):
+        del found["run.log"], found["lock"]
+    assert {"report.html", "grades.csv", "feedback/right/turns.html", "records/right/turns.json"} <= set(inside)
+    assert inside == outside

@@ -1112,6 +1112,7 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
             solutions,
         ]
     )
+    assert capsys.readouterr().out.startswith("60 students in ")
     made = contents(tmp_path / "class")
     main(
         [

@@ -5,6 +5,7 @@ can be held against it. Nobody in it is real, and the same seed makes the same c
 """
 
 import ast
+import contextlib
 import copy
 import datetime
 import io
@@ -382,7 +383,8 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     folder = Path(solutions or find_course().sources)
     stems = list(notebooks) or [sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != CHAPTERS)[0]]
     dice = random.Random(f"class {seed}")
-    exercise = _Exercise(stems, folder)
+    with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
+        exercise = _Exercise(stems, folder)
     answers = _Answers(exercise, dice)
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
