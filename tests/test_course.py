@@ -1,12 +1,16 @@
 """A course of somebody else: made, released, tried and handed out without anything of this book."""
 
+import ast
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
+import sys
 import venv
 import zipfile
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -146,6 +150,30 @@ def test_the_students_package_has_no_grader(tmp_path):
         for path in (root / "coursework").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
+
+
+#: What is imported only where it is there, or only on request: a browser's own modules, a cluster, pictures in replies.
+ON_REQUEST = {"js", "pyodide_js", "distributed"}
+OF_STUDENTS_ON_REQUEST = {"numpy", "latex2mathml"}
+
+
+def test_what_the_packages_import_they_ask_for():
+    """Also without what other packages happen to bring along."""
+    belongs_to = metadata.packages_distributions()
+    for name, (patterns, needs, _) in DISTRIBUTIONS.items():
+        asked = {re.match(r"[a-z0-9-]+", need)[0] for need in needs}
+        if "coursework" in asked:
+            asked |= {re.match(r"[a-z0-9-]+", need)[0] for need in DISTRIBUTIONS["coursework"][1]} | {"mpmath"}
+        allowed = asked | ON_REQUEST | ({"mpmath"} | OF_STUDENTS_ON_REQUEST if name == "coursework" else set())
+        root = REPOSITORY / "src" / "coursework"
+        for path in {path for pattern in patterns for path in root.glob(pattern) if path.suffix == ".py"}:
+            for node in ast.walk(ast.parse(path.read_text("utf8"))):
+                imported = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                if isinstance(node, ast.ImportFrom) and not node.level:
+                    imported = [node.module]
+                for module in {module.partition(".")[0] for module in imported} - set(sys.stdlib_module_names):
+                    brought_by = {one.lower() for one in belongs_to.get(module, [module])}
+                    assert module == "coursework" or brought_by & allowed, (name, path.name, module)
 
 
 def test_an_update_brings_new_sealed_questions(statics, tmp_path):

@@ -25,13 +25,18 @@ DISTRIBUTIONS = {
             f"coursework=={coursework.__version__}",
             "ipykernel",
             "ipython",
+            "jinja2",
             "latex2mathml",
             "markdown-it-py",
+            "markupsafe",
             "matplotlib",  # what students plot with
             "mdit-py-plugins",
             "nbclient",
             "nbformat",
             "numpy",
+            "packaging",
+            "pyyaml",  # Gradescope's table of submissions
+            "tornado",  # the page to judge in
         ),
         "Exercises in notebooks that check themselves and hold no answers: what authors and instructors need",
     ),

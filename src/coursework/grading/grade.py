@@ -8,6 +8,7 @@ run that finds a record with the right key leaves it alone, so a run that was ki
 import base64
 import contextlib
 import hashlib
+import importlib.util
 import json
 import platform
 import sys
@@ -193,6 +194,8 @@ def grade(
     workers = processors() if workers is None else workers
     if workers < 1:
         raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
+    if scheduler and importlib.util.find_spec("distributed") is None:
+        raise ValueError("To give notebooks to a cluster, install what speaks to it: python -m pip install distributed")
     store, limits, show = Store(out), limits or Limits(), show or sys.stderr
     roster = Roster(roster) if roster else None
     if student is not None and roster and student not in roster.people:
