@@ -485,14 +485,66 @@ def test_reader_is_told_that_nothing_can_be_kept(browser, site):
     context.close()
 
 
-def test_full_storage_is_told(context, site):
-    tab = Tab(context, site).edit()
+def fill(tab):
+    """Leave no room in the browser's store."""
     tab.page.evaluate(
         "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try {"
         " localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length / 2); } } }"
     )
-    tab.write(ANSWER, "mine = 'a long answer that has no room'")
+
+
+AWAKE = "() => document.dispatchEvent(new Event('visibilitychange'))"  # as when the reader comes back to the tab
+EMPTY = """() => Object.keys(localStorage).filter((key) => key.startsWith('filler'))
+  .forEach((key) => localStorage.removeItem(key))"""
+
+
+def test_what_found_no_room_stays_on_the_page_and_can_be_taken_away(context, site):
+    tab, other = Tab(context, site).edit(), Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    other.wait(ANSWER, "mine = 1")
+    fill(tab)
+    long = f"mine = {'2' * 200}"
+    tab.write(ANSWER, long)
     assert "no room left" in tab.words()
+    # The tab is left and comes back, another one changes what is kept: neither takes the text away.
+    tab.page.evaluate(AWAKE)
+    tab.page.evaluate("addEventListener('storage', () => (window.heard = true))")
+    other.write(ANSWER, "mine = 9")  # as long as before: there is room for that
+    tab.page.wait_for_function("window.heard")
+    assert tab.text(ANSWER) == long
+    assert long in tab.take().path().read_text("utf8"), "as the page says"
+    # There is room again: it is kept with the next letter.
+    tab.page.evaluate(EMPTY)
+    tab.write(ANSWER, f"{long}0")
+    other.wait(ANSWER, f"{long}0")
+    assert "mine = 9" in other.shown()
+    assert tab.errors == other.errors == []
+
+
+def test_text_of_another_tab_is_not_overwritten_where_it_cannot_be_set_aside(context, site):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    (key, entry) = next(iter(tab.page.evaluate(KEPT).items()))
+    theirs = f"theirs = {'3' * 200}"
+    tab.page.evaluate(
+        "([key, text]) => localStorage.setItem(key, text)", [key, json.dumps(json.loads(entry) | {"code": theirs})]
+    )
+    fill(tab)
+    tab.write(ANSWER, "mine = 2")
+    assert "no room left" in tab.words()
+    again = Tab(context, site)
+    again.wait(ANSWER, theirs)
+
+
+def test_books_code_needs_no_room(context, site):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    fill(tab)
+    tab.press("Book’s code")
+    tab.press("Bring it back")
+    tab.reload()
+    tab.page.click(".live-earlier summary")
+    assert "mine = 1" in tab.page.inner_text(".live-earlier") and tab.text(ANSWER) == BLANK
 
 
 def test_stored_number_does_not_stand_under_other_code(context, site):

@@ -706,6 +706,76 @@ def test_run_after_a_stopped_cell_leaves_that_out(shared):
     assert "Stopped." in shared.below(3)
 
 
+# --- a hurried hand -------------------------------------------------------------------------------
+
+BEGUN = (
+    "number => document.querySelectorAll('div.cell')[number - 1].querySelector('.cell_output')"
+    ".innerText.includes('begun')"
+)
+SLOW = "print('begun')\nimport time\nuntil = time.time() + 4\nwhile time.time() < until: pass\n"
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_page_asked_for_twice_runs_once_and_in_order(context, site):
+    """While Python loads, and in the midst of the run: cells above would else run again after those below."""
+    page = Page(context, site, QUIET)
+    page.page.evaluate("""() => {
+      window.order = [];
+      const seen = new MutationObserver((changes) => changes.forEach(({ target }) => {
+        const number = [...document.querySelectorAll('div.cell')].indexOf(target) + 1;
+        if (target.classList.contains('running') && order.at(-1) !== number) order.push(number);
+      }));
+      document.querySelectorAll('div.cell').forEach((cell) => seen.observe(cell, { attributeFilter: ['class'] }));
+    }""")
+    page.page.dblclick("button.run-page")
+    page.page.wait_for_function("order.length >= 3")
+    page.page.click("button.run-page")
+    page.wait()
+    order = page.page.evaluate("order")
+    assert order == sorted(set(order)) and len(order) > 5 and page.errors == []
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_cell_changed_while_it_runs_has_to_run_again(shared):
+    shared.try_code(3, f"{SLOW}word = 'old'", wait=False)
+    shared.page.wait_for_function(BEGUN, arg=3)
+    shared.write(3, "word = 'new'")
+    shared.wait()
+    assert "new" in shared.try_code(4, "word")
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_cell_that_runs_is_not_run_again_by_a_second_press(shared):
+    shared.try_code(3, "count = 0")
+    shared.try_code(3, f"{SLOW}count += 1", wait=False)
+    shared.page.wait_for_function(BEGUN, arg=3)
+    shared.page.click("button.run-cell >> nth=2")  # once more, and then a cell that needs it
+    assert "= 1" in shared.try_code(4, "print('count =', count)")
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_what_is_asked_for_right_after_stop_runs(shared):
+    """Here Python does not listen: it ends, and what stands above the cell runs again before it."""
+    shared.try_code(3, "above = 'there'")
+    shared.try_code(4, ONE_STEP, wait=False)
+    shared.page.wait_for_function(BEGUN, arg=4)
+    shared.page.click(".live-bar button:has-text('Stop')")
+    assert "there" in shared.try_code(4, "above")
+    assert "Cell 4 ran" in shared.words()
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_stop_while_python_loads_and_run_again(context, site):
+    page = Page(context, site, QUIET)
+    page.page.click("button.run-cell >> nth=2")
+    page.page.click(".live-bar button:has-text('Stop')")
+    page.page.wait_for_selector("#live-words:has-text('Python was not loaded')")
+    assert page.page.locator("div.cell:is(.running, .waiting)").count() == 0
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    assert "Cell 3 ran" in page.words() and page.errors == []
+
+
 # --- the reader's edits ---------------------------------------------------------------------------
 
 

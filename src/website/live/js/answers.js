@@ -36,7 +36,10 @@ export const coursework = {
   all: () => Object.fromEntries(Answers.entries(COURSEWORK).map(([name, { text }]) => [name, text])),
 };
 
-function parsed(key) {
+// What the browser had no room for, by its key: it lasts as long as the page, for all scripts of which this is a part.
+export const unkept = (globalThis.unkeptAnswers ??= new Map());
+
+function stored(key) {
   try {
     return JSON.parse(localStorage.getItem(key));
   } catch {
@@ -44,12 +47,21 @@ function parsed(key) {
   }
 }
 
+const parsed = (key) => unkept.get(key) ?? stored(key);
+
+function drop(key) {
+  unkept.delete(key);
+  localStorage.removeItem(key);
+}
+
 // Returns whether the browser has kept it.
 function put(key, value) {
   try {
     localStorage.setItem(key, JSON.stringify(value));
+    unkept.delete(key);
     return true;
   } catch {
+    unkept.set(key, value);
     return false;
   }
 }
@@ -64,8 +76,8 @@ export class Answers {
 
   // The entries whose keys begin with ``start``: what follows it, and the value.
   static entries(start) {
-    const keys = Object.keys(localStorage).filter((key) => key.startsWith(start));
-    return keys.map((key) => [key.slice(start.length), parsed(key)]).filter(([, value]) => value);
+    const keys = new Set([...Object.keys(localStorage), ...unkept.keys()].filter((key) => key.startsWith(start)));
+    return [...keys].map((key) => [key.slice(start.length), parsed(key)]).filter(([, value]) => value);
   }
 
   all() {
@@ -77,17 +89,22 @@ export class Answers {
     return parsed(this.answer + name);
   }
 
-  // Keep a text; ``known`` is the one that it takes the place of. Another one that stands there comes from elsewhere.
+  // Keep a text; ``known`` is the one that it takes the place of. Another one that stands there comes from elsewhere,
+  // and where there is no room to set it aside, it stays. Returns whether the browser has kept the new one.
   write(name, entry, known) {
-    const there = this.read(name);
-    if (there && there.code !== known && there.code !== entry.code) this.setAside(name, there.code, there.at);
-    return put(this.answer + name, entry);
+    const key = this.answer + name, there = stored(key);
+    if (there && there.code !== known && there.code !== entry.code && !this.setAside(name, there.code, there.at)) {
+      unkept.set(key, entry);
+      return false;
+    }
+    return put(key, entry);
   }
 
+  // The text makes room before it is set aside, which takes a little less.
   remove(name) {
     const there = this.read(name);
-    if (there) this.setAside(name, there.code, there.at);
-    localStorage.removeItem(this.answer + name);
+    drop(this.answer + name);
+    return !there || this.setAside(name, there.code, there.at);
   }
 
   setAside(name, code, at = Date.now()) {

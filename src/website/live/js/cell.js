@@ -137,6 +137,7 @@ export class Cell {
   }
 
   begin() {
+    this.sent = this.code; // the reader may go on writing meanwhile
     this.stopped = false;
     this.fresh = [];
     this.words = [];
@@ -211,9 +212,9 @@ export class Cell {
     this.box.classList.toggle("failed", Boolean(note));
     const nodes = [...this.fresh];
     if (note) nodes.push(note, ...this.bookResult);
-    if (!this.asked && this.made === this.code) this.page.figures.keep(this.current, nodes);
-    this.made = this.code;
+    if (!this.asked && this.made === this.sent) this.page.figures.keep(this.current, nodes);
+    this.made = this.sent;
     this.replace(nodes);
-    this.ran = true;
+    this.ran = this.sent === this.code;
   }
 }

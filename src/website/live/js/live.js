@@ -1,6 +1,6 @@
 // Loaded when the reader first asks for code to run: the page's cells, the bar below, and the order of runs.
 import { Cell } from "./cell.js";
-import { Answers, coursework, fingerprint, nameCells, PREFIX } from "./answers.js";
+import { Answers, coursework, fingerprint, nameCells, PREFIX, unkept } from "./answers.js";
 import { named } from "./names.js";
 import { agreeOnIdentity, bringTogether, readCopy } from "./notebooks.js";
 import { Figures } from "./figures.js";
@@ -70,7 +70,7 @@ class Page {
     if (cell.edited) {
       kept = this.answers.write(id, { code, number, original: fingerprint(original), at: Date.now() }, cell.known);
     } else {
-      this.answers.remove(id);
+      kept = this.answers.remove(id);
     }
     cell.known = code;
     if (!kept || window.keepsNothing) {
@@ -90,6 +90,10 @@ class Page {
     // A tab that slept has missed what others wrote.
     const wake = async () => document.hidden || (await this.lookAtNotebook(), this.reread());
     document.addEventListener("visibilitychange", wake);
+    // What lasts as long as the page only is not to be closed by a slip.
+    addEventListener("beforeunload", (event) => {
+      if (unkept.size || (window.keepsNothing && this.cells.some((cell) => cell.edited))) event.preventDefault();
+    });
     addEventListener("pageshow", ({ persisted }) => persisted && wake());
   }
 
@@ -175,15 +179,26 @@ class Page {
     return cell.kind.skip && !cell.edited;
   }
 
+  // Whether a cell runs just now, with the code that stands in it, and is not being stopped.
+  atWork(cell) {
+    return this.running === cell && cell.sent === cell.code && !this.stopping;
+  }
+
   // Run one cell, and before it what has not run yet; without a cell, the whole page.
   run(cell) {
     if (!cell && this.cells.every((other) => this.leftOut(other))) {
       return this.bar.say("Each cell of this page draws a picture that is there already. Run below a cell draws it anew.");
     }
+    // Asked twice by a quick hand: it is on its way.
+    if (cell ? this.atWork(cell) : this.whole) return;
     if (cell) cell.asked = true; // by its own button: its figure begins anew
+    else {
+      this.whole = true;
+      this.empty(); // every cell comes in its order
+    }
     const upTo = cell ? cell.number : this.cells.length;
     const before = this.cells.slice(0, upTo).filter((other) =>
-      other !== cell && !(cell && (other.ran || other.stopped)) && !(this.leftOut(other) && !(cell?.kind.skip)));
+      other !== cell && !(cell && (other.ran || other.stopped || this.atWork(other))) && !(this.leftOut(other) && !(cell?.kind.skip)));
     for (const next of cell ? [...before, cell] : before) {
       if (!this.queue.includes(next)) {
         this.queue.push(next);
@@ -200,15 +215,17 @@ class Page {
     this.retry = true; // what could not be fetched before is tried again
     this.show();
     try {
-      if (!this.python) await this.load();
-      while (this.queue.length) await this.next(this.queue.shift());
+      while (this.queue.length) {
+        if (!this.python) await this.load();
+        await this.next(this.queue.shift());
+      }
       this.report();
     } catch (error) {
       this.empty();
       this.bar.progress(null);
       this.bar.say(error.message === "interrupted" ? "Stopped: Python was not loaded." : `Python could not be started: ${error.message}.`);
     }
-    this.busy = false;
+    this.busy = this.whole = this.stopping = false;
     this.tally = null;
     this.show();
   }
@@ -247,18 +264,20 @@ class Page {
   async next(cell) {
     const needs = cell.edited ? [] : cell.kind.needs ?? [];
     const lacking = needs.filter((module) => !this.has.modules.includes(module));
+    this.running = cell;
     cell.begin();
     if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
     // Code that the page hides above this cell; what it puts out belongs to no cell.
     const { before } = cell.kind;
     const show = lacking.length ? { take() {} } : cell; // it cannot run whole, but others use names that it gives before
     const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }, this.retry, coursework.all()) : { status: "ok" };
-    const outcome = hidden.status === "ok" ? await this.python.run(cell.code, cell.name, needs, show, this.retry, coursework.all()) : hidden;
+    const outcome = hidden.status === "ok" ? await this.python.run(cell.sent, cell.name, needs, show, this.retry, coursework.all()) : hidden;
     this.retry = false;
+    this.running = null;
     if (lacking.length && ["ok", "error", "missing"].includes(outcome.status)) {
       this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
     } else this.settle(cell, outcome);
-    cell.asked = false;
+    cell.asked = this.stopping = false;
   }
 
   leave(cell, reason) {
@@ -283,7 +302,6 @@ class Page {
       const text = preformatted("stream", outcome.traceback);
       text.classList.add("stderr", "live-error");
       cell.end(text);
-      cell.ran = true;
       this.tally.failed.push(cell.number);
       this.last = `${cell.name} raised an error: ${outcome.traceback.split("\n").at(-1)}`;
       if (this.queue.length) this.last += " The cells after it were not run.";
@@ -294,9 +312,16 @@ class Page {
       const then = lost ? " Python starts anew at the next run, and the page’s earlier cells run again first." : " What the cells before it have defined is still there.";
       cell.end(element("div", "live-note", element("p", "", why + then)));
       cell.ran = false;
-      cell.stopped = true; // it runs again when it is asked for, or changed; not because a later cell is
-      this.empty();
-      if (lost) this.forget();
+      cell.stopped = cell.sent === cell.code; // it runs again when it is asked for, or changed; not because a later cell is
+      // What is in the queue was asked for after Stop: it runs, and where Python starts anew, what stands before it.
+      const [next, whole] = this.stopping ? [this.queue.at(-1), this.whole] : [];
+      this.stopping = false;
+      if (lost || !next) this.empty();
+      if (lost) {
+        this.forget();
+        this.whole = false;
+        if (next) this.run(whole ? undefined : next);
+      }
       this.last = `${cell.name}: ${why}${then}`;
       this.tally.stopped = true;
     }
@@ -320,6 +345,8 @@ class Page {
 
   stop() {
     this.empty();
+    this.whole = false;
+    this.stopping = Boolean(this.running);
     this.python?.interrupt();
     if (this.python?.ended) this.forget();
   }

@@ -66,7 +66,8 @@
   const RUN = `book ${place} run`; // in this tab: "tried", or what to run when the page is there again
   const isolate = async (number) => {
     const able = isSecureContext && "serviceWorker" in navigator && self === top && !window.keepsNothing;
-    if (crossOriginIsolated || !able || sessionStorage.getItem(RUN)) return false;
+    // What the browser had no room for would be gone (see answers.js).
+    if (crossOriginIsolated || !able || sessionStorage.getItem(RUN) || globalThis.unkeptAnswers?.size) return false;
     sessionStorage.setItem(RUN, "tried");
     try {
       await navigator.serviceWorker.register(`${place}service-worker.js`);
