@@ -5,8 +5,10 @@ import contextlib
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import psutil
@@ -395,6 +397,55 @@ def test_a_busy_machine_costs_nobody_an_answer():
     finally:
         os.sched_setaffinity(0, before)
     assert [result["answers"]["q"]["outcome"] for result in results] == ["recorded"] * 3, results
+
+
+@pytest.mark.parametrize(
+    "ticks, charged",
+    [
+        ([(0.5, 0.0, 1)] * 3, 1.5),  # asleep: woken at each tick, and at once
+        ([(0.5, 0.5, 0)] * 3, 1.5),  # alone at work
+        ([(0.5, 0.1, 30)] * 3, 0.3),  # at work and reading files, a fifth of a busy machine
+        ([(0.5, 0.001, 0)] * 3, 0.003),  # at work, and nearly nothing of a machine that is very busy
+        ([(40.0, 0.001, 0)], 0.001),
+        ([(40.0, 0.0, 1)], 0.5),  # nobody knows for how long it slept
+    ],
+)
+def test_what_a_busy_machine_withholds_is_charged_to_nobody(monkeypatch, ticks, charged):
+    from coursework.grading import notebook as inside
+
+    cell = inside._Notebook.__new__(inside._Notebook)
+    cell.writing, cell.wall_left, cell.looked, moment = False, 100.0, (0, 0, 0), (0, 0, 0)
+    for tick in ticks:
+        moment = tuple(before + more for before, more in zip(moment, tick, strict=True))
+        monkeypatch.setattr(inside._Notebook, "moment", lambda self, moment=moment: moment)
+        cell.time_is_up(signal.SIGALRM, None)
+    assert 100 - cell.wall_left == pytest.approx(charged)
+
+
+@pytest.mark.long
+def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
+    limits = Limits(cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5, notebook_wall_seconds=20)
+    begun = "import time\nbegun = time.process_time()"
+    source = "while time.process_time() - begun < 0.1:\n    pass\ncheck('q', 1)"
+    processor = min(os.sched_getaffinity(0))
+    with Sandbox(limits) as sandbox:
+        sandbox.run(notebook("1"))
+        first = psutil.Process(sandbox.warm_parent)
+        for process in (first, *first.children(recursive=True)):
+            process.nice(19)
+            process.cpu_affinity([processor])
+            with contextlib.suppress(OSError):  # where processor time is shared out by sessions first
+                Path(f"/proc/{process.pid}/autogroup").write_text("19")
+        other = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+        try:
+            psutil.Process(other.pid).cpu_affinity([processor])
+            start = time.monotonic()
+            result = sandbox.run(notebook(begun, source, questions={"q": None}))
+        finally:
+            other.kill()
+            other.wait()
+    assert result["answers"]["q"]["outcome"] == "recorded", result
+    assert time.monotonic() - start > 2  # or it was no strain
 
 
 @pytest.mark.sampled(2, of="sandboxes under strain")

@@ -27,6 +27,7 @@ import json
 import os
 import random
 import re
+import resource
 import select
 import signal
 import sys
@@ -50,7 +51,7 @@ OURS = []  # the modules of this package, which a notebook is to find none of
 AWAIT = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
 PROMPT = "In ["  # pasted with its prompt a line may pass for an annotation
 TICK = 0.5  # seconds by the clock between two looks at whether a step waits
-#: Less of a tick than this share is spent by what waits, and more by what is kept waiting by a busy machine.
+#: Of a tick what waits spends less than this share.
 WAITING = 0.02
 #: Events of the interpreter that honest notebooks do not bring about, and what to say of them.
 SUSPICIOUS = {
@@ -184,7 +185,7 @@ class _Notebook:
         self.writing = False
         self.cell = None
         self.answered = set()
-        self.wall_left, self.looked = 0, (0, 0)
+        self.wall_left, self.looked = 0, (0, 0, 0)
         self.skipped = {tuple(step) for step in job["skip"]}
         self.recursion_limit = sys.getrecursionlimit()
         self.module = types.ModuleType("__main__")
@@ -393,9 +394,14 @@ class _Notebook:
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, self.time_is_up)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGPROF, signal.SIGALRM))
-        self.wall_left, self.looked = wall, (time.monotonic(), time.process_time())
+        self.wall_left, self.looked = wall, self.moment()
         signal.setitimer(signal.ITIMER_PROF, processor)
         signal.setitimer(signal.ITIMER_REAL, min(wall, TICK), TICK)
+
+    @staticmethod
+    def moment():
+        """The time by the clock and of the processor, and how often this process gave it away by itself."""
+        return time.monotonic(), time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_nvcsw
 
     def time_left(self):
         """What is left of the processor's time and of the clock's, with both stopped."""
@@ -413,11 +419,13 @@ class _Notebook:
             self.wall_left = self.wall_left if number == signal.SIGALRM else 0
             return
         if number == signal.SIGALRM:
-            now = time.monotonic(), time.process_time()
-            elapsed, used = (moment - before for moment, before in zip(now, self.looked, strict=True))
+            now = self.moment()
+            elapsed, used, gave_way = (moment - before for moment, before in zip(now, self.looked, strict=True))
             self.looked = now
-            # What computes on a busy machine is charged for what it got, and not for what others got.
-            self.wall_left -= elapsed if used < WAITING * elapsed else used
+            # What computes on a busy machine is charged for what it got, and not for what others got: only what gave
+            # the processor away by itself has waited. It is woken at each tick, unless the machine is late.
+            waited = gave_way and used < WAITING * elapsed
+            self.wall_left -= min(elapsed, TICK) if waited else used
             if self.wall_left > 0:
                 return
         raise OutOfTime
