@@ -209,8 +209,9 @@ def compare(name, question, plain, find):
             words = len(reading.text.split())
             said = f"A person reads this text of {words} {'word' if words == 1 else 'words'}, and decides."
             return Reply(name, "undecided", "for a person", [said])
-        reply = _compare(name, question, plain, reading, find) if find else _taken_down(name, question, reading)
-        reply.answer = hashlib.sha256(fingerprint(question, reading).encode()).hexdigest()[:12]
+        text = fingerprint(question, reading)
+        reply = _compare(name, question, plain, reading, text, find) if find else _taken_down(name, question, reading)
+        reply.answer = hashlib.sha256(text.encode()).hexdigest()[:12]
         return reply
     except Blank:
         return Reply(name, "not attempted", "", ["Put your answer in place of the `...` and run the cells again."])
@@ -237,8 +238,7 @@ def _taken_down(name, question, reading):
     )
 
 
-def _compare(name, question, plain, reading, find):
-    text = fingerprint(question, reading)
+def _compare(name, question, plain, reading, text, find):
     content = find(text)
     case = _case_of(question, reading, content)
     found = fault(question, reading) if case is None or case["outcome"] == "correct" else None

@@ -18,7 +18,7 @@ from types import SimpleNamespace
 from ..authoring.author import AuthorError
 from ..authoring.source import DECLARED, checked_names, declared_strengths, read_source
 from ..checking.evaluate import MP
-from ..checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, read
+from ..checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
 from ..checking.plain import NotPlain, read_plain
 from ..checking.plugins import packages
 from ..checking.questions import compare
@@ -242,7 +242,7 @@ _marked = {}
 def _mark(name, question, answer, finished, limited):
     reply, text = judge(name, question, answer, finished, limited)
     short = reply.outcome == "wrong" and len(answer["plain"]["nodes"]) <= LONGEST_FOR_SIBLINGS
-    if short and any(judge(name, other, answer)[0].outcome == "correct" for other in question.get("siblings", [])):
+    if short and any(_is_right(name, other, answer) for other in question.get("siblings", [])):
         reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
     share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     if reply.outcome == "wrong" and question["partial"] and reply.note != "other numbers":
@@ -261,6 +261,14 @@ def _mark(name, question, answer, finished, limited):
         "version": question["version"],
         "guessable": question["guessable"],
     }
+
+
+def _is_right(name, question, answer):
+    """Whether an answer is right for a question. Of most it takes one look to see that they are not."""
+    with contextlib.suppress(Exception):  # as in judging: what cannot be worked out is not right
+        text = fingerprint(question["public"], read(question["public"], answer["plain"]))
+        return text in question["known"] and judge(name, question, answer)[0].outcome == "correct"
+    return False
 
 
 def parts_right(question, text):

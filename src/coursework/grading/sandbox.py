@@ -41,6 +41,7 @@ from coursework.grading.workers import side_by_side
 WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
 WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
 OUTSIDE = "outside"  # the folder of the file that the isolation is tried on
+PAUSE = 0.005  # seconds in which records gather: to be woken for each takes both processes longer than the record
 DEEPEST_STEPS = 10
 MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
 SIZE_OF_CREDENTIALS = struct.calcsize("3i")
@@ -558,9 +559,8 @@ class _Once:
     def follow(self, reading):
         control = self.sandbox.control
         waiting = select.poll()
-        waiting.register(reading, select.POLLIN)
         waiting.register(control, select.POLLIN)
-        last_moment = None
+        last_moment, look_again = None, 0.0  # None where there is nothing more to be read
         while True:
             now = time.monotonic()
             if self.killed_for is None:
@@ -576,9 +576,13 @@ class _Once:
                 deadline = last_moment
                 if now >= deadline:
                     raise WorkerDied("a killed notebook did not end")
-            for handle, _ in waiting.poll(max(1, (deadline - now) * 1000)):
-                if handle == reading and not self.take(reading):
+            if look_again is not None and now >= look_again:
+                waiting.register(reading, select.POLLIN)
+            until = deadline if look_again is None or now >= look_again else min(deadline, look_again)
+            for handle, _ in waiting.poll(max(1, (until - now) * 1000)):
+                if handle == reading:
                     waiting.unregister(reading)
+                    look_again = time.monotonic() + PAUSE if self.take(reading) else None
                 elif handle == control.fileno():
                     ended = self.sandbox.receive(0)
                     while self.take(reading):  # what it wrote last; nobody is left to write more

@@ -56,6 +56,8 @@ def in_a_line(text, most):
 
 def readable(text, most=2_000):
     """Text that shows what it holds: without signs that are not seen, or that turn the rest round."""
+    if len(text) <= most and text.isascii() and text.isprintable():
+        return text
     shown = "".join(
         sign
         if sign in "\n\t" or unicodedata.category(sign) not in ("Cc", "Cf", "Cs", "Co", "Cn")

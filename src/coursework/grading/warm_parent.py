@@ -18,6 +18,7 @@ is copied. One that is copied runs no notebook itself.
 """
 
 import contextlib
+import ctypes
 import errno
 import gc
 import importlib
@@ -39,6 +40,7 @@ JOB, RECORDS, SECRET = 3, 4, 5
 NOT_CONFINED = 120
 LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on disk is
 LONGEST_MESSAGE = 1 << 16
+LARGE_PAGE, MADV_COLLAPSE = 2 << 20, 25
 
 
 def into_namespaces(control, readable):
@@ -97,6 +99,10 @@ def load_libraries():
     one, other = mechanics.ReferenceFrame("N"), mechanics.ReferenceFrame("A")
     other.orient_axis(one, one.z, angle)
     sympy.simplify(sympy.trigsimp(other.dcm(one) * other.dcm(one).T))
+    third = sympy.Rational(1, 3)
+    for inverse in (sympy.asin, sympy.acos, sympy.atan, sympy.acot, sympy.asec, sympy.acsc):
+        inverse(third)  # looks it up in a table of known values, which takes ten milliseconds to make
+    sympy.atan2(third, 1), sympy.cos(sympy.pi / 5)
     sympy.lambdify(angle, sympy.sin(angle), "numpy")(numpy.zeros(1))
     notebook.warm_up()
 
@@ -105,6 +111,22 @@ def about_itself(processes, name):
     """A file of this process's own in /proc, which is a handle here: the folder may be out of sight."""
     with open(os.open(f"self/{name}", os.O_RDONLY, dir_fd=processes)) as file:
         return file.read()
+
+
+def into_large_pages(maps):
+    """Have the kernel gather this process's memory in large pages, of which it copies one entry for each to a child.
+
+    Of small ones there are 500 times as many, and a child would take milliseconds longer to be made and to end.
+    ``maps`` is what the system says of the memory. Where it cannot be done, everything works as before.
+    """
+    madvise = ctypes.CDLL(None).madvise
+    madvise.argtypes = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
+    for line in maps.splitlines():
+        place, rights, *rest = line.split()
+        if rights.startswith("rw") and rest[3:] in ([], ["[heap]"]):
+            start, end = (int(address, 16) for address in place.split("-"))
+            for address in range(-(-start // LARGE_PAGE) * LARGE_PAGE, end - LARGE_PAGE + 1, LARGE_PAGE):
+                madvise(address, LARGE_PAGE, MADV_COLLAPSE)
 
 
 class WarmParent:
@@ -126,6 +148,9 @@ class WarmParent:
             isolation.adopt_orphans()
         os.environ["MPLCONFIGDIR"] = self.base
         load_libraries()
+        gc.collect()
+        gc.freeze()
+        into_large_pages(about_itself(processes, "maps"))
         self.memory_in_use = int(about_itself(processes, "statm").split()[0]) * os.sysconf("SC_PAGE_SIZE")
         os.close(processes)
         self.own_scratch = made_by is not None
