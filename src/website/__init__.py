@@ -7,6 +7,7 @@ what the book is about.
 from . import (
     accessible,
     alternative_text,
+    exam,
     execution,
     exercises,
     finish,
@@ -28,6 +29,6 @@ from . import (
 
 def setup(app):
     pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress, subject_index)
-    for module in (*pages, take_away, page, publish, pictures, moving, live, lite, install, finish):
+    for module in (exam, *pages, take_away, page, publish, pictures, moving, live, lite, install, finish):
         module.setup(app)
     return {"version": "1.0", "parallel_read_safe": True, "parallel_write_safe": True}

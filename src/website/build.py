@@ -6,8 +6,12 @@ import sys
 import time
 from pathlib import Path
 
+import yaml
+
 from . import install, lite, whole_book
-from .paths import BUILD, HTML, pages
+from .paths import BUILD, HTML, contents, exam_edition, pages
+
+EXAM_CONTENTS = BUILD / "_toc.yml"  # what is in an exam edition
 
 
 def missing_pages():
@@ -16,13 +20,31 @@ def missing_pages():
     return [page for page, file in files.items() if not file.is_file() or "<h1>" not in file.read_text("utf8")]
 
 
+def forget_site():
+    """Remove the built site, so that the next build makes every page anew."""
+    for folder in (HTML, BUILD / ".doctrees"):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def contents_of_this_edition():
+    """What Jupyter Book is told of the contents; of an edition that was built before, nothing is left over."""
+    if EXAM_CONTENTS.exists() != exam_edition():
+        forget_site()
+    EXAM_CONTENTS.unlink(missing_ok=True)
+    if not exam_edition():
+        return []
+    BUILD.mkdir(exist_ok=True)
+    EXAM_CONTENTS.write_text(yaml.safe_dump(contents(), sort_keys=False), "utf8")
+    return ["--toc", EXAM_CONTENTS.resolve()]
+
+
 def main():
     start = time.monotonic()
     print("Building the book ...", flush=True)
     jupyter_book = Path(sys.executable).with_name("jupyter-book")
     # What was fetched for browsers is byte-compiled while the pages are read one by one.
     ahead = subprocess.Popen([sys.executable, "-c", "from website import lite; lite.compile_ahead()"])
-    command = [jupyter_book, "build", ".", "-q", "-W", "-n", "--keep-going"]
+    command = [jupyter_book, "build", ".", "-q", "-W", "-n", "--keep-going", *contents_of_this_edition()]
     code = subprocess.run(command).returncode
     ahead.wait()
     if code == 0 and (missing := missing_pages()):
@@ -31,8 +53,7 @@ def main():
     if code:
         # Sphinx warns of a page only when it reads it: without this, a second
         # try would find nothing to do and call the same faulty book built.
-        for folder in (HTML, BUILD / ".doctrees"):
-            shutil.rmtree(folder, ignore_errors=True)
+        forget_site()
         sys.exit("The book was not built: see the warnings above.")
     lite.write(HTML)
     whole_book.withdraw_outdated()

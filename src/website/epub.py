@@ -11,11 +11,10 @@ from string import ascii_lowercase, ascii_uppercase, digits
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree import ElementTree
 
-import orientation
-
 from .offline import LICENCES
-from .paths import WEBSITE, moment_of_sources, parts
+from .paths import WEBSITE, edition, moment_of_sources, parts
 from .pdf import article, heading, place
+from .spoken import spoken
 
 STYLE = WEBSITE / "epub.css"
 MATHML, SVG = "http://www.w3.org/1998/Math/MathML", "http://www.w3.org/2000/svg"
@@ -51,7 +50,8 @@ PACKAGE = """<?xml version="1.0" encoding="utf-8"?>
 <dc:creator>{author}</dc:creator>
 <dc:language>en</dc:language>
 <dc:rights>{licences}</dc:rights>
-<dc:description>Version {version}</dc:description>
+<dc:description>{edition}</dc:description>
+{more}
 <meta property="dcterms:modified">{moment}</meta>
 <meta property="schema:accessMode">textual</meta>
 <meta property="schema:accessMode">visual</meta>
@@ -77,9 +77,9 @@ PACKAGE = """<?xml version="1.0" encoding="utf-8"?>
 
 
 def as_mathml(formula):
-    """A formula for reading programs: its MathML, and what it is in TeX as its words."""
+    """A formula for reading programs: its MathML, and its words for those that know none."""
     math = formula.select_one("math").extract()
-    math["alttext"] = re.sub(r"\s+", " ", formula["data-tex"])
+    math["alttext"] = spoken(math)
     # Of bold letters reading programs know those that are signs of their own.
     for letter in math.select("[mathvariant=bold]"):
         letter.string = letter.get_text().translate(BOLD)
@@ -164,10 +164,13 @@ def files(site, title, author):
                 ElementTree.fromstring(text)
             except ElementTree.ParseError as error:
                 raise RuntimeError(f"{name} is not XML: {error}") from None
-    identity = f"urn:uuid:{uuid5(NAMESPACE_URL, f'{title} {orientation.__version__}')}"
+    which = edition()
+    identity = f"urn:uuid:{uuid5(NAMESPACE_URL, f'{title} {which.words}')}"
+    more = [f"<dc:date>{which.date}</dc:date>"] if which.date else []
+    more += [f"<dc:identifier>https://doi.org/{escape(which.doi)}</dc:identifier>"] if which.doi else []
     written["package.opf"] = PACKAGE.format(
         identifier=identity, title=escape(title), author=escape(author), licences=LICENCES,
-        version=orientation.__version__, moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}",
+        edition=escape(which.words), more="\n".join(more), moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}",
         items="\n".join(items), spine="\n".join(spine),
     )  # fmt: skip
     return written

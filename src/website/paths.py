@@ -8,6 +8,7 @@ import tomllib
 from datetime import UTC, datetime
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NamedTuple
 
 import yaml
 
@@ -23,10 +24,32 @@ BUILD = Path("_build")
 HTML = BUILD / "html"
 
 
+def exam_edition(book=Path()):
+    """Whether the book is built without worked solutions: BOOK_EXAM=1, or ``exam_edition`` in ``_config.yml``."""
+    if chosen := os.environ.get("BOOK_EXAM"):
+        return chosen != "0"
+    file = book / "_config.yml"
+    settings = yaml.safe_load(file.read_text("utf8")) if file.exists() else {}
+    return bool(settings.get("sphinx", {}).get("config", {}).get("exam_edition"))
+
+
+def is_solutions(page):
+    """Whether a page holds worked solutions: its name says so."""
+    return page.rpartition("/")[2].startswith("solutions")
+
+
+def contents():
+    """``_toc.yml``, in an exam edition without the pages of worked solutions."""
+    found = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
+    if exam_edition():
+        for part in found["parts"]:
+            part["chapters"] = [chapter for chapter in part["chapters"] if not is_solutions(chapter["file"])]
+    return found
+
+
 def parts():
-    """The parts of the book in ``_toc.yml``: the caption of each, and the names of its pages."""
-    contents = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
-    return [(part["caption"], [chapter["file"] for chapter in part["chapters"]]) for part in contents["parts"]]
+    """The parts of the book: the caption of each, and the names of its pages."""
+    return [(part["caption"], [chapter["file"] for chapter in part["chapters"]]) for part in contents()["parts"]]
 
 
 def pages():
@@ -37,6 +60,35 @@ def pages():
 def package():
     """What pyproject.toml says of the package: its name, version and so on."""
     return tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
+
+
+class Edition(NamedTuple):
+    """Which edition of the book this is; texts, empty where there is nothing to say."""
+
+    name: str
+    date: str  # such as 2026-11-22
+    doi: str
+
+    @property
+    def day(self):
+        """The date as it is read: 22 November 2026."""
+        return f"{(date := datetime.fromisoformat(self.date)).day} {date:%B %Y}" if self.date else ""
+
+    @property
+    def words(self):
+        """Such as: Second edition, 22 November 2026."""
+        return ", ".join(filter(None, [self.name, self.day]))
+
+
+def edition(book=Path()):
+    """The edition that ``CITATION.cff`` names in the folder ``book``."""
+    file = book / "CITATION.cff"
+    known = yaml.safe_load(file.read_text("utf8")) if file.exists() else {}
+    known |= known.pop("preferred-citation", {})
+    name = known.get("edition") or (f"Edition {known['version']}" if "version" in known else "")
+    if exam_edition(book):
+        name = f"{name}, for exams: without solutions".lstrip(", ")
+    return Edition(name, str(known.get("date-released", "")), str(known.get("doi", "")))
 
 
 def moment_of_sources():

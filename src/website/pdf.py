@@ -15,19 +15,20 @@ from urllib.parse import urldefrag
 import pikepdf
 from bs4 import BeautifulSoup, Comment
 
-import orientation
-
-from . import fonts
+from . import fonts, tagged
 from .browser import open_browser
-from .paths import NODE_MODULES, WEBSITE, moment_of_sources, parts
+from .offline import LICENCES
+from .paths import NODE_MODULES, WEBSITE, edition, moment_of_sources, parts
+from .spoken import spoken
 
 FACES = (
     # The typefaces of the site that are variable fonts, here in fixed weights: a PDF holds variable ones as
-    # drawings. And one for code, which on a screen is the reader's own.
-    ("Source Sans", "source-sans-3", 400),
-    ("Source Sans", "source-sans-3", 600),
-    ("Source Code Pro", "source-code-pro", 400),
-    ("Source Code Pro", "source-code-pro", 700),
+    # drawings. And one for code, which on a screen is the reader's own, with the Greek letters that code puts out.
+    ("Source Sans", "source-sans-3", "latin", 400),
+    ("Source Sans", "source-sans-3", "latin", 600),
+    ("Source Code Pro", "source-code-pro", "latin", 400),
+    ("Source Code Pro", "source-code-pro", "latin", 700),
+    ("Source Code Pro Greek", "source-code-pro", "greek", 400),
 )
 LONG = 14  # lines of code that need not stay on one page
 # What only a screen can do, or what stands in the way on paper: links to a place beside themselves, the
@@ -107,11 +108,12 @@ def move_answers(text):
 
 
 def as_picture(formula):
-    """A PDF has no MathML: screen readers get the formula as it is written in TeX."""
-    tex = formula["data-tex"]
+    """A PDF has no MathML: screen readers get the formula in words."""
+    formula["role"], formula["aria-label"] = "img", tagged.FORMULA + spoken(formula.select_one("math"))
     formula.select_one(".katex-mathml").decompose()
     del formula.select_one(".katex-html")["aria-hidden"]
-    formula["role"], formula["aria-label"] = "img", re.sub(r"\s+", " ", tex)
+    for blank in formula.select(".vlist-s"):
+        blank.string = "\u00a0"  # KaTeX's own typeface lacks the blank without width that stands here
 
 
 def article(site, page, set_formula=as_picture):
@@ -134,6 +136,8 @@ def article(site, page, set_formula=as_picture):
         if len(code.get_text().strip().splitlines()) > LONG:
             code["class"].append("long")
     for element in text.find_all(True):
+        if element.get("role", "").startswith("doc-"):
+            del element["role"]  # in a PDF a link with such a role would be none
         if element.get("id"):
             element["id"] = place(page, element["id"])
         for name, value in list(element.attrs.items()):
@@ -206,8 +210,8 @@ def faces():
     files = NODE_MODULES / "@fontsource"
     return "".join(
         f'@font-face {{ font-family: "{family}"; font-weight: {weight}; '
-        f"src: url({(files / name / 'files' / f'{name}-latin-{weight}-normal.woff2').as_uri()}); }}\n"
-        for family, name, weight in FACES
+        f"src: url({(files / name / 'files' / f'{name}-{script}-{weight}-normal.woff2').as_uri()}); }}\n"
+        for family, name, script, weight in FACES
     )
 
 
@@ -218,11 +222,12 @@ def title_page(front, title):
     question, beginning = words[0].extract(), words[1].extract()
     front.h1.string = "About this book"
     front.section.append(BeautifulSoup(f"<p>{NOTE}</p>", "html.parser"))
+    which = edition()
+    link = f'<a href="https://doi.org/{which.doi}">doi:{which.doi}</a><br>' if which.doi else ""
     return (
         f'<header class="title-page"><h1>{escape(title)}</h1><p class="question">{question.get_text()}</p>'
         f"{figure}{beginning}"
-        f"<p class='edition'>Version {orientation.__version__}, {moment_of_sources():%B %Y}<br>"
-        "Text: CC BY 4.0. Code: BSD 3-Clause.</p></header>"
+        f"<p class='edition'>{escape(which.words)}<br>{link}Text: CC BY 4.0. Code: BSD 3-Clause.</p></header>"
     )
 
 
@@ -273,19 +278,49 @@ def in_order(bookmarks):
         yield from in_order(bookmark.children)
 
 
+def describe(pdf, title, author):
+    """Say in the file itself what it is, for programs that keep books, and that it is made for screen readers."""
+    which = edition()
+    with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as said:
+        said["dc:title"] = title
+        said["dc:creator"] = [author]
+        said["dc:language"] = {"en"}
+        said["dc:rights"] = LICENCES
+        said["dc:description"] = which.words
+        if which.date:
+            said["dc:date"] = [which.date]
+        if which.doi:
+            said["dc:identifier"] = f"https://doi.org/{which.doi}"
+        said["xmp:CreateDate"] = said["xmp:ModifyDate"] = f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}"
+        said["pdfuaid:part"] = "1"
+
+
 def finish(printed, headings, title, author):
     """Say what the PDF is, and leave nothing in it of the hour and the machine that made it."""
     date = moment_of_sources().strftime("D:%Y%m%d%H%M%SZ")
     file = io.BytesIO()
     with pikepdf.open(io.BytesIO(printed)) as pdf:
-        facts = {"/Title": title, "/Author": author, "/CreationDate": date, "/ModDate": date}
+        facts = {
+            "/Title": title,
+            "/Author": author,
+            "/Subject": edition().words,
+            "/CreationDate": date,
+            "/ModDate": date,
+        }
         pdf.trailer.Info = pdf.make_indirect(pikepdf.Dictionary(facts))
         with pdf.open_outline() as outline:
             # Chromium makes the bookmarks, and some of their words twice.
             for bookmark, words in zip(in_order(outline.root), headings, strict=True):
                 bookmark.title = words
         pdf.Root.PageMode = pikepdf.Name.UseOutlines  # opened with the bookmarks beside it
-        pdf.save(file, object_stream_mode=pikepdf.ObjectStreamMode.generate, deterministic_id=True)
+        tagged.mend(pdf)
+        describe(pdf, title, author)
+        pdf.save(
+            file,
+            min_version="1.7",
+            object_stream_mode=pikepdf.ObjectStreamMode.generate,
+            deterministic_id=True,
+        )
     return file.getvalue()
 
 

@@ -2,7 +2,8 @@
 
 The title and the author stand in ``_config.yml``; so do, once the book has them, its address (``html.baseurl``) and its
 repository (``repository.url``, ``repository.branch``), for which BOOK_ADDRESS and BOOK_REPOSITORY stand in where a
-workflow publishes. The edition, its date and its DOI stand in ``CITATION.cff``.
+workflow publishes. The edition, its date and its DOI stand in ``CITATION.cff``, from which the directive
+``cite-this-book`` writes how the book is cited.
 """
 
 import html
@@ -11,10 +12,11 @@ import re
 from pathlib import Path
 from urllib.parse import quote, urlencode, urlsplit
 
-import yaml
 from docutils import nodes
+from sphinx.util.docutils import SphinxDirective
 
 from .execution import STORED
+from .paths import edition
 from .take_away import notebook_address
 
 LICENCE = "https://creativecommons.org/licenses/by/4.0/"
@@ -33,9 +35,7 @@ def take_addresses(app, config):
         config.html_baseurl += "/"
     if repository := os.environ.get("BOOK_REPOSITORY"):
         config.html_theme_options["repository_url"] = repository.rstrip("/")
-    citation = Path(app.srcdir, "CITATION.cff")
-    known = yaml.safe_load(citation.read_text("utf8")) if citation.exists() else {}
-    config.book_edition = {name: str(known.get(name, "")) for name in ("version", "date-released", "doi")}
+    config.book_edition = dict(edition(Path(app.srcdir))._asdict(), words=edition(Path(app.srcdir)).words)
 
 
 def description(doctree):
@@ -87,9 +87,8 @@ def write_head(app, pagename, templatename, context, doctree):
     if repository and doctree is not None:
         source = os.path.relpath(app.env.doc2path(pagename), app.srcdir)
         branch = app.config.html_theme_options.get("repository_branch") or "main"
-        body = (
-            f"Page: {title} ({pagename})\nSection: \nEdition: {app.config.book_edition['version']}\n\nWhat is wrong:\n"
-        )
+        words = app.config.book_edition["words"]
+        body = f"Page: {title} ({pagename})\nSection: \nEdition: {words}\n\nWhat is wrong:\n"
         context["report_mistake"] = f"{repository}/issues/new?{urlencode({'title': f'{title}: ', 'body': body})}"
         context["suggest_change"] = f"{repository}/edit/{branch}/{quote(source)}"
 
@@ -165,7 +164,32 @@ def write_files(app, exception):
     (site / "llms.txt").write_text(outline(app), "utf8")
 
 
+class CiteThisBook(SphinxDirective):
+    """How the book is cited: in words, and as BibTeX takes it."""
+
+    def run(self):
+        config, which = self.config, edition(Path(self.env.srcdir))
+        self.env.note_dependency(str(Path(self.env.srcdir, "CITATION.cff")))
+        address = f"https://doi.org/{which.doi}" if which.doi else config.html_baseurl or ""
+        words = [
+            nodes.Text(f"{config.author}, "),
+            nodes.emphasis("", config.html_title),
+            nodes.Text(f". {which.words}."),
+        ]
+        if address:
+            words += [nodes.Text(" "), nodes.reference("", address, refuri=address), nodes.Text(".")]
+        fields = {
+            "title": config.html_title, "author": f"{{{config.author}}}", "edition": which.name,
+            "year": which.date[:4], "date": which.date, "doi": which.doi, "url": config.html_baseurl,
+        }  # fmt: skip
+        key = re.sub(r"[^a-z]+", "-", config.html_title.lower())
+        lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
+        code = nodes.literal_block("", "\n".join([f"@book{{{key},", *lines, "}"]), language="bibtex")
+        return [nodes.paragraph("", "", *words), code]
+
+
 def setup(app):
+    app.add_directive("cite-this-book", CiteThisBook)
     app.add_config_value("book_edition", {}, "html", dict)
     app.connect("config-inited", take_addresses)
     app.connect("env-before-read-docs", begin)
