@@ -32,8 +32,11 @@ FACES = (
 )
 LONG = 14  # lines of code that need not stay on one page
 # What only a screen can do, or what stands in the way on paper: links to a place beside themselves, the
-# code that draws figures, controls, the list of links on the front page.
-ONLY_ON_SCREEN = "a.headerlink, script, details.hide, button, [hidden], .sd-container-fluid, .whole-book"
+# code that draws figures, controls, the list of links on the front page, and what a check says of a blank.
+ONLY_ON_SCREEN = (
+    "a.headerlink, script, details.hide, button, [hidden], .sd-container-fluid, .whole-book, "
+    ".output:has([data-outcome='not attempted'])"
+)
 WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
 # Attributes that name other elements.
 NAMES_OF_OTHERS = ("aria-labelledby", "aria-describedby", "for", "headers")
