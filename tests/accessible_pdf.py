@@ -1,4 +1,4 @@
-"""What a program can tell of a PDF by the Matterhorn Protocol 1.1, the list of how a file can fail PDF/UA-1 (ISO 14289-1).
+"""What a program can tell of a PDF by the Matterhorn Protocol 1.1, the list of how files fail PDF/UA-1 (ISO 14289-1).
 
 It reads the file with pikepdf alone, and shares nothing with what makes it. Each fault begins with the number of the
 condition. Left out are conditions on what the book has none of: forms, sound, scripts, layers, files within the file,
@@ -11,12 +11,11 @@ from collections import Counter
 import pikepdf
 
 HEADINGS = {f"H{level}": level for level in range(1, 7)}
-STANDARD = {
-    "Document", "Part", "Art", "Sect", "Div", "BlockQuote", "Caption", "TOC", "TOCI", "Index", "NonStruct", "Private", "P",
-    "H", *HEADINGS, "L", "LI", "Lbl", "LBody", "Table", "TR", "TH", "TD", "THead", "TBody", "TFoot", "Span", "Quote", "Note",
-    "Reference", "BibEntry", "Code", "Link", "Annot", "Ruby", "RB", "RT", "RP", "Warichu", "WT", "WP", "Figure", "Formula",
-    "Form",
-}  # fmt: skip
+STANDARD = set(HEADINGS) | set(
+    "Document Part Art Sect Div BlockQuote Caption TOC TOCI Index NonStruct Private P H L LI Lbl LBody Table TR TH TD "
+    "THead TBody TFoot Span Quote Note Reference BibEntry Code Link Annot Ruby RB RT RP Warichu WT WP Figure Formula "
+    "Form".split()
+)
 #: What may stand in what, for lists and tables.
 WITHIN = {
     "LI": {"L"}, "Lbl": {"LI", "P", "Note", "Reference", "TOCI", "Span"}, "LBody": {"LI"},

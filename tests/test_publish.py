@@ -89,7 +89,9 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
     monkeypatch.setenv("BOOK_ADDRESS", "https://example.org/books/tiny")
     monkeypatch.setenv("BOOK_REPOSITORY", "https://github.com/example/tiny-book")
     (tmp_path / "CITATION.cff").write_text("version: 3.0\ndate-released: 2026-11-22\ndoi: 10.5281/zenodo.1\n")
-    code, words = build(tmp_path, {"chapter": chapter()})
+    cells = chapter()
+    cells[0].source += "\n\n```{cite-this-book}\n```\n"
+    code, words = build(tmp_path, {"chapter": cells})
     assert code == 0, words
     site = tmp_path / "_build" / "html"
     text = (site / "chapter.html").read_text("utf8")
@@ -98,10 +100,14 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
     assert "<loc>https://example.org/books/tiny/chapter.html</loc>" in (site / "sitemap.xml").read_text("utf8")
     assert "Sitemap: https://example.org/books/tiny/sitemap.xml" in (site / "robots.txt").read_text("utf8")
     assert 'href="/books/tiny/index.html"' in (site / "404.html").read_text("utf8")
-    assert "Edition 3.0 of 2026-11-22" in text and "https://doi.org/10.5281/zenodo.1" in text
+    assert "Edition 3.0, 22 November 2026" in text.partition("<footer")[2]
+    assert meta(text, "citation_doi") == "10.5281/zenodo.1" and meta(text, "citation_publication_date") == "2026-11-22"
+    cited = " ".join(BeautifulSoup(text, "lxml").article.get_text().split())
+    assert f"{SETTINGS['title']}. Edition 3.0, 22 November 2026. https://doi.org/10.5281/zenodo.1." in cited
+    assert "doi = {10.5281/zenodo.1}, url = {https://example.org/books/tiny/}, }" in cited
     (report,) = re.findall(r'class="report-mistake" href="([^"]*)"', text)
     asked = parse_qs(urlsplit(unescape(report)).query)
-    assert "(chapter)" in asked["body"][0] and "Edition: 3.0" in asked["body"][0]
+    assert "(chapter)" in asked["body"][0] and "Edition 3.0, 22" in asked["body"][0]
     assert 'href="https://github.com/example/tiny-book/edit/main/chapter.ipynb"' in text
     picture = meta(text, "og:image").removeprefix("https://example.org/books/tiny/")
     assert Image.open(io.BytesIO((site / picture).read_bytes())).size == (1200, 630)

@@ -71,12 +71,12 @@ class Edition(NamedTuple):
 
     @property
     def day(self):
-        """The date as it is read: 22 November 2026."""
+        """The date as it is read, such as 1 May 2031."""
         return f"{(date := datetime.fromisoformat(self.date)).day} {date:%B %Y}" if self.date else ""
 
     @property
     def words(self):
-        """Such as: Second edition, 22 November 2026."""
+        """Such as: Fifth edition, 1 May 2031."""
         return ", ".join(filter(None, [self.name, self.day]))
 
 

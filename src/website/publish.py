@@ -87,8 +87,8 @@ def write_head(app, pagename, templatename, context, doctree):
     if repository and doctree is not None:
         source = os.path.relpath(app.env.doc2path(pagename), app.srcdir)
         branch = app.config.html_theme_options.get("repository_branch") or "main"
-        words = app.config.book_edition["words"]
-        body = f"Page: {title} ({pagename})\nSection: \nEdition: {words}\n\nWhat is wrong:\n"
+        which = app.config.book_edition["words"]
+        body = f"Page: {title} ({pagename})\nSection: \n{which}\n\nWhat is wrong:\n"
         context["report_mistake"] = f"{repository}/issues/new?{urlencode({'title': f'{title}: ', 'body': body})}"
         context["suggest_change"] = f"{repository}/edit/{branch}/{quote(source)}"
 

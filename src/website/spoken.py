@@ -26,6 +26,8 @@ WORDS = {
 ACCENTS = {"^": "hat", "˙": "dot", "¨": "double dot", "~": "tilde", "ˉ": "bar", "¯": "bar", "→": "arrow"}
 POWERS = {"2": "squared", "3": "cubed", "T": "transpose", "∗": "conjugate", "*": "conjugate", "∘": "degrees"}
 POWERS |= {"−1": "inverse", "′": "prime", "′′": "double prime", "⊤": "transpose"}
+#: What reaches over something, and how that is said when it is one thing.
+LIMITED = {"∑": "over", "∫": "over", "lim": "as", "min": "over", "max": "over"}
 BARS = "∣|∥‖"
 SCRIPTS = ("msup", "msub", "msubsup")
 
@@ -102,9 +104,9 @@ def is_before(node):
 
 def with_scripts(node, after_frame=False):
     base, *scripts = parts(node)
-    if bare(base) in ("∑", "∫"):
-        limits = ["over" if len(scripts) == 1 else "from", say(scripts[0]), *(f"to {say(one)}" for one in scripts[1:])]
-        return " ".join([say(base), *limits, "of"])
+    if bare(base) in LIMITED and node.name != "msup":
+        limits = [LIMITED[bare(base)] if len(scripts) == 1 else "from", *(say(one) for one in scripts[:1])]
+        return " ".join([say(base), *limits, *(f"to {say(one)}" for one in scripts[1:]), "of"])
     words = [", end of magnitude," if bare(base) in BARS else say(base)]
     if node.name in ("msub", "msubsup"):
         words.append(lowered(base, scripts[0]))
@@ -203,7 +205,7 @@ def say(node):
             return say(base)
         if "⏟" in base.get_text():
             return f"{say(base)}, marked {say(label)},"
-        return f"{say(base)} {'as' if bare(base) == 'lim' else 'over'} {say(label)} of"
+        return f"{say(base)} {LIMITED.get(bare(base), 'over')} {say(label)} of"
     if node.name in SCRIPTS:
         return with_scripts(node)
     if node.name == "mtable":

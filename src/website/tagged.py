@@ -19,7 +19,7 @@ ROLES = {"Strong": "Span", "Em": "Span"}
 GROUPS = ("Document", "Art", "Sect", "Div")
 INLINE = ("Span", "Strong", "Em", "Code", "Link", "Formula", "Lbl")
 #: Elements in which only other elements stand.
-BARE = ("L", "LI", "Table", "TR")
+BARE = ("L", "Table", "TR")
 #: Elements that are heard by their words, not by what is in them.
 WORDED = ("Figure", "Formula")
 PATH = {"m", "l", "c", "v", "y", "h", "re", "W", "W*"}
@@ -127,12 +127,15 @@ class Stream:
             operator = line.rsplit(" ", 1)[-1]
             number = next((one for one in reversed(stack) if isinstance(one, int)), None)
             if operator.endswith(("BDC", "BMC")):
-                mark, stands_for = re.search(r"/MCID (\d+)", line), re.search(r"/ActualText <FEFF(\w*)>", line)
+                mark = re.search(r"/MCID (\d+)", line)
+                stands_for = re.search(r"/ActualText (?:<FEFF(\w*)>|\((\w*)\))", line)
                 if mark:
                     stack.append(int(mark[1]))
                     found.setdefault(stack[-1], "")
                 else:
-                    stack.append(bytes.fromhex(stands_for[1]).decode("utf-16-be") if stands_for else None)
+                    stack.append(None)
+                    if stands_for:
+                        stack[-1] = stands_for[2] or bytes.fromhex(stands_for[1]).decode("utf-16-be")
                     if stands_for and number is not None:
                         found[number] += stack[-1]
             elif operator == "EMC":
@@ -377,7 +380,7 @@ def write(pdf, root, found):
 
 
 def mend(pdf):
-    """Put the structure of ``pdf`` in order; return the tree."""
+    """Put the structure of ``pdf`` in order; return the words that are read."""
     found = streams(pdf)
     texts = {
         Piece(number, key, mark): said
@@ -403,4 +406,4 @@ def mend(pdf):
     write(pdf, root, found)
     for page in pdf.pages:
         page.Tabs = Name.S
-    return root
+    return words(root, texts)
