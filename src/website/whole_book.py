@@ -58,9 +58,10 @@ def stamps():
     files = site_files()
     kinds = tuple(f"{page}.html" for page in pages())
     printed = {path: text for path, text in files.items() if path in kinds or path.endswith((".css", ".woff2"))}
-    found = {PDF.name: digest(printed, *(WEBSITE / name for name in ("pdf.py", "print.css", "browser.py")))}
+    programs = ("pdf.py", "tagged.py", "spoken.py", "print.css", "browser.py")
+    found = {PDF.name: digest(printed, *(WEBSITE / name for name in programs))}
     texts = {path: text for path, text in files.items() if path in kinds}
-    found[EPUB.name] = digest(texts, *(WEBSITE / name for name in ("epub.py", "epub.css", "pdf.py")))
+    found[EPUB.name] = digest(texts, *(WEBSITE / name for name in ("epub.py", "epub.css", "pdf.py", "spoken.py")))
     for path in (PDF, EPUB):
         if path.exists():
             files[path.name] = path.read_bytes()
