@@ -3,12 +3,14 @@
 The whole book's PDF is held against the same list in test_whole_book.py.
 """
 
+import base64
 import io
 
 import pytest
 from accessible_pdf import elements, faults
 
 from website import pdf, tagged
+from website.paths import NODE_MODULES
 
 pikepdf = pytest.importorskip("pikepdf")
 Name = pikepdf.Name
@@ -18,7 +20,11 @@ DRAWING = (
     '<path d="M9 9h60v60h-60z"/><text x="20" y="40" fill="#fff">word</text></svg>'
 )
 ROW = "<tr><th scope='row'>n</th><td>1</td></tr>"
+# The book's own typeface, so that nothing hangs on those of the machine.
+FACE = NODE_MODULES / "@fontsource" / "source-sans-3" / "files" / "source-sans-3-latin-400-normal.woff2"
 PAGE = f"""<!doctype html><html lang="en"><head><title>Small</title><style>
+@font-face {{ font-family: face; src: url(data:font/woff2;base64,{base64.b64encode(FACE.read_bytes()).decode()}) }}
+* {{ font-family: face; }}
 @page {{ size: 500px 400px; margin: 50px; @bottom-center {{ content: counter(page); }} }}
 .box {{ border: 1px solid; background: #eee; }} em {{ text-decoration: underline; }}
 </style></head><body><article><h1>One</h1>
@@ -35,6 +41,7 @@ PAGE = f"""<!doctype html><html lang="en"><head><title>Small</title><style>
 def printed(browser):
     page = browser.new_context().new_page()
     page.set_content(PAGE)
+    page.evaluate("document.fonts.ready")
     made = page.pdf(**pdf.PAPER, outline=True, tagged=True)
     page.context.close()
     return made
