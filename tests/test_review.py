@@ -1,5 +1,6 @@
 """The page to judge in: safe against other pages and against what it shows, and worked by keys alone."""
 
+import base64
 import functools
 import http.client
 import io
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import threading
 
+import nbformat
 import pytest
 from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
 
@@ -286,15 +288,77 @@ def test_who_stops_judging_has_the_decisions_in_the_marks(out, graded):
     assert "Nearly." in (out / "feedback" / "rounded-1" / "turns.html").read_text()
 
 
+# ---- free text and plots
+
+PLOT = [
+    ("code", "import matplotlib.pyplot as plt\n\nfrom coursework import check"),
+    ("code", "### BEGIN SOLUTION\nplt.plot([0, 1, 2], [0, 1, 4])\n### END SOLUTION"),
+    ("code", '### BEGIN SOLUTION\nseen = "It bends upwards, as a square does."\n### END SOLUTION'),
+    (
+        "code",
+        "check('plots/seen', seen)\n### BEGIN HIDDEN TESTS\nquestion('plots/seen', kind='free text', worth=4, "
+        "rubric=['sees the bend', 'names the square'])\n### END HIDDEN TESTS",
+    ),
+]
+
+
+def picture(color):
+    """A plot as Jupyter keeps it."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure, data = Figure(figsize=(5, 3), dpi=80), io.BytesIO()
+    figure.subplots().plot([0, 1, 2], [0, 1, 4], color=color)
+    FigureCanvasAgg(figure).print_png(data)
+    return base64.b64encode(data.getvalue()).decode()
+
+
+@pytest.fixture(scope="module")
+def plotted(tmp_path_factory):
+    """The results of a class that drew and wrote; not all of what they drew is a picture."""
+    place = tmp_path_factory.mktemp("plots")
+    (place / "solutions").mkdir()
+    nbformat.write(notebook(PLOT), place / "solutions" / "plots.ipynb")
+    drawn = {
+        "ada": [{"image/png": picture("C0"), "text/plain": "<Figure>"}],
+        "ben": [{"image/png": picture("C3")}, {"image/png": base64.b64encode(SCRIPT.encode()).decode()}],
+        "eve": [{"image/svg+xml": f"<svg>{SCRIPT}</svg>"}, {"image/png": f'"> {SCRIPT}'}, {"text/html": SCRIPT}],
+    }
+    for student, shown in drawn.items():
+        cells = [PLOT[0], "plt.plot([0, 1, 2], [0, 1, 4])", f"seen = 'It bends upwards, says {student}.'"]
+        made = notebook([*cells, "check('plots/seen', seen)"])
+        made.cells[2].source = f"plt.plot([0, 1, 2], [0, 1, 4])\n{made.cells[2].source}"
+        made.cells[2].outputs = [nbformat.v4.new_output("display_data", data) for data in shown]
+        put(place / "submissions", student, made, "plots.ipynb")
+    grade(place / "submissions", place / "out", solutions=place / "solutions", limits=LIMITS, show=io.StringIO())
+    return place / "out"
+
+
+def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
+    with Served(plotted) as served:
+        assert "img-src data:;" in POLICY
+        _, text = served.ask(f"/{served.secret}/")
+        answers = re.findall(r"answer/([0-9a-f]{16})", text)
+        pages = [served.ask(f"/{served.secret}/answer/{one}")[1] for one in dict.fromkeys(answers)]
+    assert len(pages) == 3
+    for page in pages:
+        (student,) = re.findall(r"bends upwards, says (\w+)", page.partition("The code of")[0])
+        beside, _, code = page.partition("<form")
+        assert beside.count('<img src="data:image/png;base64,') == (student != "eve") and "<img" not in code
+        assert f'<p class="prose">It bends upwards, says {student}.</p>' in beside
+        assert "sees the bend" in page and "<svg>" not in page and "onerror=alert(2)>" not in page
+        assert len(re.findall("<script", page)) == 1
+
+
 # ---- in a browser
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_pages_are_accessible_and_fit_a_telephone(out, browser, scheme):
+def test_pages_are_accessible_and_fit_a_telephone(out, plotted, browser, scheme):
     from pathlib import Path
 
     axe = (Path(__file__).parents[1] / "node_modules" / "axe-core" / "axe.min.js").read_text("utf8")
-    with Served(out) as served:
+    with Served(out) as served, Served(plotted) as of_plots:
         # The page's own policy lets no script in; it is tested elsewhere, and set aside for this one.
         context = browser.new_context(color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True)
         page = context.new_page()
@@ -303,6 +367,7 @@ def test_pages_are_accessible_and_fit_a_telephone(out, browser, scheme):
         for place in (
             f"{served.address}?show=all",
             f"{served.address}answer/{first_of(served, 'hints')}?show=hints",
+            f"{of_plots.address}answer/{first_of(of_plots)}",
             *(path.as_uri() for path in written),
         ):
             page.goto(place)

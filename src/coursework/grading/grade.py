@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..authoring.course import edition_of, find_course, links_of
+from ..checking.plugins import kinds
 from . import intake, marking
 from . import secret as in_secret
 from .identity import BadRoster, Roster
@@ -400,9 +401,12 @@ class _Jobs:
         named = {name for notebook in one.notebooks for name in notebook.named}
         own = marking.of_student(self.questions[one.assignment], one.student)
         asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
+        for_a_person = any(kinds()[question["public"]["kind"]].by_a_person for question in own.values())
         for part, notebook in enumerate(one.notebooks):
             cells = notebook.cells
             self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
+            if for_a_person:
+                self.store.keep_pictures(notebook.digest, notebook.pictures)
             files = {name: base64.b64encode(data).decode() for name, data in notebook.files.items()}
             job = {"id": f"{order} {part}", "cells": cells, "questions": asked, "seed": 0}
             yield {**job, "files": files} if files else job

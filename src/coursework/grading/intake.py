@@ -7,6 +7,7 @@ by strangers. What is not an honest notebook is refused by its name, with a reas
 is followed, nothing is unpacked on disk, nothing is repaired. :mod:`coursework.grading.identity` says whose it is.
 """
 
+import base64
 import codecs
 import contextlib
 import datetime
@@ -50,6 +51,9 @@ TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
 ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
 MOST_TRIED = 100  # of one question
+#: Pictures that are shown of one notebook, all together, and how those begin that are shown.
+MOST_BYTES_OF_PICTURES = 4 << 20
+STARTS_OF_PICTURES = {"image/png": b"\x89PNG\r\n\x1a\n", "image/jpeg": b"\xff\xd8\xff"}
 TRIED = re.compile(r"[0-9a-f]{6}")
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
@@ -129,6 +133,11 @@ class Notebook(NamedTuple):
     def remembered(self):
         """What its outputs remember of the way to an answer: see :func:`remembered_in`."""
         return remembered_in(_unchanged(self))
+
+    @property
+    def pictures(self):
+        """What its cells drew, as it keeps that: see :func:`pictures_in`."""
+        return pictures_in(_unchanged(self))
 
     @property
     def files(self):
@@ -656,6 +665,31 @@ def remembered_in(data):
         one["tried"] = list(dict.fromkeys((*one["tried"], *TRIED.findall(about.get("tried", "")))))[:MOST_TRIED]
         one["tries"] = max(one["tries"], int(about["tries"][:6]))
         one["help"] = about.get("help", one["help"])
+    return found
+
+
+def pictures_in(data):
+    """The pictures under each code cell of a notebook, as it was handed in: texts in base64, by the cell's number.
+
+    They are the student's to change, and are for people to look at; what is no picture by its first bytes is left out.
+    """
+    found, left = {}, MOST_BYTES_OF_PICTURES
+    notebook = _json(data)
+    code = [cell for cell in _list(notebook.get("cells", [])) if isinstance(cell, dict)]
+    code = [cell for cell in code if cell.get("cell_type") == "code"]
+    for number, cell in enumerate(code):
+        outputs = cell.get("outputs")
+        for output in outputs if isinstance(outputs, list) else ():
+            shown = output.get("data") if isinstance(output, dict) else None
+            for kind, start in STARTS_OF_PICTURES.items():
+                text = shown.get(kind) if isinstance(shown, dict) else None
+                text = "".join(text) if isinstance(text, list) and all(isinstance(one, str) for one in text) else text
+                if not isinstance(text, str) or len(text) > left:
+                    continue
+                with contextlib.suppress(ValueError):
+                    if base64.b64decode(text := "".join(text.split()), validate=True).startswith(start):
+                        found.setdefault(str(number), []).append(f"{kind};base64,{text}")
+                        left -= len(text)
     return found
 
 

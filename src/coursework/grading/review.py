@@ -8,6 +8,7 @@ browser to run, load or send anything that is in it.
 
 import hashlib
 import hmac
+import itertools
 import re
 import secrets
 from collections import Counter, defaultdict
@@ -27,7 +28,7 @@ from .templates_of_pages import ENVIRONMENT
 
 ALONE = "127.0.0.1"
 POLICY = (
-    "default-src 'none'; style-src 'self'; script-src 'self'; form-action 'self'; base-uri 'none'; "
+    "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; "
     "frame-ancestors 'none'; require-trusted-types-for 'script'"
 )
 HEADERS = {
@@ -49,6 +50,7 @@ SHOWN = {
     "all": "all",
 }
 LONGEST_COMMENT = 4_000
+MOST_ABOVE = 4  # cells above the one of an answer that are shown first
 #: Code that fewer share is worth a look; code that more share is what everybody writes.
 FEW = 0.05
 SHORTEST_CODE = 60
@@ -168,16 +170,23 @@ class Class:
         )
 
     def cells(self, cluster, record):
-        """The code of one student's notebook: the cell of the answer and the one above it first."""
+        """The code of one student's notebook, which of its cells come first, and the pictures that it keeps.
+
+        First come the cell of the answer and those above it, up to the check of another; of several notebooks the one
+        in which it is asked.
+        """
         cell = record["answers"].get(cluster.question, {}).get("cell")
-        for notebook in record["notebooks"]:
-            cells = self.store.work(notebook["sha256"])
-            if cells:
-                near = [
-                    order for order in ((cell - 1, cell) if isinstance(cell, int) else ()) if 0 <= order < len(cells)
-                ]
-                return cells, near
-        return [], []
+        kept = [(notebook["sha256"], self.store.work(notebook["sha256"])) for notebook in record["notebooks"]]
+        kept = [(digest, cells) for digest, cells in kept if cells]
+        kept.sort(key=lambda one: not any(cluster.question in source for source in one[1]))
+        for digest, cells in kept:
+            near = []
+            if isinstance(cell, int) and 0 <= cell < len(cells):
+                above = range(cell - 1, max(-1, cell - MOST_ABOVE - 1), -1)
+                own = itertools.takewhile(lambda order: "check(" not in cells[order], above)
+                near = [*sorted(own), cell]
+            return cells, near, self.store.pictures(digest)
+        return [], [], {}
 
 
 def hints_of(records, work):
@@ -339,7 +348,7 @@ class _Answer(_Page):
         about = graded.questions.get(cluster.question, {})
         chosen = self.get_argument("member", "")
         record = next((one for one in cluster.members if one["student"] == chosen), cluster.members[0])
-        cells, near = graded.cells(cluster, record)
+        cells, near, pictures = graded.cells(cluster, record)
         judged = cluster.mark.get("before", cluster.mark)
         self.show(
             "answer.html",
@@ -354,6 +363,7 @@ class _Answer(_Page):
             record=record,
             cells=cells,
             near=near,
+            pictures=pictures,
             decisions={one["student"]: graded.decision(cluster, one, current) for one in cluster.members},
             history=[
                 one
@@ -365,6 +375,9 @@ class _Answer(_Page):
             right_text=pages.answer_as_text(about.get("plain"), 2_000),
             answer=Markup(answer_as_mathematics(cluster.answer.get("plain"))),
             answer_text=pages.answer_as_text(cluster.answer.get("plain"), 2_000),
+            right_prose=_prose(about.get("plain")),
+            answer_prose=_prose(cluster.answer.get("plain")),
+            by_a_person=judged["note"] == "for a person",
             place=place,
             total=len(order),
             following=order[place + 1] if place is not None and place + 1 < len(order) else None,
@@ -406,6 +419,11 @@ class _Answer(_Page):
         target = later[0] if later and not only else name
         query = urlencode({key: value for key, value in filters.items() if value})
         self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
+
+
+def _prose(plain):
+    """The words of an answer that is a text; ``None`` if it is something else."""
+    return plain["value"][1] if plain and plain["value"][0] == "text" else None
 
 
 class _Static(_Page):

@@ -68,6 +68,17 @@ class Store:
         if not place.exists():
             write(place, json.dumps(sources, ensure_ascii=False), lasting=False)
 
+    def keep_pictures(self, digest, pictures):
+        """Keep the pictures of a notebook, by the numbers of their cells, for people to judge."""
+        place = self.folder / "work" / f"{digest}.pictures.json"
+        if pictures and not place.exists():
+            write(place, json.dumps(pictures), lasting=False)
+
+    def pictures(self, digest):
+        """The pictures of a notebook, by the number of the cell that drew them."""
+        place = self.folder / "work" / f"{digest}.pictures.json"
+        return {int(number): shown for number, shown in (self.json_in(place) if place.exists() else {}).items()}
+
     def work(self, digest):
         """The code cells of a notebook, or nothing if they were not kept."""
         place = self.folder / "work" / f"{digest}.json"
