@@ -1,5 +1,6 @@
 """What stands in for NumPy on a page: the same answers as the real one, written the same, or none at all."""
 
+import importlib.util
 import random
 import sys
 
@@ -220,3 +221,10 @@ def test_factors_multiply_to_the_matrix():
         assert np.allclose(product.tolist(), matrix @ matrix.swapaxes(-1, -2), atol=1e-13)
     flat = STAND_IN.linalg.svd(STAND_IN.array([[1.0, 2, 3], [2, 4, 6], [0, 0, 0]]))
     assert np.allclose((flat[0] @ flat[0].T).tolist(), np.eye(3), atol=1e-14)
+
+
+def test_who_looks_for_numpy_finds_what_stands_in(monkeypatch):
+    """As a moving figure does, which then asks for Matplotlib too: without a word it would be an error of Python's."""
+    for part in (STAND_IN, *plain_numpy.PARTS.values()):
+        monkeypatch.setitem(sys.modules, part.__name__, part)
+        assert importlib.util.find_spec(part.__name__).name == part.__name__

@@ -101,11 +101,12 @@ def stamp(notebook):
 def announce_numpy(notebook, kinds, place):
     """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws with it.
 
-    The kernel fetches what a cell imports; most cells here use NumPy through our own package only.
+    The kernel fetches what a cell imports; most cells here use NumPy through our own package only. Here nothing stands
+    in for it, as on the page.
     """
     codes = [position for position, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
     for position, kind in zip(codes, kinds, strict=True):
-        if set(kind["needs"]) & set(runtime.NUMERICAL):
+        if kind["numpy"] or set(kind["needs"]) & set(runtime.NUMERICAL):
             words, code = NUMERICAL
             notebook.cells[position:position] = [
                 nbformat.v4.new_markdown_cell(words.format(place=place), id="numpy-why"),

@@ -115,6 +115,16 @@ def names_bound(code):
     return {symbol.get_name() for symbol in symbols if symbol.is_assigned() or symbol.is_imported()}
 
 
+def imports_numpy(code):
+    """Whether a cell imports NumPy itself."""
+    modules = [
+        name
+        for node in ast.walk(parse(code)) if isinstance(node, (ast.Import, ast.ImportFrom))
+        for name in ([alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""])
+    ]  # fmt: skip
+    return any(name.partition(".")[0] == "numpy" for name in modules)
+
+
 def names_taken(code):
     """The names that a cell may take from the cells before it: all it uses, but for what it imports."""
     tree = parse(code)
@@ -138,6 +148,8 @@ def needs_of_names(names, codes, kinds):
 
 def classify(cells):
     """For each code cell what it needs beyond SymPy, whether a run may leave it out, and its name for graders.
+
+    Also whether it asks for ``numpy``, which on a page plain Python may stand in for, and in other places does not.
 
     A run leaves out a cell that only draws a figure, needs more for it, and gives names to other such cells
     at most: its picture is there already. A result that differs from the stored one without such a reason is an error.
@@ -169,6 +181,7 @@ def classify(cells):
             {
                 "needs": sorted(needs), "figure": "hide-input" in tags, "shown": not HIDDEN & set(tags),
                 "code": cell.source, "name": cell.metadata.get("nbgrader", {}).get("grade_id"),
+                "numpy": bool(outcome.get("plain")) or imports_numpy(cell.source),
             }
         )  # fmt: skip
     wanted = set()  # the names that the cells below take, those that are left out not counted
