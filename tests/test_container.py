@@ -92,14 +92,50 @@ def test_the_page_shows_a_container_without_a_network_that_nothing_can_be_writte
     assert all((ROOT / name).is_file() for name in copied)
 
 
+#: What Docker's own filter of system calls denies to whoever has no privileges, of what keeping apart could use: as in
+#: profiles/seccomp/default.json of moby/moby. Podman's allows it.
+NAMESPACE_OF_USERS = 0x10000000
+OF_DOCKER = {
+    "defaultAction": "SCMP_ACT_ALLOW",
+    "syscalls": [
+        {
+            "names": ["unshare", "setns", "mount", "umount", "umount2", "mount_setattr", "move_mount", "open_tree"]
+            + ["fsopen", "fsmount", "fsconfig", "fspick", "pivot_root", "chroot", "sethostname", "bpf"],
+            "action": "SCMP_ACT_ERRNO",
+            "errnoRet": 1,
+        },
+        {"names": ["clone3"], "action": "SCMP_ACT_ERRNO", "errnoRet": 38},
+        {
+            "names": ["clone"],
+            "action": "SCMP_ACT_ERRNO",
+            "errnoRet": 1,
+            "args": [
+                {
+                    "index": 0,
+                    "value": NAMESPACE_OF_USERS,
+                    "valueTwo": NAMESPACE_OF_USERS,
+                    "op": "SCMP_CMP_MASKED_EQ",
+                }
+            ],
+        },
+    ],
+}
+
+
 @pytest.mark.long
-def test_isolation_holds_inside(place):
+@pytest.mark.parametrize("engine", ["podman", "docker"])
+def test_isolation_holds_inside(place, engine, monkeypatch):
+    if engine == "docker":
+        (place / "docker.json").write_text(json.dumps(OF_DOCKER))
+        options = [*shown(), f"--security-opt=seccomp={place / 'docker.json'}"]
+        monkeypatch.setattr(sys.modules[__name__], "shown", lambda: options)
     done = podman(place, sys.executable, "-c", PROBE)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert found["user"] == 65534 and set(found["capabilities"]) == {"0"}
     assert found["interfaces"] in ([], ["lo"]) and found["writable"] == []
     assert found["lacking"] == [], found
+    assert ("namespaces" in found["layers"]) == (engine == "podman") and "landlock" in found["layers"]
 
 
 @pytest.mark.long

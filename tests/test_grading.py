@@ -763,6 +763,8 @@ def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
     other.path.write_text(other.path.read_text() + "{}\n")
     with pytest.raises(ValueError, match="line 3: this is no decision"):
         mine.merge(other.path)
+    with pytest.raises(SystemExit, match="decided nothing yet has no ledger"):
+        main(["merge", str(copied), str(other.path), str(tmp_path / "nothing.jsonl")])
 
 
 # ---- handed on

@@ -179,6 +179,11 @@ def merge(out, ledgers):
     from .ledger import Ledger
 
     ledger = Ledger(Path(out))
+    missing = [path for path in ledgers if not Path(path).is_file()]
+    if missing:
+        sys.exit(
+            f"coursework merge: there is no {missing[0]}. Who has decided nothing yet has no ledger: leave it out."
+        )
     for path in ledgers:
         try:
             new, differing = ledger.merge(Path(path))
