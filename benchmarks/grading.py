@@ -3,8 +3,9 @@
 The class is the sample class: 200 notebooks of ten questions with their mistakes, broken cells and attacks. The
 whole of it goes through ``coursework grade`` with two workers, from an empty folder to the report. The others are
 given the first honest notebooks of it, one after the other, as they work; nbclient runs the cells and grades
-nothing. What one notebook more costs is without the start. Processor times count all processes, and do not depend on
-what else the machine does; times by the clock do.
+nothing. What one notebook more costs is without the start. What each has to know of the assignment is made before, and
+said beside: nbgrader's own version of it, and the right answers of all variants of our questions. Processor times count
+all processes, and hardly depend on what else the machine does; times by the clock do.
 """
 
 import argparse
@@ -20,7 +21,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from coursework.grading.grade import grade
+from coursework.grading.grade import Course, grade
 from coursework.grading.sample_class import make_class
 
 NOTEBOOKS = ("reference-frames", "unit-quaternions")
@@ -49,6 +50,7 @@ def main():
             if not any(did.startswith(("hostile", "refused")) for did in about[student]["did"])
         ]
         honest = _only(good, submissions, place / "honest")
+        prepared = of_questions(place)
         start = of_grading(_only(good[: options.workers], submissions, place / "few"), place, options.workers)
         ours = of_grading(honest, place, options.workers)
         paths = [next((honest / student).glob("*.ipynb")) for student in good]
@@ -61,7 +63,7 @@ def main():
             ("coursework grade: the honest ones", *ours),
             ("their cells alone, each in a copy of one warm process", *alone),
             ("nbclient, which grades nothing", *of_nbclient(sample)),
-            ("nbgrader autograde", *(theirs := of_nbgrader(sample, place))),
+            ("nbgrader autograde", *(theirs := of_nbgrader(sample, place))[:3]),
         )
         first = of_nbgrader(sample[:1], place / "one")
         few = _only(good[:2], submissions, place / "two")
@@ -90,10 +92,13 @@ def main():
         for what, number in ("by the clock", 1), ("of processor time", 2):
             mine = (ours[number] - start[number]) / (ours[0] - start[0])
             other = (theirs[number] - first[number]) / (theirs[0] - 1)
-            cold = (first[number] + 39 * other) / (start[number] + (40 - start[0]) * mine)
+            all_theirs, all_ours = first[number] + 39 * other, start[number] + (40 - start[0]) * mine
+            before = first[number + 2], prepared[number - 1]
             print(
                 f"{what.capitalize()}, nbgrader takes {other / mine:.0f} times as long for one notebook more "
-                f"({1000 * other:.0f} and {1000 * mine:.0f} ms), and {cold:.0f} times as long for 40 from a cold start."
+                f"({1000 * other:.0f} and {1000 * mine:.0f} ms), and {all_theirs / all_ours:.0f} times as long for 40 "
+                f"from a cold start; with what is made before ({before[0]:.1f} and {before[1]:.1f} s), "
+                f"{(all_theirs + before[0]) / (all_ours + before[1]):.0f} times."
             )
         each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
         print(
@@ -138,8 +143,16 @@ def measured():
     seconds += [time.perf_counter() - clock, used() - processor]
 
 
+def of_questions(place):
+    """Work out the questions, which :func:`of_grading` is given: the seconds that it takes."""
+    with measured() as seconds:
+        Course(assignments={ASSIGNMENT: list(NOTEBOOKS)}).questions([ASSIGNMENT], place / "questions")
+    return seconds
+
+
 def of_grading(submissions, place, workers, scheduler=None):
     out = Path(tempfile.mkdtemp(dir=place))
+    shutil.copytree(place / "questions", out / "questions")
     with measured() as seconds:
         done = grade(
             submissions,
@@ -225,7 +238,7 @@ def of_nbclient(paths):
 
 
 def of_nbgrader(paths, place):
-    """nbgrader's own commands; what its gradebook needs to know of the assignment is made before, and not timed."""
+    """nbgrader's own commands: how many notebooks, the seconds of grading, and those of what is made before."""
     course = place / "course"
     name = paths[0].name
     for path in paths:
@@ -249,10 +262,11 @@ def of_nbgrader(paths, place):
         if done.returncode:
             sys.exit(done.stderr[-3000:])
 
-    run("generate_assignment", ASSIGNMENT, "--force")
+    with measured() as before:
+        run("generate_assignment", ASSIGNMENT, "--force")
     with measured() as seconds:
         run("autograde", ASSIGNMENT)
-    return len(paths), *seconds
+    return len(paths), *seconds, *before
 
 
 if __name__ == "__main__":

@@ -459,6 +459,7 @@ CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execu
         (with_cells([CODE] * (intake.MOST_CELLS + 1)), "1001 cells"),
         (with_cells([CODE | {"source": "#" * (intake.MOST_CODE + 1)}]), "code is longer"),
         (b" " * (intake.MOST_BYTES + 1), "larger than 20 MB"),
+        (with_cells([]).replace(b"[]", b"[" + b"0," * intake.MOST_VALUES + b"0]"), "made of more than"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )

@@ -221,13 +221,13 @@ def grade(
             print(line, file=show)
         ledger = Ledger(store.folder)
         _take_in_decisions(ledger, store, show)
-        keys = {
-            (one.student, one.assignment): key_of(one, questions[one.assignment], limits, allow_weak_isolation)
-            for one in work
-        }
+
+        def key(one):
+            return key_of(one, questions[one.assignment], limits, allow_weak_isolation)
+
         waiting, kept = [], []
         for one in work:
-            (kept if _is_done(store, one, keys) else waiting).append(one)
+            (kept if _is_done(store, one, key(one)) else waiting).append(one)
         print(
             f"{len(work)} to grade, {len(work) - len(waiting)} of them graded before, {len(refused)} files refused.",
             file=show,
@@ -240,7 +240,7 @@ def grade(
             one = waiting[order]
             asked = questions[one.assignment]
             of_student = marking.of_student(asked, one.student)
-            record = record_of(one, results, keys[one.student, one.assignment], of_student, limits)
+            record = record_of(one, results, key(one), of_student, limits)
             store.save(marked(record, asked, decisions))
             return order, record["notebooks"][0]["isolation"]
 
@@ -347,12 +347,12 @@ def _read(path):
     return json.loads(path.read_text("utf8")) if path.exists() else {}
 
 
-def _is_done(store, one, keys):
+def _is_done(store, one, key):
     record = store.read(one.student, one.assignment)
     # A notebook that this machine could not run is tried again.
     return (
         record is not None
-        and record["key"] == keys[one.student, one.assignment]
+        and record["key"] == key
         and not any("given up" in notebook["isolation"] for notebook in record["notebooks"])
     )
 

@@ -312,18 +312,21 @@ NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of
 
 def _without_conflicts(notebooks, roster, refused):
     """Leave out what two submissions claim to be: one of them may be a classmate's."""
-    claims = {}
+    first, several = {}, {}
     for one in notebooks:
-        if one.matched != "as you said":
-            # A name that only looks the same, or that differs in capitals alone, claims the same. Those of a roster
-            # are told apart by it.
-            for identity in (looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)):
-                claims.setdefault(identity, {}).setdefault(one.claim.source, set()).add(one.student)
+        for identity in _identities(one, roster):
+            if first.setdefault(identity, one.claim.source) != one.claim.source:
+                several[identity] = set(), set()
+    # Nearly all names are claimed once: only of the others is it kept by whom.
+    for one in notebooks if several else ():
+        for identity in several.keys() & set(_identities(one, roster)):
+            sources, students = several[identity]
+            sources.add(one.claim.source)
+            students.add(one.student)
     unsure = {}
-    for sources in claims.values():
-        if len(sources) > 1:
-            for student in set().union(*sources.values()):
-                unsure.setdefault(student, set()).update(sources)
+    for sources, students in several.values():
+        for student in students:
+            unsure.setdefault(student, set()).update(sources)
     for one in notebooks:
         if one.student in unsure:
             sources = ", ".join(sorted(unsure[one.student]))
@@ -335,6 +338,15 @@ def _without_conflicts(notebooks, roster, refused):
                 )
             )
     return [one for one in notebooks if one.student not in unsure]
+
+
+def _identities(one, roster):
+    """Who a notebook claims to be of, unless the person who grades has said so."""
+    if one.matched == "as you said":
+        return ()
+    # A name that only looks the same, or that differs in capitals alone, claims the same. Those of a roster are told
+    # apart by it.
+    return looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)
 
 
 def _numbers(claim):
