@@ -2,6 +2,7 @@
 
 import io
 import shutil
+import sys
 import zipfile
 
 import nbformat
@@ -16,6 +17,8 @@ from coursework.grading.grade import grade
 from coursework.grading.identity import Roster
 from coursework.grading.marking import questions_of
 from coursework.grading.store import Store, file_name
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
 
 GOOD = nbformat.writes(handed_in()).encode()
 

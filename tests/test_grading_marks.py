@@ -9,6 +9,7 @@ import pytest
 import sympy as sm
 from grading_class import write_sources
 
+from coursework.authoring import author
 from coursework.authoring.course import find_course
 from coursework.authoring.release import read_source
 from coursework.authoring.source import cells_needed
@@ -166,8 +167,34 @@ def test_secret_calls_are_like_the_authors(questions):
         assert abs(sm.Matrix(secret._another(unit, dice)).norm() - 1) < 1e-9
         turned = sm.Matrix(secret._another(triad, dice))
         assert (turned * turned.T - sm.eye(3)).norm() < 1e-9 and abs(turned.det() - 1) < 1e-9
+        turns = secret._another([[], [[[0, 0, 2], 0.5]], [[[1, -2, 2], 2.5], [[-3, 0, 4], 1.5]]], dice)
+        assert 1 <= len(turns) <= 2 and all(len(axis) == 3 and 0.5 <= angle <= 2.5 for axis, angle in turns)
         times = secret._another([[0.0, 0.1, 0.3], [0.0, 0.5, 0.6]], dice)
         assert times == sorted(times) and times[0] == 0
+
+
+def of_words(sequence):
+    return len(sequence) + sequence.count("x")
+
+
+def of_pairs(pairs):
+    return sum(first * second for first, second in pairs)
+
+
+@pytest.mark.parametrize(
+    "function, calls, others",
+    [
+        (of_pairs, [[[]], [[[0.5, 1.0]]], [[[2.0, 3.0], [4.0, 0.5]]]], True),
+        (of_pairs, [[[[1, 2]]], [[[3, 5], [4, 7]]]], True),
+        (of_words, [["zxy"], ["xyzzy"]], False),  # nobody but the author knows another
+    ],
+)
+def test_secret_calls_are_others_than_those_of_the_check(function, calls, others):
+    """Where only words of the author's may be asked for, a table of them is all that a function can be."""
+    question = author.question("trial/one", "function", function, calls=calls, result="expression")
+    for number in range(10):
+        made = secret.secret_of(question, b"secret %d" % number)["calls"]
+        assert any(call not in calls for call in made) == others
 
 
 CELLS = (

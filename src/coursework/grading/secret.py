@@ -73,15 +73,18 @@ def secret_of(question, secret):
     is_function = public["kind"] == "function"
     if not is_function and (kinds()[public["kind"]].text or not public.get("symbols")):
         return None  # a word or a number is the same everywhere
+    known = None
     for attempt in range(ATTEMPTS):
         seed = hmac.digest(secret, f"{question.name} {attempt}".encode(), "sha256").hex()
         if is_function:
             found = _of_function(question, seed)
         else:
             found = _of_expression(question, seed)
+        if found is not None and is_function and all(call in public["calls"] for call in found["calls"]):
+            known, found = known or found, None  # rather calls that no check has made; of a few words there are none
         if found is not None:
             return found
-    return None
+    return known
 
 
 def _of_expression(question, seed):
@@ -156,12 +159,24 @@ def _another(values, dice):
     """A value that is to the question what the given ones are: of their kind, length and range."""
     if all(isinstance(value, list) for value in values) and len({len(value) for value in values}) == 1:
         return _another_list(values, dice)
+    if all(isinstance(value, list) for value in values) and any(values):
+        # Of several lengths: as long as one of them, and each part like those of its form in all of them.
+        parts = [part for value in values for part in value]
+        chosen = dice.choice([value for value in values if value])
+        return [_another([other for other in parts if _form(other) == _form(part)], dice) for part in chosen]
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
     if not numbers or min(values) == max(values):
         return copy.deepcopy(dice.choice(values))
     if all(isinstance(value, int) for value in values):
         return dice.randint(min(values), max(values))
     return dice.uniform(min(values), max(values))
+
+
+def _form(value):
+    """How a value is built: of lists, numbers and texts."""
+    if isinstance(value, list):
+        return [_form(part) for part in value]
+    return "number" if isinstance(value, (int, float)) and not isinstance(value, bool) else type(value).__name__
 
 
 def _another_list(values, dice):
