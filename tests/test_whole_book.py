@@ -1,6 +1,7 @@
 """The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk without a network."""
 
 import io
+import math
 import re
 import shutil
 import subprocess
@@ -288,6 +289,25 @@ def test_too_wide_a_line_stops_the_printing(browser):
     page.context.close()
 
 
+def test_a_still_tells_its_numbers():
+    """What stands beside a figure on the screen, for the figures whose numbers one would read off."""
+    third = math.pi / 3
+    assert pdf.as_drawn({"angles": [third, 0, -third / 2], "sequence": "zxy"}) == (
+        r"\psi = 60^\circ,\ \theta = 0^\circ,\ \varphi = -30^\circ"
+    )
+    assert pdf.as_drawn({"angle": 1, "axis": "z"}) == r"57.3^\circ\text{ about }z"
+    assert pdf.as_drawn({"angle": third, "axis": [0.6, -0.0, -0.8]}) == r"60^\circ\text{ about }(0.6,\ 0,\ -0.8)"
+    assert pdf.as_drawn({"turns": [["z", third], ["x", -third]]}) == (
+        r"60^\circ\text{ about }z\text{, then }-60^\circ\text{ about }x"
+    )
+    assert pdf.as_drawn({"matrix": [[1, 0], [0.5, -1]]}) == r"\begin{bmatrix}1 & 0\\0.5 & -1\end{bmatrix}"
+    # What a puzzle asks for is not given away, and a run has no number of its own.
+    assert pdf.as_drawn({"given": [["z", 1.0]], "turns": []}) == pdf.as_drawn({"time": 6.0}) == ""
+    figure = BeautifulSoup('<figure data-figure="simple" data-state=\'{"angle": 1, "axis": "z"}\'></figure>', "lxml")
+    pdf.tell_numbers(figure)
+    assert spoken(figure.select_one(".as-drawn math")) == "57.3 degrees about z"
+
+
 def test_without_a_browser_it_says_so(monkeypatch):
     monkeypatch.setattr(browser_module.shutil, "which", lambda name: None)
     with pytest.raises(SystemExit, match="Neither Chromium nor Chrome is on this machine"):
@@ -341,7 +361,7 @@ def test_epub_holds_every_formula_and_every_figure(chapters_of_epub):
         text = BeautifulSoup(chapters_of_epub[f"{page.replace('/', '-')}.xhtml"], "xml")
         for fold in site.select("details.hide, button, script, .whole-book, .sd-container-fluid"):
             fold.decompose()
-        assert len(text.find_all("math")) == len(site.select(".katex")), page
+        assert len(text.find_all("math")) - len(text.select("p.as-drawn math")) == len(site.select(".katex")), page
         assert all(math["alttext"] for math in text.find_all("math"))
         assert not text.select("script, button, input, .katex, details.hide")
         for drawing in text.select("figure > svg[role=img]"):

@@ -6,6 +6,8 @@ document, and print.css lays it out on paper.
 """
 
 import io
+import json
+import math
 import os
 import re
 from html import escape
@@ -17,6 +19,7 @@ from bs4 import BeautifulSoup, Comment
 
 from . import fonts, tagged
 from .browser import open_browser
+from .mathematics import to_html
 from .offline import LICENCES
 from .paths import NODE_MODULES, WEBSITE, edition, moment_of_sources, parts
 from .spoken import spoken
@@ -119,6 +122,40 @@ def as_picture(formula):
         blank.string = "\u00a0"  # KaTeX's own typeface lacks the blank without width that stands here
 
 
+def as_drawn(state):
+    """What a figure that stands still shows in numbers, in TeX; empty where it shows none that one would read off."""
+
+    def degrees(angle):
+        return rf"{round(math.degrees(angle), 1) + 0:g}^\circ"
+
+    def vector(numbers):
+        return "(" + r",\ ".join(f"{round(number, 3) + 0:g}" for number in numbers) + ")"
+
+    axis, turns = state.get("axis"), state.get("turns")
+    if "angles" in state and "sequence" in state:
+        names = (r"\psi", r"\theta", r"\varphi")
+        return r",\ ".join(f"{name} = {degrees(angle)}" for name, angle in zip(names, state["angles"], strict=True))
+    if "angle" in state and axis:
+        return rf"{degrees(state['angle'])}\text{{ about }}{axis if isinstance(axis, str) else vector(axis)}"
+    if turns:
+        return r"\text{, then }".join(rf"{degrees(angle)}\text{{ about }}{name}" for name, angle in turns)
+    if "matrix" in state:
+        return (
+            r"\begin{bmatrix}"
+            + r"\\".join(" & ".join(f"{n:g}" for n in row) for row in state["matrix"])
+            + r"\end{bmatrix}"
+        )
+    return ""
+
+
+def tell_numbers(text):
+    """Say below each figure that moves on a screen what its still shows."""
+    for figure in text.select("figure[data-figure]"):
+        if tex := as_drawn(json.loads(figure.get("data-state", "{}"))):
+            words = f'<p class="as-drawn">As drawn: <span class="math">{to_html(tex, False)}</span></p>'
+            figure.insert_after(BeautifulSoup(words, "html.parser"))  # within it, brackets would be drawings of it
+
+
 def article(site, page, set_formula=as_picture):
     """The text of a page, ready to stand in one document with the others."""
     soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
@@ -128,6 +165,7 @@ def article(site, page, set_formula=as_picture):
     for heading in text.select("section > :is(h2, h3):only-child"):
         heading.parent.decompose()  # all that stood under it was for the screen
     move_answers(text)
+    tell_numbers(text)
     for formula in text.select(".katex"):
         set_formula(formula)
     for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
