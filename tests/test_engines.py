@@ -5,7 +5,7 @@ import random
 import pytest
 from conftest import SEED
 from engines import ENGINES
-from test_live import PAGES, QUIET, RESULTS, kinds
+from test_live import PAGES, PLAYABLE, QUIET, RESULTS, kinds
 from test_servers import SIZE
 
 from website.execution import STORED
@@ -33,6 +33,7 @@ def compare(engine, site, name):
     engine.run(RUN_ALL)
     words = engine.wait(IS_DONE)
     assert "ran." in words or "there already" in words, words
+    engine.wait(PLAYABLE)
     after = engine.run(RESULTS)
     compared = 0
     for number, kind in enumerate(kinds(name), start=1):

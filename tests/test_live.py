@@ -41,12 +41,16 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   copy.querySelectorAll('use').forEach((use) => use.setAttribute('href',
     document.getElementById(use.getAttribute('href').slice(1))?.getAttribute('d') ?? 'none'));
   copy.querySelectorAll('svg defs, figure style').forEach((shared) => shared.remove());
+  // A script stands in the built page, and comes as a file with what Python gives.
+  copy.querySelectorAll('script').forEach((script) => script.remove());
   copy.querySelectorAll('*').forEach((box) => 
     ['tabindex', 'role', 'aria-label', 'data-name'].forEach((n) => box.removeAttribute(n)));
   copy.querySelectorAll('pre > span:empty, button.copybtn').forEach((extra) => extra.remove());
   copy.querySelectorAll('pre').forEach((pre) => pre.removeAttribute('id'));
   return copy.innerHTML.replace(/\s+/g, ' ').replace(/> </g, '><').replace(/ <\/pre>/g, '</pre>').trim();
 })"""
+# Drawings that are played have their controls.
+PLAYABLE = "() => !document.querySelector('figure[data-moving]:not([data-ready])')"
 RAN = (
     "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null && "
     "document.querySelector('#live-words')?.textContent !== ''"
@@ -185,6 +189,7 @@ def test_results_equal_the_stored_ones(context, site, name):
         assert not [url for url in page.asked if url.endswith(".wasm")]
         return
     page.run()
+    page.page.wait_for_function(PLAYABLE)
     after = page.page.evaluate(RESULTS)
     for number, kind in enumerate(kinds(name), start=1):
         note = page.cell(number).locator(".live-note, .live-error")
