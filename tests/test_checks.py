@@ -267,6 +267,27 @@ def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
             )
 
 
+@pytest.mark.parametrize(
+    ("change", "digits", "note"),
+    [
+        (lambda right: right, 3, "not orthogonal"),
+        (lambda right: right.T, 15, "transposed"),
+        (lambda right: right.subs(theta, -theta).T, 15, "transposed, and sign of one turn"),
+        (lambda right: simple_dcm("y", sm.pi / 3) * right, 15, ""),
+        (lambda right: simple_dcm("y", sm.pi / 3) * right, 4, "not orthogonal"),
+    ],
+)
+def test_decimals_cost_no_more_than_two_slow_hashes(change, digits, note, monkeypatch):
+    turns = [("x", sm.pi / 4), ("z", theta)]
+    right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
+    one = make("trial/decimals", answer=right, frames=("B", "N"), symbols="theta", turns=turns)
+    hidden, hashed = sealed(one), []
+    monkeypatch.setattr(sealing, "slow_key", lambda *known, slow=sealing.slow_key: hashed.append(known) or slow(*known))
+    reply = questions.judge(one.name, hidden, one.to_plain(change(right).evalf(digits)))[0]
+    assert reply.note == note and ("decimal fractions" in repr(reply) or digits == 15)
+    assert len(hashed) <= 2
+
+
 def test_what_cannot_be_decided_is_said_to_be_undecided():
     reply = reply_to(KINDS["an expression"], sm.gamma(theta) * alpha)
     assert reply.outcome == "undecided"

@@ -6,6 +6,7 @@ import nbformat
 import pytest
 import sympy as sm
 from conftest import SEED
+from sympy.physics import units
 from test_release import made_in, write_source
 
 from coursework.authoring import author
@@ -93,6 +94,11 @@ MOMENT = {"kind": "measurement", "answer": (sm.Rational(25, 2), "kN m"), "tolera
         ((12.5, "kN"), ("wrong", "")),
         ((12.5, "kN/m"), ("wrong", "the unit of a load")),
         ((12.5, "kNm"), ("invalid", "unknown unit")),
+        (12.5 * units.kilo * units.newton * units.meter, ("correct", "")),
+        ((12500, units.newton * units.meter), ("correct", "")),
+        (12 * units.kilo * units.joule + 500 * units.newton * units.meter, ("correct", "")),
+        (12.5 * units.newton * units.meter, ("wrong", "power of ten")),
+        (12.5 * units.kilo * units.newton, ("wrong", "")),
         (12.5, ("invalid", "shape")),
         ("12.5 kN m", ("invalid", "shape")),
         (..., ("not attempted", "")),
@@ -117,6 +123,33 @@ def test_a_number_with_its_unit_is_tried_as_others_are():
     assert easy.way.startswith("one small formula, in usual units") and easy.tries < 5000
     hard = make("measurement", (sm.Rational(3517, 83), "N m"), tolerance=1e-6)
     assert not attack(hard, "", 2000).way
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"),
+    [
+        (12.5 * units.newton + units.meter, "different units"),
+        (12.5 * units.bit, "`bit` is made of no units"),
+        (sm.sqrt(units.meter), "no product of whole powers"),
+    ],
+)
+def test_a_unit_that_makes_no_sense_is_named(answer, says):
+    with pytest.raises(NotPlain, match=says):
+        to_plain(answer)
+
+
+def test_a_symbol_of_the_name_of_a_unit_is_a_symbol():
+    m = sm.Symbol("m", positive=True)
+    question = make("measurement", (3 * m, "N"), symbols={"m": (1, 2)})
+    assert outcome(question, 3 * m * units.newton) == ("correct", "")
+    assert outcome(question, 0.003 * m * units.kilo * units.newton) == ("correct", "")
+    assert outcome(question, 3 * units.meter * units.newton)[0] == "wrong"
+
+
+def test_a_number_alone_has_no_unit():
+    question = make("expression", sm.Rational(25, 2))
+    reply = question.reply_to(question.to_plain(12.5 * units.newton))
+    assert reply.note == "shape" and "this is a number with a unit" in repr(reply)
 
 
 def test_the_unit_of_an_exam_is_not_told():

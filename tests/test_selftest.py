@@ -1,11 +1,14 @@
 """Every question of the book, tried as students will try it."""
 
+import re
+
 import pytest
 from test_release import CELLS, COURSE, made_in, needs_solutions, write_source
 
 from coursework.__main__ import main
 from coursework.authoring import release
 from coursework.authoring.attack import BUDGET
+from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive as pack
 from coursework.authoring.selftest import _try_notebook, leaks, released_texts, selftest, try_question, write_page
 
@@ -87,3 +90,17 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
     assert len(faults) == 1 and "levers/arm: One of its variants can be guessed: found after" in faults[0]
     (made.sources / "guessable.json").write_text('{"levers/arm": 1}')
     assert selftest(made, None, budget=100) == []
+
+
+def test_what_can_be_guessed_carries_one_point_at_most(tmp_path):
+    made = made_in(tmp_path)
+    write_source(made.sources, *CELLS)
+    release.release(made, run=False)
+    (made.sources / "guessable.json").write_text('{"trial/about-x": 20}')
+    heavy = "trial/about-x.*guessable.json says that it can be guessed, after 20 tries, and it is worth 2 points; 1 is"
+    with pytest.raises(AuthorError, match=heavy.replace(".*", ", in trial.ipynb: ")):
+        release.release(made, run=False)
+    assert [fault for fault in selftest(made, None, budget=10) if re.search(heavy, fault)]
+    write_source(made.sources, *((kind, text.replace("worth=2", "worth=1"), *tags) for kind, text, *tags in CELLS))
+    release.release(made, run=False)
+    assert not any("points" in fault for fault in selftest(made, None, budget=10))

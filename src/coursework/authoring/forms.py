@@ -76,6 +76,13 @@ def equivalent_forms(public, answer):
     return [*found, *more(public, answer)] if more else found
 
 
+def _quantity(exponents):
+    from sympy.physics import units
+
+    base = (units.m, units.kg, units.s, units.A, units.K, units.mol, units.cd)
+    return sympy.Mul(*(one**power for one, power in zip(base, exponents)))
+
+
 def _common_forms(public, kind, answer):
     if kind == "truth values":
         answer = list(answer)
@@ -95,6 +102,7 @@ def _common_forms(public, kind, answer):
             *forms,
             ("a list", [number, f" {text} "]),
             ("in base units", (sympy.sympify(number) * found.size, base)),
+            ("SymPy's quantities", sympy.sympify(number) * found.size * _quantity(found.exponents)),
         ]
     if kind in ("words", "order"):
         return [

@@ -16,7 +16,7 @@ CELLS = [
     "### BEGIN SOLUTION\narea = b * h / 2\n### END SOLUTION",
     """check('first-steps/area', area)
 ### BEGIN HIDDEN TESTS
-question('first-steps/area', kind='expression', symbols={'b': (0.5, 3), 'h': (0.5, 3)}, worth=2,
+question('first-steps/area', kind='expression', symbols={'b': (0.5, 3), 'h': (0.5, 3)}, worth=1,
          mistakes={'This is the area of the rectangle: the triangle is half of it.': b * h},
          hints={'authored': ['Draw the rectangle with the sides $b$ and $h$ around the triangle.']},
          solution='Two such triangles make a rectangle with the sides $b$ and $h$, so one of them has the area $bh/2$.')

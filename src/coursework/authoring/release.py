@@ -19,7 +19,17 @@ from ..checking.questions import FORMAT, beside
 from ..checking.variants import image
 from .author import AuthorError, solution_code
 from .selftest import try_question
-from .source import CHAPTERS, answered_in, checked_names, digest_of_code, notebooks_in, posed, read_source
+from .source import (
+    CHAPTERS,
+    answered_in,
+    checked_names,
+    declared_strengths,
+    digest_of_code,
+    notebooks_in,
+    posed,
+    read_source,
+    too_heavy,
+)
 from .variation import drawn_in
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
@@ -141,7 +151,11 @@ def _release_one(path, course):
     """Make a notebook and its sealed questions: its name, how many variants there are, the pages that these share."""
     import nbformat
 
-    source = read_source(path, edition=course.edition)
+    source, declared = read_source(path, edition=course.edition), declared_strengths(course.sources)
+    for name, question in source.questions.items():
+        fault = too_heavy(question, declared)
+        if fault:
+            raise AuthorError(f"{name}, in {path.name}: {fault}")
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
         nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")

@@ -31,12 +31,14 @@ from .source import (
     CHAPTERS,
     DECLARED,
     HIDDEN,
+    LIGHT,
     SOLUTION,
     blank,
     declared_strengths,
     digest_of_code,
     notebooks_in,
     read_source,
+    too_heavy,
 )
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
@@ -114,8 +116,8 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
         found = attack_kept(question, text, budget, kept) if kept else attack(question, text, budget)
     if found.way and found.tries < min(declared or BUDGET, budget):
         faults.append(
-            f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED} and give it little "
-            "weight."
+            f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}, with "
+            f"{LIGHT} point at most."
         )
     return Finding(
         question.name,
@@ -350,7 +352,12 @@ def _try_notebook(path, course, budget):
                 weakest[name] = found
     findings = [
         finding._replace(
-            attack=weakest[finding.name], faults=[*finding.faults, *_too_weak(finding, weakest, declared, budget)]
+            attack=weakest[finding.name],
+            faults=[
+                *finding.faults,
+                *_too_weak(finding, weakest, declared, budget),
+                *filter(None, [too_heavy(source.questions[finding.name], declared)]),
+            ],
         )
         for finding in findings
     ]

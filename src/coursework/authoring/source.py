@@ -30,6 +30,8 @@ ROOMS = ("authoring", "checking")
 LONGEST_WORD = 40
 #: The file beside the sources in which an author declares what may be guessed.
 DECLARED = "guessable.json"
+#: The most points that a question carries which can be guessed.
+LIGHT = 1
 
 SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
 HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
@@ -102,6 +104,17 @@ def declared_strengths(sources):
     """
     file = Path(sources, DECLARED)
     return json.loads(file.read_text("utf8")) if file.is_file() else {}
+
+
+def too_heavy(question, declared):
+    """The fault of a question that can be guessed and counts much all the same; or ``None``."""
+    if question.name not in declared or question.worth <= LIGHT:
+        return None
+    return (
+        f"{DECLARED} says that it can be guessed, after {declared[question.name]} tries, and it is worth "
+        f"{question.worth} points; {LIGHT} is the most for such a question. Make its answer richer, "
+        f"or say worth={LIGHT}."
+    )
 
 
 def read_source(path, variant=0, edition="", only=None):

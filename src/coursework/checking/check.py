@@ -64,7 +64,7 @@ def check(name: str, answer: object) -> Reply:
         _show_next_hint(question, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
-        reply.messages += _of_siblings(name, question, reply.help)
+        _offer_sibling(reply, question, reply.help)
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
     if isinstance(entry.get("answers"), list):
         reply.tried = [str(answer)[:DIGITS] for answer in entry["answers"][-MOST_TOLD:]]
@@ -105,8 +105,10 @@ def worked_solution(name: str, code: str) -> Reply:
         return Reply(name, "hints", "", ["This code opens no solution. Your instructor gives it out on a date."])
     _note_help(name, "solution")
     entry = _read_progress().get(name, {})
-    said = ["Read it, close it, and write it down by yourself.", *_of_siblings(name, question, entry.get("help", ""))]
-    return Reply(name, "hints", "", said, solution_on(question, content))
+    said = ["Read it, close it, and write it down by yourself."]
+    reply = Reply(name, "hints", "", said, solution_on(question, content))
+    _offer_sibling(reply, question, entry.get("help", ""))
+    return reply
 
 
 def _note_help(name, kind):
@@ -119,22 +121,22 @@ def _note_help(name, kind):
         _write_progress(record)
 
 
-def _of_siblings(name, question, help_had):
-    """What is said of the siblings of a question to one who had help, or who has solved one without."""
-    asked, order = without_sibling(name)
+def _offer_sibling(reply, question, help_had):
+    """Say of the siblings of a question what concerns one who had help, or who has solved one without."""
+    asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.get("variants", 1))
     if not help_had:
-        return [f"Solved without help, so it counts for `{asked}` in full."] if order else []
-    if not siblings:
-        return []
-    said = f"You had help: {HELP.get(help_had, 'it was shown')}."
-    if order == len(siblings):
-        return [f"{said} There is no further sibling."]
-    following = siblings[order]
-    return [
-        f"{said} For the rest of the points of `{asked}`, solve it with other numbers and without help: "
-        f"`variant('{following}')` shows them, and `check('{following}', ...)` checks your answer."
-    ]
+        reply.messages += [f"Solved without help, so it counts for `{asked}` in full."] if order else []
+    elif siblings:
+        said = f"You had help: {HELP.get(help_had, 'it was shown')}."
+        if order == len(siblings):
+            reply.messages.append(f"{said} There is no further sibling.")
+            return
+        reply.sibling = siblings[order]
+        reply.messages.append(
+            f"{said} For the rest of the points of `{asked}`, solve it with other numbers and without help: "
+            f"`variant('{reply.sibling}')` shows them, and `check('{reply.sibling}', ...)` checks your answer."
+        )
 
 
 def _steps(question, entry):

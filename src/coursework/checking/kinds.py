@@ -269,6 +269,8 @@ def _describe(value):
         rows = [part for part in value[1] if part[0] == "list"]
         if rows and len(rows) == len(value[1]) and len({len(row[1]) for row in rows}) == 1:
             return f"a list of {len(rows)} rows with {len(rows[0][1])} entries each"
+        if [part[0] for part in value[1]] == ["expression", "text"]:
+            return "a number with a unit, or with a text"
         return f"a list with {len(value[1])} entr{'y' if len(value[1]) == 1 else 'ies'}"
     return {
         "text": "a text",

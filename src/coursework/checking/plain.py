@@ -180,6 +180,8 @@ class _Writer:
         return self.sympy(answer, depth)
 
     def parts(self, answer, depth):
+        if len(answer) == 2 and _has_unit(answer[1]) and not _has_unit(answer[0]):
+            return self.value(sympy.sympify(answer[0]) * answer[1], depth)  # (3.2, newton * meter)
         if len(answer) > MOST_PARTS:
             raise NotPlain(f"The answer has {len(answer)} parts; no question asks for that many.")
         return ["list", [self.value(part, depth + 1) for part in answer]]
@@ -269,6 +271,9 @@ class _Writer:
             raise NotPlain("An equation is no value: give the side of it that is asked for.")
         if answer in (sympy.true, sympy.false):
             return ["truth", bool(answer)]
+        if _has_unit(answer):
+            number, unit = _number_and_unit(answer, sys.modules["sympy.physics.units"])
+            return ["list", [["expression", self.expression(number)], ["text", unit]]]
         if isinstance(answer, sympy.Expr):
             return ["expression", self.expression(answer)]
         raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
@@ -506,6 +511,50 @@ def _text(text):
 def _module(kind):
     # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no module.
     return kind.__module__ or ""
+
+
+def _has_unit(part):
+    units = sys.modules.get("sympy.physics.units")  # slow to import; whoever has a quantity has imported it
+    return bool(units) and isinstance(part, sympy.Expr) and part.has(units.Quantity)
+
+
+def _number_and_unit(answer, units):
+    """Write an expression with quantities of :mod:`sympy.physics.units` as a number and a text in base units."""
+    names = {
+        "meter": "m",
+        "kilogram": "kg",
+        "second": "s",
+        "ampere": "A",
+        "kelvin": "K",
+        "mole": "mol",
+        "candela": "cd",
+    }
+    base = {getattr(units, name): sympy.Dummy(text, positive=True) for name, text in names.items()}
+    pure = {units.radian: sympy.S.One, units.degree: sympy.pi / 180, units.percent: sympy.Rational(1, 100)}
+    try:
+        with limited_work():
+            plain = answer.xreplace({prefix: prefix.scale_factor for prefix in answer.atoms(units.prefixes.Prefix)})
+            for quantity in sorted(answer.atoms(units.Quantity), key=str):
+                size = pure.get(quantity)
+                if size is None:
+                    size = units.convert_to(quantity, list(base)).xreplace(base)
+                if size.has(units.Quantity):
+                    raise NotPlain(f"`{quantity}` is made of no units of the International System.")
+                plain = plain.xreplace({quantity: size})
+            found = {}
+            for term in sympy.Add.make_args(sympy.expand_mul(plain)):
+                number, rest = term.as_independent(*base.values(), as_Add=False)
+                found.setdefault(rest, []).append(number)
+    except TooMuchWork:
+        raise NotPlain("The unit takes too long to be worked out. Give a pair: `(number, 'N m')`.") from None
+    if len(found) > 1:
+        raise NotPlain("The terms of this sum have different units.")
+    [(rest, terms)] = found.items()
+    powers = rest.as_powers_dict() if rest != 1 else {}
+    if not all(part in base.values() and power.is_Integer for part, power in powers.items()):
+        raise NotPlain("The unit of this answer is no product of whole powers of base units.")
+    unit = " ".join(f"{symbol.name}^{powers[symbol]}" for symbol in base.values() if symbol in powers)
+    return sympy.Add(*terms), unit or "1"
 
 
 def _in_order(parts):

@@ -9,6 +9,7 @@ import functools
 import hashlib
 import json
 import re
+from fractions import Fraction
 from pathlib import Path
 
 from . import sealing
@@ -31,6 +32,8 @@ OUTCOMES = ("correct", "mistake")
 ALWAYS_WRONG = ("not unit length",)
 #: Up to so many tolerances from the right answer, one is told that it is close.
 NEARLY = 3
+#: Denominators up to which a decimal fraction is plainly that fraction: one with few digits, and one with all of them.
+SMALL, LARGE = 64, 1000
 
 
 class NoSuchQuestion(KeyError):
@@ -297,14 +300,16 @@ def _not_known(name, question, plain, reading, find, content):
             ],
         )
     decimals = _decimals(question, plain, reading)
-    if decimals and find(fingerprint(question, reading, near=True)) is not None:
+    # Each look costs a slow hash: what is exact was not rounded, and what was rounded is no known mistake to the digit.
+    precise, rounded = _precision(plain) if decimals else (True, False)
+    if decimals and not precise and find(fingerprint(question, reading, near=True)) is not None:
         return Reply(
             name,
             "wrong",
             "rounded too far",
             ["This agrees with the exact answer to about three digits, and an exact answer is asked for.", decimals],
         )
-    for slip, why, turned in other_readings(question, reading):
+    for slip, why, turned in () if rounded else other_readings(question, reading):
         case = _case_of(question, turned, find(fingerprint(question, turned)))
         if case and case["outcome"] != "correct":
             said = _messages(question, case)[0]
@@ -329,6 +334,25 @@ def _decimals(question, plain, reading):
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
     return "It holds decimal fractions; an exact answer is asked for: write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+
+
+def _precision(plain):
+    """Of the decimal fractions of an answer: whether each is plainly exact, and whether one of them is plainly rounded.
+
+    >>> numbers = lambda *texts: {"nodes": [["float", text] for text in texts]}
+    >>> _precision(numbers("0.5", "0.8660254037844386")), _precision(numbers("0.5", "0.866"))
+    ((True, False), (False, True))
+    """
+    precise, rounded = True, False
+    for node in plain["nodes"]:
+        if node[0] == "float":
+            size = abs(float(node[1]))
+            short = float(f"{size:.8g}") == size
+            most = SMALL if short else LARGE
+            numbers = [size] if short else [size, size * size]  # a root of a fraction has all of its digits
+            if not any(abs(one - Fraction(one).limit_denominator(most)) <= 1e-13 * max(1, one) for one in numbers):
+                precise, rounded = False, rounded or short
+    return precise, rounded
 
 
 def what_can_be_said(question, plain):

@@ -50,6 +50,8 @@ class Reply:
         The help that was had before the answer was right, a key of :data:`HELP`; empty without any.
     details : dict
         What the message of the mistake needed to know.
+    sibling : str
+        The sibling of the question that earns the rest of its points; empty where there is none.
     opened : dict
         What else the answer opened: hints, the place of the worked solution.
     """
@@ -72,6 +74,7 @@ class Reply:
         self.tries = 0
         self.tried: list[str] = []
         self.help = ""
+        self.sibling = ""
         self.details: dict = {}
         self.opened = opened or {}
 
@@ -90,6 +93,9 @@ class Reply:
         known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
         known += f' data-tried="{html.escape(" ".join(self.tried))}"' if self.tried else ""
         known += f' data-help="{self.help}"' if self.help else ""
+        known += (
+            f' data-sibling="{html.escape(self.sibling)}"' if self.sibling else ""
+        )  # the book's pages make it a button
         formula = {} if tex_is_typeset() else {"formula": mathml}
         paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)
         solution = (

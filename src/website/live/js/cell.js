@@ -16,6 +16,7 @@ export class Cell {
     this.original = this.input.querySelector("pre").textContent.trimEnd();
     this.button = this.input.querySelector("button.run-cell");
     this.findOutput();
+    this.box.addEventListener("sibling", ({ detail }) => this.takeSibling(detail));
   }
 
   // A figure keeps its caption: only what stands before it is a result.
@@ -87,6 +88,18 @@ export class Cell {
     this.edit();
     this.editor.dispatch({ changes: { from: 0, to: this.editor.state.doc.length, insert: code } });
     this.showEarlier();
+  }
+
+  // A reply offers the same question with other numbers: what shows and checks them is written below the check, so that
+  // the cell does all of it, here and in the notebook. The answer before it stays.
+  takeSibling(name) {
+    const answer = `other_${name.split("/")[1].replace(/\W/g, "_")}${name.match(/\d*$/)[0]}`;
+    if (!this.code.includes(`check('${name}'`)) {
+      const above = this.code.trimEnd().replace(/^((?:check|worked_solution)\(.*\))$(?![\s\S])/m, "display($1)");
+      this.write(`${above}\n\n# The same with other numbers: your answer goes in place of the dots.\nfrom coursework import check, variant\n\nsibling = variant('${name}')\ndisplay(sibling)\n${answer} = ...\ncheck('${name}', ${answer})`);
+    }
+    this.editor.focus();
+    this.page.run(this);
   }
 
   // Another tab, or the notebook, holds this text now.

@@ -2,7 +2,7 @@
 import { Cell } from "./cell.js";
 import { Answers, coursework, fingerprint, nameCells, PREFIX, unkept } from "./answers.js";
 import { named } from "./names.js";
-import { agreeOnIdentity, bringTogether, readCopy } from "./notebooks.js";
+import { agreeOnRecords, bringTogether, readCopy } from "./notebooks.js";
 import { Figures } from "./figures.js";
 import { element, preformatted } from "./output.js";
 import { Python } from "./python.js";
@@ -101,7 +101,7 @@ class Page {
   async lookAtNotebook() {
     if (!localStorage.getItem(this.answers.agreed)) return;
     try {
-      await agreeOnIdentity(this.answers.page);
+      await agreeOnRecords(this.answers.page);
       const copy = await readCopy(`${this.answers.page}.ipynb`);
       if (copy) bringTogether(this.answers.page, copy);
     } catch (error) {

@@ -1,6 +1,6 @@
 // Runs before JupyterLite opens a notebook: brings the answers of its page into it, and asks where the book has changed.
 import { Answers, SITE } from "./answers.js";
-import { agreeOnIdentity, bookCells, bringTogether, edition, newFile, readCopy, writeCopy } from "./notebooks.js";
+import { agreeOnRecords, bookCells, bringTogether, edition, newFile, readCopy, writeCopy } from "./notebooks.js";
 
 const plain = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
 const element = (tag, properties, ...children) => {
@@ -47,7 +47,7 @@ async function open(path) {
   const book = await answer.json();
   const originals = Object.fromEntries(bookCells(book).map(({ name, text }) => [name, text]));
   const page = path.replace(/\.ipynb$/, "");
-  await agreeOnIdentity(page, true);
+  await agreeOnRecords(page, true);
   const copy = await readCopy(path);
   let used = copy, changed = false;
   if (copy) {

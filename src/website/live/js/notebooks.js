@@ -43,17 +43,54 @@ export function newFile(path, content) {
   };
 }
 
-// Who works here is said once, on a page or in a notebook: the newer of the two counts for both.
-export async function agreeOnIdentity(page, mayWrite = false) {
-  const folder = `${page.split("/").slice(0, -1).join("/")}/.coursework`, path = `${folder}/me.txt`;
-  const here = coursework.read("me.txt"), there = await readCopy(path);
-  if (there && there.content !== here?.text && Date.parse(there.last_modified) > (here?.at ?? 0)) {
-    coursework.write("me.txt", there.content, Date.parse(there.last_modified));
-  } else if (mayWrite && here && here.text !== there?.content) {
-    const about = { ...newFile(path, here.text), format: "text", mimetype: "text/plain", type: "file", size: here.text.length };
-    await writeCopy(folder, { ...newFile(folder, null), format: "json", mimetype: "", type: "directory", size: 0 });
-    await writeCopy(path, about);
+// What coursework keeps beside the notebooks of a folder belongs to all pages and all notebooks: who works here, where the
+// newer of the two counts, and how far they are, question by question.
+export async function agreeOnRecords(page, mayWrite = false) {
+  const folder = `${page.split("/").slice(0, -1).join("/")}/.coursework`;
+  for (const [name, join] of [["me.txt", (older, newer) => newer], ["progress.json", joinProgress]]) {
+    const path = `${folder}/${name}`, here = coursework.read(name), copy = await readCopy(path);
+    const there = copy && { text: typeof copy.content === "string" ? copy.content : JSON.stringify(copy.content), at: Date.parse(copy.last_modified) };
+    if (!here && !there) continue;
+    const [older, newer] = (there?.at ?? 0) > (here?.at ?? 0) ? [here, there] : [there, here];
+    const both = older ? join(older.text, newer.text) : newer.text;
+    if (both !== here?.text) coursework.write(name, both, newer.at);
+    if (mayWrite && both !== there?.text) {
+      const about = { ...newFile(path, both), format: "text", mimetype: "text/plain", type: "file", size: both.length };
+      await writeCopy(folder, { ...newFile(folder, null), format: "json", mimetype: "", type: "directory", size: 0 });
+      await writeCopy(path, about);
+    }
   }
+}
+
+const HELP = ["mistake", "hint", "solution"]; // from little to much, as in coursework.checking.reply
+
+// Two records of progress made one: what was right stays right, and no answer, hint or help is forgotten.
+export function joinProgress(older, newer) {
+  const [a, b] = [older, newer].map((record) => {
+    try {
+      const found = JSON.parse(record);
+      return found && typeof found === "object" && !Array.isArray(found) ? found : {};
+    } catch {
+      return {}; // damaged; coursework reads it as none, too
+    }
+  });
+  const both = { ...a, ...b };
+  for (const name of Object.keys(a)) {
+    if (!(name in b) || [a[name], b[name]].some((entry) => !entry || typeof entry !== "object")) continue;
+    const joined = { ...a[name], ...b[name] };
+    const right = [a[name], b[name]].find(({ outcome }) => outcome === "correct");
+    const help = right ? right.help : HELP.findLast((kind) => [a[name].help, b[name].help].includes(kind));
+    if (right) joined.outcome = "correct";
+    if (help) joined.help = help;
+    else delete joined.help;
+    for (const list of ["answers", "after"]) {
+      if (!joined[list]) continue;
+      const known = [...(a[name][list] ?? []), ...(b[name][list] ?? [])].map((one) => JSON.stringify(one));
+      joined[list] = [...new Set(known)].map((one) => JSON.parse(one));
+    }
+    both[name] = joined;
+  }
+  return JSON.stringify(both, null, 1);
 }
 
 // The code cells of a notebook that are the book's: their names, texts, and the code that the book had there.

@@ -90,6 +90,13 @@ function html(text) {
     script.replaceWith(copy);
   }
   box.querySelectorAll("figure.orientation-figure").forEach((figure) => window.watchWidth?.(figure));
+  for (const reply of box.querySelectorAll(".coursework-reply[data-sibling]")) {
+    const button = element("button", "sibling", "A sibling question");
+    button.type = "button";
+    button.addEventListener("click", () =>
+      button.dispatchEvent(new CustomEvent("sibling", { bubbles: true, detail: reply.dataset.sibling })));
+    reply.after(button);
+  }
   return box;
 }
 
