@@ -316,6 +316,15 @@ WRITE_COPY = """async ([path, content]) => {
 }"""
 
 
+READ_COPY = """async (path) => {
+  const settled = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
+  const database = await settled(indexedDB.open('JupyterLite Storage - /lite/'));
+  const copy = await settled(database.transaction('files').objectStore('files').get(path));
+  database.close();
+  return copy.content;
+}"""
+
+
 def visit_notebook(page, site, name, changes=None, choose="Open the new version"):
     """What opening the notebook in JupyterLite does with its copy, and saving it with ``changes`` by grade_id.
 
@@ -384,6 +393,41 @@ def test_answers_go_to_the_notebook_and_come_back(context, site):
     cells = visit_notebook(tab.page, site, EXERCISE)
     assert cells[CRANK] == BLANK
     assert "page = 3" in tab.shown()
+
+
+def test_progress_is_one_for_pages_and_notebooks(context, site):
+    """What was right on either side stays right on both, and no wrong answer and no help is forgotten."""
+    tab = Tab(context, site)
+    key, path = "book / coursework progress.json", "exercises/.coursework/progress.json"
+    here = {
+        "a/page": {"outcome": "correct", "answers": ["1"]},
+        "a/both": {"outcome": "correct", "answers": ["2"], "help": "hint"},
+        "a/tried": {"outcome": "wrong", "answers": ["3", "4"], "help": "solution"},
+    }
+    there = {
+        "a/notebook": {"outcome": "correct"},
+        "a/both": {"outcome": "wrong", "answers": ["5"], "help": "mistake"},
+        "a/tried": {"outcome": "wrong", "answers": ["4", "6"], "help": "hint"},
+    }
+    tab.page.evaluate(
+        "([key, text]) => localStorage.setItem(key, JSON.stringify({ text, at: 1 }))", [key, json.dumps(here)]
+    )
+    tab.page.evaluate(WRITE_COPY, [path, there])
+    notebook = tab.page.context.new_page()
+    notebook.goto(f"{site}search.html?path={EXERCISE}.ipynb")
+    start(notebook, "")
+    kept = json.loads(json.loads(notebook.evaluate("(key) => localStorage.getItem(key)", key))["text"])
+    copy = json.loads(notebook.evaluate(READ_COPY, path))
+    assert kept == copy
+    assert {name: entry["outcome"] for name, entry in kept.items()} == {
+        "a/page": "correct", "a/notebook": "correct", "a/both": "correct", "a/tried": "wrong",
+    }  # fmt: skip
+    assert (sorted(kept["a/both"]["answers"]), kept["a/both"]["help"]) == (["2", "5"], "hint")
+    assert (sorted(kept["a/tried"]["answers"]), kept["a/tried"]["help"]) == (["3", "4", "6"], "solution")
+    # The page looks at the notebook's record whenever it is opened.
+    notebook.evaluate(WRITE_COPY, [path, {**kept, "a/later": {"outcome": "correct"}}])
+    tab.reload()
+    tab.page.wait_for_function("(key) => localStorage.getItem(key).includes('a/later')", arg=key)
 
 
 def test_both_changed_the_newer_text_stands(context, site):

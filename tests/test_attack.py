@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import sympy as sm
 from conftest import SEED
+from sympy.core.function import AppliedUndef
+from sympy.physics.mechanics import dynamicsymbols
 from test_release import COURSE
 
 from coursework.authoring import source as sources
@@ -110,7 +112,7 @@ def with_formulas(names):
 
 def differs(one, answer):
     """Whether an answer is another one somewhere in its domain: by SymPy's numbers, at points of its own."""
-    first, second = (flat(form)[0] for form in (one.answer, answer))
+    first, second = ([in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer))
     chance = random.Random(one.name)
     limits = one.public["symbols"]
     for _ in range(25):
@@ -119,15 +121,22 @@ def differs(one, answer):
         for group in one.public.get("unit", ()):
             length = sm.sqrt(sum(point[sm.Symbol(name)] ** 2 for name in group))
             point |= {sm.Symbol(name): point[sm.Symbol(name)] / length for name in group}
-        values = [[sm.N(sm.sympify(entry).xreplace(point), 25) for entry in entries] for entries in (first, second)]
+        values = [[sm.N(entry.xreplace(point), 25) for entry in entries] for entries in (first, second)]
         signs = (1, -1) if one.public.get("either sign") else (1,)
         if not any(all(abs(a - s * b) < 1e-8 for a, b in zip(*values, strict=True)) for s in signs):
             return True
     return False
 
 
+def in_symbols(entry):
+    """An expression with its functions of time, and their derivatives, as the symbols that stand for them."""
+    rates = {rate: sm.Symbol(f"{rate.expr.func.__name__}'") for rate in entry.atoms(sm.Derivative)}
+    entry = entry.xreplace(rates)
+    return entry.xreplace({part: sm.Symbol(part.func.__name__) for part in entry.atoms(AppliedUndef)})
+
+
 def unknown(entries):
-    return {symbol for entry in entries for symbol in sm.sympify(entry).free_symbols}
+    return {symbol for entry in entries for symbol in entry.free_symbols}
 
 
 def accepted(one, answer):
@@ -135,6 +144,12 @@ def accepted(one, answer):
         return one.reply_to(one.to_plain(answer)).outcome == "correct"
     except NotPlain:
         return False
+
+
+def test_functions_of_time_are_told_apart():
+    x, dx = dynamicsymbols("x"), dynamicsymbols("x", 1)
+    one = question("trial/rates", "expression", x * dx, symbols={"x": (-2, 2), "x'": (-2, 2)})
+    assert differs(one, x * dx / 2) and differs(one, x * x) and not differs(one, (x + x) * dx / 2)
 
 
 def try_roots(names):
