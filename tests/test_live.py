@@ -600,12 +600,11 @@ def test_tries_and_hints_of_a_page_outlive_it(context, site):
     assert "2 answers so far" in said and "Hint:" in said
 
 
-OFFERED = """from coursework.checking.reply import Reply
-reply = Reply('simple-orientations/compass', 'correct')
-reply.sibling = 'simple-orientations/compass/sibling'
-reply"""
+OFFERED = """from IPython.display import HTML
+HTML('<div class="coursework-reply" data-sibling="simple-orientations/compass/sibling">Right, with help</div>')"""
 
 
+@pytest.mark.sampled(1, of="what a page keeps")
 def test_a_sibling_question_is_one_button_away(context, site):
     name = "exercises/simple-orientations.html"
     page = Page(context, site, name)

@@ -237,6 +237,7 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
     right = coursework.check(NAME, lever.force * lever.arm)
     assert right.outcome == "correct" and right.help == "mistake"
     assert "a mistake was named" in right.messages[0] and f"variant('{NAME}/sibling')" in repr(right)
+    assert right.sibling == f"{NAME}/sibling" and f'data-sibling="{NAME}/sibling"' in right._repr_html_()
     assert "a sibling earns the rest: levers/see-saw." in repr(coursework.progress())
     twin = coursework.variant(f"{NAME}/sibling")
     assert (twin.force, twin.arm) != (lever.force, lever.arm)

@@ -230,6 +230,8 @@ def _tells_nothing(line):
 def _writings(answer):
     import sympy
 
+    if isinstance(answer, tuple) and isinstance(answer[-1], str):
+        answer = answer[0]  # of a number with its unit
     try:
         expression = sympy.Matrix(answer) if isinstance(answer, (list, tuple)) else sympy.sympify(answer)
     except (TypeError, ValueError, sympy.SympifyError):
