@@ -191,7 +191,7 @@ def test_no_mutant_of_an_answer_passes():
 
 @pytest.mark.long
 def test_no_mutant_of_any_answer_passes():
-    assert try_mutants(NAMES, 100) >= 6600
+    assert try_mutants(NAMES, 102) >= 6600
 
 
 def try_forms(names, number):
