@@ -515,7 +515,18 @@ def _module(kind):
 
 def _has_unit(part):
     units = sys.modules.get("sympy.physics.units")  # slow to import; whoever has a quantity has imported it
-    return bool(units) and isinstance(part, sympy.Expr) and part.has(units.Quantity)
+    if not units or not isinstance(part, sympy.Expr):
+        return False
+    # Each shared part is looked at once: SymPy's own `has` goes through the tree that would be printed.
+    seen, waiting = set(), [part]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, units.Quantity):
+            return True
+        if id(one) not in seen:
+            seen.add(id(one))
+            waiting += one.args
+    return False
 
 
 def _number_and_unit(answer, units):
