@@ -15,6 +15,7 @@ from pathlib import Path
 
 from fontTools.ttLib import TTFont
 
+from .first_view import first_part
 from .paths import NODE_MODULES, fingerprint
 
 KATEX = NODE_MODULES / "katex" / "dist"
@@ -160,14 +161,34 @@ def write(app):
             shutil.copyfile(source, folder / name)
 
 
+#: How one sees in the HTML of a part of a page that it is set in a face; the faces that are not named here are
+#: on every page.
+SEEN_BY = {
+    ("Source Serif 4", "400", "italic"): r"<(?:em|i|cite|dfn)\b",
+    ("KaTeX_Main", "400", "normal"): r'class="katex\b',
+    ("KaTeX_Main", "700", "normal"): r"\bmathbf\b",
+    ("KaTeX_Math", "400", "italic"): r"\b(?:mathnormal|boldsymbol)\b",
+    ("KaTeX_Size1", "400", "normal"): r"\b(?:delimsizing size1|delim-size1|small-op)\b",
+    ("KaTeX_Size2", "400", "normal"): r"\b(?:delimsizing size2|large-op)\b",
+    ("KaTeX_Size3", "400", "normal"): r"\bdelimsizing size3\b",
+    ("KaTeX_Size4", "400", "normal"): r"\b(?:delimsizing size4|delim-size4)\b",
+}
+
+
+def faces_in(html):
+    """The faces in which ``html`` is set."""
+    return [face for face in FACES if re.search(SEEN_BY.get(face[:3], ""), html)]
+
+
 def add_to_head(app, pagename, templatename, context, doctree):
-    """Give the page its rules, and what is to be fetched at once: of KaTeX's faces nothing, if it has no formula."""
+    """Give the page its rules, and what is to be fetched at once: the faces of its first view."""
     folder = context["pathto"](str(FOLDER), 1)
+    body = context.get("body", "")
     context["font_faces"] = face_rules(folder)
-    used = [face for face in FACES if 'class="katex' in context.get("body", "") or not face[0].startswith("KaTeX")]
-    context["first_fonts"] = [f"{folder}/{name_of(cut_faces() / file.name)}" for _, _, _, file, *_ in used]
+    context["first_fonts"] = [f"{folder}/{name_of(cut_faces() / face[3].name)}" for face in faces_in(first_part(body))]
     # As a style sheet says it, so that a script can ask for it.
-    context["first_faces"] = [f'{style} {weight.split()[0]} 1em "{family}"' for family, weight, style, *_ in used]
+    for name, html in (("first_faces", first_part(body)), ("all_faces", body)):
+        context[name] = [f'{style} {weight.split()[0]} 1em "{family}"' for family, weight, style, *_ in faces_in(html)]
 
 
 def setup(app):

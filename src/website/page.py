@@ -6,6 +6,7 @@ from pathlib import Path
 
 from docutils import nodes
 
+from .finish import pages_of
 from .fonts import katex_rules
 from .paths import NODE, NODE_MODULES, WEBSITE
 
@@ -27,6 +28,25 @@ THEME_STYLES = (
 STYLES = ("theme.css", "book.css")
 # Scripts that some extension would put on every page although no page uses them.
 UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS")
+#: The scripts of the page itself, in their order, which a page fetches as one file; and those that not all pages have.
+PAGE_SCRIPTS = (
+    "documentation_options.js",
+    "doctools.js",
+    "sphinx_highlight.js",
+    "progress.js",
+    "clipboard.min.js",
+    "copybutton.js",
+    "scripts/sphinx-book-theme.js",
+    "book.js",
+    "questions.js",
+    "lecture.js",
+    "scripts/pydata-sphinx-theme.js",
+)
+SOMETIMES = ("progress", "questions", "lecture")
+JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
+#: How the theme finds out which boxes scroll: by measuring all of them at once, which lays out the whole page, and
+#: again for each in turn. book.js watches them instead.
+MEASURES = re.compile(r"\.forEach\(e=>\{e\.tabIndex=e\.scrollWidth>e\.clientWidth\|\|[^{}]*\}\)")
 UNUSED_FILES = (
     "**/*.map",
     "**/fontawesome*",
@@ -131,6 +151,12 @@ def trim_page(app, pagename, templatename, context, doctree):
         return not any(word in name or word in body for word in UNUSED_SCRIPTS)
 
     context["script_files"][:] = filter(is_used, context["script_files"])
+    names = [str(getattr(script, "filename", None)).removeprefix("_static/") for script in context["script_files"]]
+    context["script_files"][:] = [
+        script for script, name in zip(context["script_files"], names) if name not in PAGE_SCRIPTS
+    ]
+    joined = "-".join(["page", *(name for name in SOMETIMES if f"{name}.js" in names)])
+    app.add_js_file(f"{joined}.js", priority=100)
     for script in context["script_files"]:
         script.attributes.setdefault("defer", "defer")  # no script is awaited before the text is shown
     context["styles"] = STYLES
@@ -162,6 +188,26 @@ def bundle_styles(site):
         subprocess.run(command, check=True)
 
 
+def join_scripts(site):
+    """Write the scripts of the page itself as one file, for each choice of them that some page makes."""
+    static = site / "_static"
+    if not (static / "doctools.js").exists():  # Sphinx had nothing to build and copied nothing
+        return
+    theme = static / PAGE_SCRIPTS[-1]
+    text, count = MEASURES.subn(".forEach(watchWidth)", theme.read_text("utf8"))
+    if count != 1:
+        raise RuntimeError("The theme's script no longer finds the boxes that scroll in the way that page.py replaces")
+    theme.write_text(text, "utf8")
+    for file in {name for page in pages_of(site) for name in JOINED.findall(page.read_text("utf8"))}:
+        left_out = {f"{name}.js" for name in SOMETIMES} - {f"{name}.js" for name in file[:-3].split("-")}
+        parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
+        (static / file).write_text("\n;".join(parts), "utf8")
+        command = [NODE, ESBUILD, "--minify", "--log-level=error", "--allow-overwrite", f"--outfile={static / file}"]
+        subprocess.run([*command, static / file], check=True)
+    for name in PAGE_SCRIPTS:
+        (static / name).unlink()
+
+
 def finish(app, exception):
     if exception or app.builder.format != "html":
         return
@@ -172,6 +218,7 @@ def finish(app, exception):
         for path in static.glob(pattern):
             if path.is_file() and path not in kept:
                 path.unlink()
+    join_scripts(Path(app.outdir))
     bundle_styles(Path(app.outdir))
     for folder in sorted(static.rglob("*"), reverse=True):
         if folder.is_dir() and not any(folder.iterdir()):

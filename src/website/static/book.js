@@ -1,18 +1,51 @@
-// Boxes that scroll sideways can be reached by keyboard, but only while they overflow.
-const boxes = document.querySelectorAll(".math-box, figure.orientation-figure");
+// What lies below the first view (see first_view.py) is laid out when that stands: a few blocks at a time, from the top
+// down, so that the page answers meanwhile. Whoever needs the page whole before, takes the class "in-parts" away.
+{
+  const root = document.documentElement;
+  const later = root.classList.contains("in-parts") ? [...document.querySelectorAll(".later")] : [];
+  const SLICE = 6; // milliseconds
+  const whole = () => root.classList.remove("in-parts");
+  const goOn = () => {
+    const start = performance.now();
+    while (later.length && performance.now() - start < SLICE) {
+      const block = later.shift();
+      block.classList.remove("later");
+      block.getBoundingClientRect(); // lays it out
+    }
+    if (later.length && root.classList.contains("in-parts")) requestIdleCallback(goOn, { timeout: 200 });
+    else whole();
+  };
+  // The typefaces of the whole page come first: each that came later would have its text laid out once more.
+  const faces = () => Promise.all(allFaces.map((face) => document.fonts.load(face))).catch(() => {});
+  const aWhile = () => new Promise((resolve) => setTimeout(resolve, 3000));
+  const begin = async () => {
+    while (root.classList.contains("settling")) await new Promise(requestAnimationFrame);
+    await Promise.race([faces(), aWhile()]);
+    requestIdleCallback(goOn, { timeout: 200 });
+  };
+  if (later.length) begin();
+  else whole();
+  for (const name of ["hashchange", "beforeprint"]) addEventListener(name, whole);
+  document.addEventListener("click", ({ target }) => target.closest("a[href*='#']") && whole(), true);
+}
+
+// Boxes that scroll can be reached by keyboard, but only while they overflow. They are looked at when they have been
+// laid out, never before: to measure a box that nobody sees yet would lay out the page.
 const watch = new ResizeObserver((entries) => {
-  for (const { target } of entries) {
-    if (target.scrollWidth > target.clientWidth + 1) {
-      target.tabIndex = 0;
-      target.setAttribute("role", "group");
-      target.setAttribute("aria-label", target.className === "math-box" ? "Wide equation" : "Wide figure");
-    } else {
-      for (const name of ["tabindex", "role", "aria-label"]) target.removeAttribute(name);
+  const found = entries.map(({ target }) => {
+    const wide = target.scrollWidth > target.clientWidth + 1;
+    return [target, wide || (!target.matches(".math-box, figure") && target.scrollHeight > target.clientHeight)];
+  });
+  for (const [target, scrolls] of found) {
+    const words = target.matches(".math-box") ? "Wide equation" : target.matches("figure") && "Wide figure";
+    for (const [name, value] of Object.entries({ tabindex: "0", ...(words && { role: "group", "aria-label": words }) })) {
+      if (scrolls) target.setAttribute(name, value);
+      else target.removeAttribute(name);
     }
   }
 });
-for (const box of boxes) watch.observe(box);
-window.watchWidth = (box) => watch.observe(box); // for what a page puts out later
+window.watchWidth = (box) => watch.observe(box); // also for the theme's boxes, and what a page puts out later
+document.querySelectorAll(".math-box, figure.orientation-figure").forEach(watchWidth);
 
 // Who reports a mistake tells where: the section that is being read.
 const report = document.querySelector("a.report-mistake");

@@ -65,6 +65,7 @@
     dispatchEvent(new Event("resize"));
   };
   const begin = () => {
+    root.classList.remove("in-parts"); // steps are measured
     if (!steps.length) collect(document.querySelector(".bd-article > section"));
     // Begin with what the reader was looking at.
     const at = steps.findIndex((step) => step.at(-1).getBoundingClientRect().bottom > 80);
