@@ -80,7 +80,7 @@ def test_page_opens_and_is_read(engine, site):
     engine.go(site + QUIET)
     engine.run("() => localStorage.clear()")  # or, once Python was fetched, nothing is told of its size
     engine.go(site + QUIET)
-    engine.wait("() => !document.documentElement.classList.contains('settling')")
+    engine.wait("() => !document.documentElement.matches('.settling, .in-parts')")
     seen = engine.run("""() => ({
       formulas: document.querySelectorAll('.katex math').length,
       font: document.fonts.check('1em KaTeX_Main') && document.fonts.check('1em "Source Serif 4"'),

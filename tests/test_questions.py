@@ -28,7 +28,7 @@ def context(browser):
 def opened(context, site, name=CHAPTER):
     page = context.new_page()
     page.goto(f"{site}{name}.html")
-    page.wait_for_function("!document.documentElement.classList.contains('settling')")
+    page.wait_for_function("!document.documentElement.matches('.settling, .in-parts')")
     return page
 
 

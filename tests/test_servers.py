@@ -107,7 +107,7 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
     # The server is gone.
     for other in ("chapters/euler-angles.html", "", "exercises/index.html?from=elsewhere"):
         page.goto(address + other)
-        page.wait_for_selector("html:not(.settling)")
+        page.wait_for_selector("html:not(.settling, .in-parts)")
         assert page.locator("h1").first.is_visible()
         assert page.evaluate("getComputedStyle(document.body).fontFamily").startswith('"Source')
     page.goto(f"{address}search.html?q=gimbal")

@@ -441,7 +441,7 @@ def from_disk(browser, unpacked):
 
 
 def settled(page):
-    page.wait_for_function("!document.documentElement.classList.contains('settling')")
+    page.wait_for_function("!document.documentElement.matches('.settling, .in-parts')")
     return page
 
 
