@@ -1,7 +1,8 @@
 """One table of ratios, all measured in this run: ``python -m benchmarks``.
 
-Pages have a table of their own, for which the book must be built: ``python -m benchmarks.pages``; so have the
-figures that move: ``python -m benchmarks.moving``, and grading: ``python -m benchmarks.grading``.
+Pages have a table of their own, for which the book must be built: ``python -m benchmarks.pages``; so have their
+first views on a slow telephone: ``python -m benchmarks.first_view``, the figures that move:
+``python -m benchmarks.moving``, and grading: ``python -m benchmarks.grading``.
 """
 
 import itertools
