@@ -5,6 +5,7 @@
   const later = root.classList.contains("in-parts") ? [...document.querySelectorAll(".later")] : [];
   const SLICE = 6; // milliseconds
   const whole = () => root.classList.remove("in-parts");
+  const whenIdle = window.requestIdleCallback?.bind(window) ?? ((work) => setTimeout(work)); // not every browser tells when it is
   const goOn = () => {
     const start = performance.now();
     while (later.length && performance.now() - start < SLICE) {
@@ -12,7 +13,7 @@
       block.classList.remove("later");
       block.getBoundingClientRect(); // lays it out
     }
-    if (later.length && root.classList.contains("in-parts")) requestIdleCallback(goOn, { timeout: 200 });
+    if (later.length && root.classList.contains("in-parts")) whenIdle(goOn, { timeout: 200 });
     else whole();
   };
   // The typefaces of the whole page come first: each that came later would have its text laid out once more.
@@ -21,7 +22,7 @@
   const begin = async () => {
     while (root.classList.contains("settling")) await new Promise(requestAnimationFrame);
     await Promise.race([faces(), aWhile()]);
-    requestIdleCallback(goOn, { timeout: 200 });
+    whenIdle(goOn, { timeout: 200 });
   };
   if (later.length) begin();
   else whole();
