@@ -600,6 +600,42 @@ def test_tries_and_hints_of_a_page_outlive_it(context, site):
     assert "2 answers so far" in said and "Hint:" in said
 
 
+OFFERED = """from IPython.display import HTML
+HTML('<div class="coursework-reply" data-sibling="simple-orientations/compass/sibling">Right, with help</div>')"""
+
+
+@pytest.mark.sampled(1, of="what a page keeps")
+def test_a_sibling_question_is_one_button_away(context, site):
+    name = "exercises/simple-orientations.html"
+    page = Page(context, site, name)
+    place = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}[
+        "check-simple-orientations-compass"
+    ]
+    page.page.click(f"button.run-cell >> nth={place - 1}")
+    page.wait()
+    assert page.cell(place).locator("button.sibling").count() == 0
+    page.write(place, OFFERED)
+    page.page.click(f"button.run-cell >> nth={place - 1}")
+    page.wait()
+    page.cell(place).locator("button.sibling").click()
+    page.cell(place).locator("[data-outcome='not attempted']").wait_for()
+    page.wait()
+    code = page.cell(place).locator(".cm-content").inner_text()
+    assert code.startswith(OFFERED.partition("\n")[0])
+    assert "sibling = variant('simple-orientations/compass/sibling')" in code
+    assert "check('simple-orientations/compass/sibling', other_compass)" in code
+    # That of nobody is the next. The page writes a minus where Python has a hyphen, and sets numbers one by one.
+    own = notebook_questions("simple-orientations", 1)["simple-orientations/compass"]["shown"]
+    shown = "".join(page.below(place).replace("\N{MINUS SIGN}", "-").split())
+    assert all(number in shown for text in own.values() for number in re.findall(r"-?\d+", text)), own
+    assert page.errors == []
+    # It is the reader's own text now, and outlives the page; the book's code can be brought back.
+    opened.remove(page.page)
+    page.page.close()
+    again = Page(context, site, name)
+    again.cell(place).locator(".cm-content", has_text="compass/sibling").wait_for()
+
+
 # --- stopping and starting afresh -----------------------------------------------------------------
 
 ENDLESS = "kept = 'kept'\nprint('begun')\nwhile True:\n    pass"
