@@ -35,8 +35,8 @@ def file_of(module):
     return next((path for path in (place / "__init__.py", place.with_suffix(".py")) if path.is_file()), None)
 
 
-def modules_imported(code, module=None):
-    """The names of our modules that ``code`` imports; ``module`` is where it stands, for relative imports."""
+def names_imported(code, module=None):
+    """All that ``code`` may import, by full names; ``module`` is where it stands, for relative imports."""
     found = set()
     for node in ast.walk(parse(code)):
         if isinstance(node, ast.Import):
@@ -49,6 +49,12 @@ def modules_imported(code, module=None):
                 above = above[: len(above) - node.level + is_package]
                 base = ".".join([*above, *filter(None, [node.module])])
             found |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
+    return found
+
+
+def modules_imported(code, module=None):
+    """The names of our modules that ``code`` imports; ``module`` as in :func:`names_imported`."""
+    found = names_imported(code, module)
     ours = {name for name in found if name.partition(".")[0] in PACKAGES and file_of(name)}
     # Importing a.b imports a first.
     return ours | {name.rsplit(".", depth)[0] for name in ours for depth in range(1, name.count(".") + 1)}

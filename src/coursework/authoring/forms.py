@@ -79,8 +79,7 @@ def equivalent_forms(public, answer):
 def _quantity(exponents):
     from sympy.physics import units
 
-    base = (units.m, units.kg, units.s, units.A, units.K, units.mol, units.cd)
-    return sympy.Mul(*(one**power for one, power in zip(base, exponents)))
+    return sympy.Mul(*(getattr(units, name) ** power for name, power in zip(BASE, exponents)))
 
 
 def _common_forms(public, kind, answer):

@@ -32,6 +32,8 @@ import sympy
 from mpmath import libmp
 from sympy.core.function import AppliedUndef
 
+from .units import BASE
+
 #: Largest number of nodes of one answer, and of parts of a list.
 MOST_NODES = 60_000
 MOST_PARTS = 400
@@ -531,16 +533,7 @@ def _has_unit(part):
 
 def _number_and_unit(answer, units):
     """Write an expression with quantities of :mod:`sympy.physics.units` as a number and a text in base units."""
-    names = {
-        "meter": "m",
-        "kilogram": "kg",
-        "second": "s",
-        "ampere": "A",
-        "kelvin": "K",
-        "mole": "mol",
-        "candela": "cd",
-    }
-    base = {getattr(units, name): sympy.Dummy(text, positive=True) for name, text in names.items()}
+    base = {getattr(units, name): sympy.Dummy(name, positive=True) for name in BASE}
     pure = {units.radian: sympy.S.One, units.degree: sympy.pi / 180, units.percent: sympy.Rational(1, 100)}
     try:
         with limited_work():

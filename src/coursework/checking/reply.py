@@ -93,9 +93,8 @@ class Reply:
         known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
         known += f' data-tried="{html.escape(" ".join(self.tried))}"' if self.tried else ""
         known += f' data-help="{self.help}"' if self.help else ""
-        known += (
-            f' data-sibling="{html.escape(self.sibling)}"' if self.sibling else ""
-        )  # the book's pages make it a button
+        # The book's pages make a button of it.
+        known += f' data-sibling="{html.escape(self.sibling)}"' if self.sibling else ""
         formula = {} if tex_is_typeset() else {"formula": mathml}
         paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)
         solution = (

@@ -64,25 +64,31 @@ class Store:
 
     def keep_work(self, digest, sources):
         """Keep the code of a notebook, for people to look at beside its answers."""
-        place = self.folder / "work" / f"{digest}.json"
-        if not place.exists():
-            write(place, json.dumps(sources, ensure_ascii=False), lasting=False)
+        self._keep_beside(f"{digest}.json", sources)
 
     def keep_pictures(self, digest, pictures):
         """Keep the pictures of a notebook, by the numbers of their cells, for people to judge."""
-        place = self.folder / "work" / f"{digest}.pictures.json"
-        if pictures and not place.exists():
-            write(place, json.dumps(pictures), lasting=False)
+        if pictures:
+            self._keep_beside(f"{digest}.pictures.json", pictures)
 
     def pictures(self, digest):
         """The pictures of a notebook, by the number of the cell that drew them."""
-        place = self.folder / "work" / f"{digest}.pictures.json"
-        return {int(number): shown for number, shown in (self.json_in(place) if place.exists() else {}).items()}
+        kept = self._kept_beside(f"{digest}.pictures.json")
+        return {int(number): shown for number, shown in kept.items()} if kept else {}
 
     def work(self, digest):
         """The code cells of a notebook, or nothing if they were not kept."""
-        place = self.folder / "work" / f"{digest}.json"
-        return self.json_in(place) if place.exists() else []
+        return self._kept_beside(f"{digest}.json") or []
+
+    def _keep_beside(self, name, value):
+        """Keep for people what nothing that is graded depends on; what is there already stays."""
+        place = self.folder / "work" / name
+        if not place.exists():
+            write(place, json.dumps(value, ensure_ascii=False), lasting=False)
+
+    def _kept_beside(self, name):
+        place = self.folder / "work" / name
+        return self.json_in(place) if place.exists() else None
 
     @staticmethod
     def json_in(path):

@@ -24,7 +24,7 @@ import nbformat
 
 from ..execution import STORED
 from ..paths import PACKAGES, REPOSITORY, fingerprint
-from ..used import fingerprint_of_used, parse
+from ..used import fingerprint_of_used, names_imported, parse
 
 PYTHON = Path(__file__).parent / "python"
 RESULTS = REPOSITORY / "_build" / "runtime"
@@ -117,12 +117,7 @@ def names_bound(code):
 
 def imports_numpy(code):
     """Whether a cell imports NumPy itself."""
-    modules = [
-        name
-        for node in ast.walk(parse(code)) if isinstance(node, (ast.Import, ast.ImportFrom))
-        for name in ([alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""])
-    ]  # fmt: skip
-    return any(name.partition(".")[0] == "numpy" for name in modules)
+    return any(name.partition(".")[0] == "numpy" for name in names_imported(code))
 
 
 def names_taken(code):
