@@ -30,8 +30,10 @@ class _End:
 class PipeEventLoop(asyncio.SelectorEventLoop):
     """A loop without sockets of its own.
 
+    >>> from concurrent.futures import ThreadPoolExecutor
     >>> loop = PipeEventLoop()
-    >>> loop.run_until_complete(asyncio.sleep(0, 'done'))
+    >>> with ThreadPoolExecutor(1) as own:  # a thread in which no other loop runs
+    ...     own.submit(loop.run_until_complete, asyncio.sleep(0, 'done')).result()
     'done'
     >>> loop.close()
     """
