@@ -5,9 +5,10 @@ import re
 import pytest
 from conftest import HTML, html_pages
 
+from website.first_view import MARKED, first_part
+
 LONG = "chapters/unit-quaternions.html"
 SIZES = {"wide": {"width": 1300, "height": 900}, "narrow": {"width": 380, "height": 760}}
-LATER = re.compile(r'class="(?:[^"]* )?later(?: [^"]*)?"')
 SCRIPT = re.compile(r'<script[^>]* src="([^"?]*)')
 #: At most so many scripts: of the page itself, of its figures (what they share, and each kind), of its code.
 SCRIPTS = 1 + 2 + 2 + 1
@@ -60,12 +61,12 @@ def whole(page):
 
 
 def test_long_pages_are_marked_and_short_ones_are_not():
-    marked = {name: len(LATER.findall((HTML / name).read_text("utf8"))) for name in html_pages()}
+    marked = {name: len(MARKED.findall((HTML / name).read_text("utf8"))) for name in html_pages()}
     assert all(marked[name] > 15 for name in marked if name.startswith("chapters/")), marked
     assert marked["appendix/solutions.html"] > 50 and not marked["search.html"]
     for name in marked:
         article = (HTML / name).read_text("utf8").partition("<article")[2]
-        before = article[: match.start()] if (match := LATER.search(article)) else ""
+        before = article[: match.start()] if (match := MARKED.search(article)) else ""
         words = re.sub(r"<(script|style|svg|math)\b.*?</\1>|<[^>]*>", "", before, flags=re.DOTALL)
         assert not match or len(words) > 1500, f"{name}: what is seen at first is put off"
 
@@ -120,3 +121,8 @@ def test_lecture_mode_begins_with_the_whole_page(open_page):
 def test_without_script_nothing_is_put_off(open_page):
     page = open_page(LONG, java_script_enabled=False)
     assert page.locator(".later").last.evaluate("(block) => getComputedStyle(block).contentVisibility") == "visible"
+
+
+def test_the_first_part_ends_at_a_mark_and_not_at_a_word():
+    assert first_part('<p>A moment later it</p><p class="a later">more') == "<p>A moment later it</p><p "
+    assert first_part('<p class="lateral">all') == '<p class="lateral">all'

@@ -5,10 +5,14 @@ view with the class ``later``; layout.html has the browser leave them alone unti
 takes the marks off, a few blocks at a time, as soon as the first view stands: then the page is what it always was.
 """
 
+import re
+
 from docutils import nodes
 from sphinx import addnodes
 
 LATER = "later"
+#: How a block that is so marked begins; the word also stands in sentences.
+MARKED = re.compile(rf'class="(?:[^"]* )?{LATER}(?: [^"]*)?"')
 #: More text than the first view of a large screen holds, in characters; and how many a large block counts for.
 FIRST_VIEW, LARGEST = 3000, 800
 #: A line of a column, which even the shortest block takes.
@@ -36,9 +40,7 @@ def mark(app, doctree, docname):
 
 def first_part(body):
     """The HTML of a page up to the first block below the first view."""
-    for start in (f'class="{LATER}', f' {LATER}"', f" {LATER} "):
-        body = body.partition(start)[0]
-    return body
+    return MARKED.split(body, maxsplit=1)[0]
 
 
 def setup(app):
