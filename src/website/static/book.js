@@ -19,8 +19,12 @@
   // The typefaces of the whole page come first: each that came later would have its text laid out once more.
   const faces = () => Promise.all(allFaces.map((face) => document.fonts.load(face))).catch(() => {});
   const aWhile = () => new Promise((resolve) => setTimeout(resolve, 3000));
+  const frame = () => new Promise(requestAnimationFrame);
   const begin = async () => {
-    while (root.classList.contains("settling")) await new Promise(requestAnimationFrame);
+    while (root.classList.contains("settling")) await frame();
+    // The frame that shows the first view is drawn before anything is asked for that it does not need.
+    await frame();
+    await frame();
     await Promise.race([faces(), aWhile()]);
     whenIdle(goOn, { timeout: 200 });
   };
