@@ -5,6 +5,7 @@ import hashlib
 import json
 import random
 import sys
+import threading
 from functools import cache
 from types import ModuleType
 
@@ -286,6 +287,27 @@ def test_decimals_cost_no_more_than_two_slow_hashes(change, digits, note, monkey
     reply = questions.judge(one.name, hidden, one.to_plain(change(right).evalf(digits)))[0]
     assert reply.note == note and ("decimal fractions" in repr(reply) or digits == 15)
     assert len(hashed) <= 2
+
+
+@pytest.mark.parametrize("threads", [True, False])
+def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(threads, monkeypatch):
+    """All digits that are no simple fraction's: rounded far, or with a slip? Both cost a slow hash."""
+    right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
+    one = make("trial/at-once", answer=right, frames=("B", "N"), symbols="theta")
+    both, looked = threading.Barrier(2), []
+
+    def find(text):
+        looked.append(text)
+        if threads and len(looked) > 1:
+            both.wait(timeout=60)
+
+    def refuse(thread):
+        raise RuntimeError("can't start new thread")
+
+    if not threads:
+        monkeypatch.setattr(threading.Thread, "start", refuse)
+    reply = questions.compare(one.name, one.public, one.to_plain((simple_dcm("y", 0.3) * right).evalf()), find)
+    assert reply.outcome == "wrong" and len(looked) == len(set(looked)) == 3
 
 
 def test_what_cannot_be_decided_is_said_to_be_undecided():

@@ -9,6 +9,8 @@ import functools
 import hashlib
 import json
 import re
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 
@@ -302,15 +304,18 @@ def _not_known(name, question, plain, reading, find, content):
     decimals = _decimals(question, plain, reading)
     # Each look costs a slow hash: what is exact was not rounded, and what was rounded is no known mistake to the digit.
     precise, rounded = _precision(plain) if decimals else (True, False)
-    if decimals and not precise and find(fingerprint(question, reading, near=True)) is not None:
+    near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
+    others = [] if rounded else list(other_readings(question, reading))
+    found = _each(find, near + [fingerprint(question, turned) for _, _, turned in others])
+    if near and found.pop(0) is not None:
         return Reply(
             name,
             "wrong",
             "rounded too far",
             ["This agrees with the exact answer to about three digits, and an exact answer is asked for.", decimals],
         )
-    for slip, why, turned in () if rounded else other_readings(question, reading):
-        case = _case_of(question, turned, find(fingerprint(question, turned)))
+    for (slip, why, turned), content in zip(others, found):
+        case = _case_of(question, turned, content)
         if case and case["outcome"] != "correct":
             said = _messages(question, case)[0]
             reply = Reply(name, "wrong", f"{slip}, and {case['notes'][0][0]}", [f"Two things at once: {why} {said}"])
@@ -318,6 +323,14 @@ def _not_known(name, question, plain, reading, find, content):
             return reply
     said = what_can_be_said(question, plain)
     return Reply(name, "wrong", "", [f"{decimals} {said}" if decimals else said])
+
+
+def _each(find, texts):
+    """What is known of each fingerprint. The slow hash lets other threads run: they are looked up at once."""
+    if len(texts) > 1:
+        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
+            return list(threads.map(find, texts))
+    return [find(text) for text in texts]
 
 
 def other_readings(question, reading):
