@@ -67,6 +67,9 @@ def of_structure(pdf):
     levels, ids, wanted = [], set(), set()
     for node, kind, above in elements(pdf):
         inside = listed(node.K) if "/K" in node else []
+        facts = {}
+        for one in listed(node.A) if "/A" in node else []:
+            facts |= dict(one.items())
         if kind not in STANDARD:
             yield f"02-001 {kind} is no standard type, and stands for none"
         if kind in WITHIN and above not in WITHIN[kind]:
@@ -79,11 +82,10 @@ def of_structure(pdf):
             yield f"{'13-004' if kind == 'Figure' else '17-002'} a {kind} has no words"
         if kind == "Formula" and re.search(r"[\\\ue000{}]", str(node.get("/Alt", ""))):
             yield f"17-002 a formula is not spoken: {str(node.Alt)[:60]}"
+        if kind == "Figure" and "/BBox" not in facts:
+            yield "BBox a Figure does not say where it stands (ISO 32000-1, table 344)"
         if kind in HEADINGS:
             levels.append(HEADINGS[kind])
-        facts = {}
-        for one in listed(node.A) if "/A" in node else []:
-            facts |= dict(one.items())
         if "/ID" in node:
             ids.add(bytes(node.ID))
         wanted |= {bytes(name) for name in facts.get("/Headers", [])}

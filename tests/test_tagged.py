@@ -68,7 +68,7 @@ def numbers(book):
 
 def test_what_is_printed_is_put_in_order(printed, book):
     with pikepdf.open(io.BytesIO(printed)) as raw:
-        assert {"01-005", "02-001", "06-001", "09-005", "13-004", "28-012"} <= numbers(raw)
+        assert {"BBox", "01-005", "02-001", "06-001", "09-005", "13-004", "28-012"} <= numbers(raw)
     assert faults(book) == []
     kinds = [kind for _, kind, _ in elements(book)]
     assert kinds.count("Formula") == kinds.count("Figure") == kinds.count("Caption") == 1
@@ -80,12 +80,19 @@ def test_what_is_printed_is_put_in_order(printed, book):
 
 def test_all_that_is_there_to_read_is_read_once_and_in_order(printed):
     with pikepdf.open(io.BytesIO(printed)) as raw:
-        said = tagged.mend(raw)
+        said = tagged.mend(raw, printed)
     begins = (
         "One Words, some of them strong, and n hat x. A square with a word in it A caption. Two first second elsewhere"
     )
     whole = f"{begins} Words in a box, and code. name value {'n 1 ' * 40} Back to the second part."
     assert "".join(said.split()) == "".join(whole.split())
+
+
+def test_a_picture_says_where_it_stands(book):
+    left, bottom, right, top = map(float, find(book, "Figure").A.BBox)
+    # The square is 60 pixels wide, 45 points; its corner is 9 pixels from that of the drawing, which is indented.
+    assert (right - left, top - bottom) == pytest.approx((45, 45), abs=0.5)
+    assert 37.5 < left < 200 and 37.5 < bottom < 262
 
 
 def test_a_link_says_where_it_leads(book):
@@ -143,6 +150,7 @@ FAILURES = {
     "10-001": lambda book: without(fonts(book)[0], "/ToUnicode"),
     "11-006": lambda book: without(book.Root, "/Lang"),
     "13-004": lambda book: without(find(book, "Figure"), "/Alt"),
+    "BBox": lambda book: without(find(book, "Figure"), "/A"),
     "14-002": lambda book: rename(book, "H1", "H2"),
     "14-003": lambda book: rename(book, "H2", "H4"),
     "15-003": lambda book: without(find(book, "TH"), "/A"),

@@ -354,7 +354,7 @@ def finish(printed, headings, title, author):
             for bookmark, words in zip(in_order(outline.root), headings, strict=True):
                 bookmark.title = words
         pdf.Root.PageMode = pikepdf.Name.UseOutlines  # opened with the bookmarks beside it
-        tagged.mend(pdf)
+        tagged.mend(pdf, printed)
         describe(pdf, title, author)
         pdf.save(
             file,

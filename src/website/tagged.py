@@ -6,10 +6,13 @@ such as page numbers, lines and shades, is marked as an artifact.
 """
 
 import re
+from ctypes import byref, c_float
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import pikepdf
+import pypdfium2
+import pypdfium2.raw as pdfium
 from pikepdf import Array, Dictionary, Name, String
 
 #: What stands before the words of a formula, so that it is told from a picture.
@@ -214,6 +217,30 @@ def streams(pdf):
     return found
 
 
+def boxes(printed, pages):
+    """Where the marked sequences of some ``pages`` of a PDF draw: left, bottom, right and top, by :class:`Piece`.
+
+    What is drawn by a form on the page is left out: its numbers are its own.
+    """
+    found, sides = {}, [c_float() for _ in range(4)]
+    with pypdfium2.PdfDocument(printed) as document:
+        for number in sorted(pages):
+            page = document[number]
+            width, height = page.get_size()
+            for place in range(pdfium.FPDFPage_CountObjects(page)):
+                drawn = pdfium.FPDFPage_GetObject(page, place)
+                mark = pdfium.FPDFPageObj_GetMarkedContentID(drawn)
+                if mark < 0 or not pdfium.FPDFPageObj_GetBounds(drawn, *map(byref, sides)):
+                    continue
+                left, bottom, right, top = (side.value for side in sides)
+                least = found.setdefault(Piece(number, (), mark), [width, height, 0, 0])
+                # What is cut off by the edge of the page is not seen.
+                least[:2] = max(0, min(least[0], left)), max(0, min(least[1], bottom))
+                least[2:] = min(width, max(least[2], right)), min(height, max(least[3], top))
+            page.close()
+    return found
+
+
 # ---- mending ------------------------------------------------------------------------
 
 
@@ -287,6 +314,20 @@ def in_paragraphs(element):
             if one is not None:
                 inside.append(one)
         element.inside = inside
+
+
+def place_pictures(root, printed):
+    """Say of each picture and formula where on its page it stands, if it stands on one page."""
+    worded = [one for one in root.walk() if one.kind in WORDED]
+    pieces = {one: one.pieces() for one in worded}
+    whole = [one for one in worded if len({piece.page for piece in pieces[one]}) == 1]
+    drawn = boxes(printed, {pieces[one][0].page for one in whole})
+    for one in whole:
+        sides = [drawn[piece] for piece in pieces[one] if piece in drawn]
+        if sides:
+            left, bottom, right, top = zip(*sides)
+            box = [round(side, 2) for side in (min(left), min(bottom), max(right), max(top))]
+            one.attributes.append(Dictionary(O=Name.Layout, BBox=Array(box)))
 
 
 def words(element, texts):
@@ -379,8 +420,8 @@ def write(pdf, root, found):
     pdf.Root.StructTreeRoot = top
 
 
-def mend(pdf):
-    """Put the structure of ``pdf`` in order; return the words that are read."""
+def mend(pdf, printed):
+    """Put the structure of ``pdf``, opened from the bytes ``printed``, in order; return the words that are read."""
     found = streams(pdf)
     texts = {
         Piece(number, key, mark): said
@@ -392,6 +433,7 @@ def mend(pdf):
     root = read(pdf)
     without_groups(root)
     name_figures(root)
+    place_pictures(root, printed)
     once(root)
     drop_blank(root, texts)
     in_paragraphs(root)
