@@ -9,9 +9,11 @@ import threading
 from functools import cache
 from types import ModuleType
 
+import numpy as np
 import pytest
 import sympy as sm
 from conftest import SEED
+from sympy.physics import units
 from sympy.physics.mechanics import ReferenceFrame
 
 import coursework
@@ -236,6 +238,86 @@ def test_other_kinds_name_what_is_wrong(kind, answer, note):
     reply = reply_to(KINDS[kind], answer)
     assert reply.note == note, reply
     assert reply.messages and reply.outcome in ("wrong", "invalid")
+
+
+SIGNS = make("trial/r", "words", ["-i", "1", "k"], options=["1", "-1", "i", "-i", "k", "-k"], length=3)
+AXES = make("trial/up", "words", ["+x", "-z", "none"], options=["+x", "-x", "+z", "-z", "none"], length=3)
+
+
+@pytest.mark.parametrize(
+    ("one", "answer"),
+    [
+        (SIGNS, ["-i", 1, "k"]),
+        (SIGNS, ["\u2212i", 1.0, sm.Symbol("k")]),
+        (SIGNS, [-sm.Symbol("i"), sm.Integer(1), "+k"]),
+        (SIGNS, ["- i", "+ 1", " K "]),
+        (AXES, ["x", "- z", "None"]),
+        (KINDS["truth values"], ["True", "False", "true", True, 0, sm.false, np.True_, "False"]),
+        (KINDS["a number"], sm.pi / 7 + 0 * sm.Symbol("x")),
+        (KINDS["a vector"], TWO * sm.Matrix([1, 2, 0]) * units.radian),
+    ],
+)
+def test_words_and_truth_values_pass_as_beginners_write_them(one, answer):
+    assert passes(one, answer)
+
+
+THREE, MATRIX = "A list of 3 components is asked for; this is ", "A matrix of 3 × 3 is asked for; this is "
+
+
+@pytest.mark.parametrize(
+    ("kind", "answer", "words"),
+    [
+        ("a vector", ["1", "2", "0"], THREE + "a list that holds a text: numbers stand without quotation marks."),
+        ("a vector", [theta, ..., ...], THREE + "a list that is still blank in part."),
+        ("a vector", [theta, 1, [1, 2]], THREE + "a list with 3 entries, one of which is a list with 2 entries."),
+        ("a vector", sm.Matrix([1, 2, 0]) * units.meter, "the unit `meter`. Give numbers alone"),
+        ("numbers in a matrix", [["1", "0", "0"]] * 3, MATRIX + "a list that holds a text: numbers"),
+        ("numbers in a matrix", [[1, 0, 0], [0, 1], [0, 0, 1]], "a list of rows, one of which has 2 entries."),
+        ("numbers in a matrix", [[1, 0], [0, 1], [0, 0]], MATRIX + "a list of 3 rows with 2 entries each."),
+        ("numbers in a matrix", (GIMBAL, GIMBAL, GIMBAL), "3 entries, one of which is a matrix of 3 × 3."),
+        ("words", ["first", None, "first"], "this is a list that is still blank in part."),
+        ("truth values", [True] * 7 + [None], "this is a list that is still blank in part."),
+        ("truth values", [True] * 7 + [3], "a list with 8 entries, one of which is a single expression."),
+        ("a number", sm.zoo, "The answer has no finite value"),
+        ("a number", 1 / (sm.zoo + sm.pi) + sm.Mul(sm.nan, 2, evaluate=False), "The answer has no finite value"),
+        ("numbers in a matrix", sm.eye(3) * sm.oo, "The answer has no finite value"),
+    ],
+)
+def test_the_reply_says_which_part_of_a_list_is_not_as_asked_for(kind, answer, words):
+    try:
+        reply = KINDS[kind].reply_to(KINDS[kind].to_plain(answer))
+    except NotPlain as refused:
+        reply = questions.Reply("trial/x", "invalid", "unreadable", [str(refused)])
+    assert reply.outcome == "invalid" and words in " ".join(reply.messages)
+
+
+def test_a_function_that_ends_python_ends_nothing_but_its_own_answer():
+    reply = KINDS["a function"].reply_to(KINDS["a function"].to_plain(lambda quaternion: sys.exit()))
+    assert (reply.outcome, reply.note) == ("invalid", "raised an error")
+
+
+def test_a_frame_is_not_said_to_be_connected_with_itself():
+    A, B = ReferenceFrame("A"), ReferenceFrame("B")
+    B.orient_axis(A, A.z, theta)
+    [said] = KINDS["symbols in a matrix"].reply_to(to_plain(B)).messages
+    assert "This is the frame `B`, connected with `A`;" in said
+    [said] = KINDS["symbols in a matrix"].reply_to(to_plain(ReferenceFrame("C"))).messages
+    assert "connected with no other;" in said
+
+
+@pytest.mark.parametrize(("digits", "rounded"), [(2, True), (1, False)])
+def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
+    """Of a matrix and of an axis: the remark on rounding comes before the fault of geometry, and only where it may."""
+    matrix = sm.Matrix([[8, 1, 4], [-4, 4, 7], [-1, -8, 4]]) / 9
+    axis = [sm.Rational(2, 7), sm.Rational(3, 7), sm.Rational(6, 7)]
+    for kind, answer, given in (
+        ("direction cosine matrix", matrix, np.array(matrix, dtype=float).round(digits)),
+        ("axis and angle", [axis, sm.pi / 4], ([round(float(part), digits) for part in axis], 0.79)),
+    ):
+        one = make("trial/round", kind, answer, **({"frames": ("S", "B")} if kind[0] == "d" else {}))
+        reply = one.reply_to(to_plain(given))
+        assert reply.outcome == "invalid"
+        assert ("rounded too far" in reply.messages[0]) == rounded, reply.messages
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)

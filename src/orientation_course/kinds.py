@@ -40,10 +40,11 @@ def _dcm(question, value):
     if value[0] == "frame":
         target, source = question["frames"]
         name, others = value[1], value[2]
-        if target not in (name,) or source not in others:
+        if target != name or source not in others:
+            connected = [other for other in others if other != name]
             raise Fault(
                 "frame",
-                f"This is the frame `{name}`, connected with {listed(others)}; the question asks "
+                f"This is the frame `{name}`, connected with {listed(connected) or 'no other'}; the question asks "
                 f"for the orientation of `{target}` with respect to `{source}`.",
             )
         value = others[source]

@@ -77,6 +77,8 @@ def number(result):
 def real(result, rest=0):
     """The real number that a result is; raises ``ValueError`` where its imaginary part is more than ``rest``."""
     result = number(result)
+    if result in (MP.inf, -MP.inf):
+        raise Undefined("infinite")
     if isinstance(result, MP.mpc):
         if abs(result.imag) > max(rest, ROUNDING * (1 + abs(result.real))):
             raise ValueError("complex")
@@ -107,6 +109,8 @@ def _value(node, results, point):
     if operation == "float":
         return _bounded(MP.mpf(rest[0]))
     if operation == "constant":
+        if rest[0] in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero
+            raise Undefined("division by zero")
         if rest[0] not in CONSTANTS:
             raise NotSupported(rest[0])
         return CONSTANTS[rest[0]]
@@ -200,6 +204,8 @@ CONSTANTS = {
     "Exp1": +MP.e,
     "ImaginaryUnit": MP.mpc(0, 1),
     "GoldenRatio": +MP.phi,
+    "Infinity": +MP.inf,
+    "NegativeInfinity": -MP.inf,
     "BooleanTrue": True,
     "BooleanFalse": False,
 }

@@ -286,6 +286,15 @@ def _describe(value):
     }[kind]
 
 
+def _holding(whole, part):
+    """What a list is, one part of which is of another kind than is asked for."""
+    if part[0] == "blank" or _blank(part):
+        return "a list that is still blank in part"
+    if part[0] == "text":
+        return "a list that holds a text"
+    return f"a list with {len(whole[1])} entries, one of which is {_describe(part)}"
+
+
 def leaf(value, wanted):
     """The one expression that a value is; a list or matrix of one entry is that entry."""
     if value[0] == "matrix" and value[1] == value[2] == 1:
@@ -297,6 +306,15 @@ def leaf(value, wanted):
     return value[1]
 
 
+def _leaf_of(whole, part, wanted):
+    """The one expression that a part of a list is."""
+    try:
+        return leaf(part, wanted)
+    except Fault:
+        said = ": numbers stand without quotation marks" if part[0] == "text" else ""
+        raise shape_fault(wanted, whole, _holding(whole, part) + said) from None
+
+
 def _expression(question, value):
     return [leaf(value, "A single expression")]
 
@@ -305,7 +323,7 @@ def components(value, length, wanted):
     if value[0] == "matrix" and sorted(value[1:3]) == sorted((1, length)):
         return value[3]
     if value[0] == "list" and len(value[1]) == length:
-        return [leaf(part, wanted) for part in value[1]]
+        return [_leaf_of(value, part, wanted) for part in value[1]]
     if value[0] == "list" and len(value[1]) == 1 and value[1][0][0] == "list":
         return components(value[1][0], length, wanted)
     raise shape_fault(wanted, value)
@@ -360,8 +378,18 @@ def row_entries(value, rows, columns, wanted):
     if value[0] == "matrix" and tuple(value[1:3]) == (rows, columns):
         return value[3]
     if value[0] == "list" and len(value[1]) == rows:
-        return [leaf for row in value[1] for leaf in components(row, columns, wanted)]
+        return [entry for row in value[1] for entry in _row(value, row, columns, wanted)]
     raise shape_fault(wanted, value)
+
+
+def _row(whole, row, columns, wanted):
+    if row[0] == "list" and len(row[1]) not in (1, columns) and not _blank(row):
+        described = _describe(whole)
+        uneven = f"a list of rows, one of which has {len(row[1])} entries"
+        raise shape_fault(wanted, whole, described if "rows" in described else uneven)
+    if row[0] == "list" or row[0] == "matrix" and 1 in row[1:3]:
+        return components(row, columns, wanted)
+    raise shape_fault(wanted, whole, _holding(whole, row))
 
 
 def _matrix(question, value):
@@ -416,14 +444,32 @@ def word(plain, wanted):
     return value[1]
 
 
+def _spelled(plain):
+    """The word that is meant by a number or a symbol: ``-1`` for ``'-1'``, the symbol ``-i`` for ``'-i'``."""
+    if plain["value"][0] != "expression":
+        return None
+    nodes = plain["nodes"]
+    node = nodes[plain["value"][1]]
+    if node[0] == "Mul" and len(node) == 3:
+        signs = [part for part in node[1:] if nodes[part] == ["integer", "-1"]]
+        names = [nodes[part][1] for part in node[1:] if nodes[part][0] == "symbol"]
+        return f"-{names[0]}" if signs and names else None
+    if node[0] == "float" and float(node[1]).is_integer():
+        return f"{float(node[1]):.0f}"
+    return node[1] if node[0] in ("integer", "symbol") else None
+
+
 def _choice(question, plain):
-    given = " ".join(word(plain, f"One of {listed(question['options'])}").split())
-    # A minus of typography is no mistake.
+    given = _spelled(plain) or word(plain, f"One of {listed(question['options'])}, in quotation marks,")
+    given = " ".join(given.split())
+    # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left out.
     text = given.lower().translate(MINUS)
     options = {option.lower(): option for option in question["options"]}
-    if text not in options:
+    bare = text.replace("- ", "-").replace("+ ", "+")
+    found = [one for one in (text, bare, bare.removeprefix("+"), f"+{bare}") if one in options]
+    if not found:
         raise Fault("shape", f"The answer is one of {listed(question['options'])}; this is `{given[:40]}`.")
-    return text
+    return found[0]
 
 
 def _truths(question, plain):
@@ -436,8 +482,10 @@ def _truths(question, plain):
         number = plain["nodes"][part[1]] if part[0] == "expression" else None
         if number in (["integer", "0"], ["integer", "1"]):
             part = ["truth", number[1] == "1"]
+        if part[0] == "text" and part[1].strip().lower() in ("true", "false"):
+            part = ["truth", part[1].strip().lower() == "true"]
         if part[0] != "truth":
-            raise shape_fault(wanted, part, f"a list that holds {_describe(part)}")
+            raise shape_fault(wanted, value, _holding(value, part))
         given.append(part[1])
     return "".join("T" if part else "F" for part in given)
 
@@ -447,7 +495,10 @@ def _words(question, plain):
     wanted = f"A list of {length} words, each one of {listed(options)},"
     if value[0] != "list" or len(value[1]) != length:
         raise shape_fault(wanted, value)
-    return PARTS["words"].join(_choice(question, {"value": part}) for part in value[1])
+    if any(map(_blank, value[1])):
+        said = ": `'none'` is a text, too" if "none" in options else ""
+        raise shape_fault(wanted, value, f"a list that is still blank in part{said}")
+    return PARTS["words"].join(_choice(question, {**plain, "value": part}) for part in value[1])
 
 
 def _order(question, plain):
@@ -455,7 +506,7 @@ def _order(question, plain):
     wanted = f"A list with each of {listed(options)} once"
     if value[0] != "list" or len(value[1]) != len(options):
         raise shape_fault(wanted, value)
-    parts = [_choice(question, {"value": part}) for part in value[1]]
+    parts = [_choice(question, {**plain, "value": part}) for part in value[1]]
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
         raise Fault("shape", f"{wanted} is asked for; here `{twice}` stands {parts.count(twice)} times.")

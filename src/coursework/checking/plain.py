@@ -290,7 +290,7 @@ class _Writer:
             return self.value(returned, 0)
         except NotPlain:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             return ["raised", _text(f"{type(error).__name__}: {error}"[:300])]
 
     def node(self, *parts):
@@ -455,6 +455,8 @@ class _Writer:
             return ()
         if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
             return ()
+        if part.is_Atom and part.args:
+            return self.without_unit(part)
         if isinstance(part, PUT_OFF) and part not in self.put_off:
             worked_out = self.worked_out(part)
             if type(worked_out) is not type(part):
@@ -463,6 +465,15 @@ class _Writer:
         if part in self.put_off:
             return ()
         return part.args
+
+    def without_unit(self, unit):
+        """What stands for a unit in a list or matrix of numbers: a radian is none."""
+        units = sys.modules.get("sympy.physics.units")
+        if not units or not isinstance(unit, units.Quantity):
+            return unit.args
+        if unit == units.radian:
+            return (sympy.S.One,)
+        raise NotPlain(f"The answer holds the unit `{unit}`. Give numbers alone, in the unit that the question names.")
 
     def operation(self, part, children):
         if isinstance(part, sympy.Rational):
@@ -477,7 +488,7 @@ class _Writer:
             if isinstance(part.expr, AppliedUndef):
                 return self.node("symbol", _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9))
             return self.written[children[0]]
-        if isinstance(part, sympy.UnevaluatedExpr) or children and isinstance(part, PUT_OFF):
+        if isinstance(part, sympy.UnevaluatedExpr) or children and (part.is_Atom or isinstance(part, PUT_OFF)):
             return self.written[children[0]]
         if not children:
             return self.node("constant", type(part).__name__[:60])

@@ -34,6 +34,8 @@ OUTCOMES = ("correct", "mistake")
 ALWAYS_WRONG = ("not unit length",)
 #: Up to so many tolerances from the right answer, one is told that it is close.
 NEARLY = 3
+#: What numbers may be off by that were rounded to two digits after the point.
+COARSE = 0.005
 #: Denominators up to which a decimal fraction is plainly that fraction: one with few digits, and one with all of them.
 SMALL, LARGE = 64, 1000
 
@@ -249,7 +251,7 @@ def _compare(name, question, plain, reading, text, find):
     found = fault(question, reading) if case is None or case["outcome"] == "correct" else None
     if found and (case is None or found.note in ALWAYS_WRONG):
         # What comes of rounding is not called a fault of geometry.
-        said = _decimals(question, plain, reading) if found.note != "stray symbol" else ""
+        said = "" if found.note == "stray symbol" else _decimals(question, plain, reading) or _coarse(question, reading)
         return Reply(name, "invalid", found.note, [said, found.message] if said else [found.message])
     if case is None:
         return _not_known(name, question, plain, reading, find, content)
@@ -347,6 +349,13 @@ def _decimals(question, plain, reading):
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
     return "It holds decimal fractions; an exact answer is asked for: write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+
+
+def _coarse(question, reading):
+    """What is said of numbers that do not fit together, and would if fewer of their digits counted."""
+    if question.get("tolerance") is None or fault({**question, "tolerance": COARSE}, reading):
+        return ""
+    return "The numbers nearly fit together. Were they rounded too far? Keep all digits until the end."
 
 
 def _precision(plain):
