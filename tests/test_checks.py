@@ -29,6 +29,7 @@ from orientation import (
     body_fixed_from_dcm,
     dcm_from_body_fixed,
     dcm_from_quaternion,
+    dcm_from_rotation_vector,
     dcm_from_space_fixed,
     multiply_quaternions,
     quaternion_from_axis_angle,
@@ -318,6 +319,28 @@ def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
         reply = one.reply_to(to_plain(given))
         assert reply.outcome == "invalid"
         assert ("rounded too far" in reply.messages[0]) == rounded, reply.messages
+
+
+@pytest.mark.parametrize("kind", ["numbers in a matrix", "numbers in a quaternion"])
+@pytest.mark.parametrize("off", [4, 6, 8])
+def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):
+    """The transpose of what is nearly right is in the cell of the mistake "transposed"; but that is no mistake here."""
+    one = KINDS[kind]
+    turned = np.array(
+        dcm_from_body_fixed((np.pi / 3, np.pi / 5, -np.pi / 7), "zxy")
+        if "matrix" in kind
+        else [0.5**0.5, 0, -(0.5**0.5), 0]
+    )
+    notes = set()
+    for chance in range(40):
+        small = np.random.default_rng(chance).normal(size=3)
+        small *= off * 0.0005 / np.abs(small).max()
+        if "matrix" in kind:
+            answer = turned @ dcm_from_rotation_vector(small)
+        else:
+            answer = multiply_quaternions(turned, [np.sqrt(1 - small @ small), *small])
+        notes.add(one.reply_to(to_plain(answer)).note)
+    assert "rounded too far" in notes and notes <= {"rounded too far", ""}, notes
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
