@@ -469,6 +469,22 @@ def test_old_copy_is_told_from_the_new_edition(context, site, choice):
         assert "crank = 1" in old and "boom = 2" in old
 
 
+def test_copies_of_one_minute_stand_beside_each_other(context, site):
+    """What the name of a copy says, the minute, does not tell it from another one."""
+    tab = Tab(context, site)
+    served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
+    visit_notebook(tab.page, site, EXERCISE, {CRANK: "first = 1"})
+    editions = [newer_book(served), served]
+    context.route(f"**/lite/files/{EXERCISE}.ipynb", lambda route: route.fulfill(json=editions[0]))
+    for mine in ("second = 2", "third = 3"):
+        visit_notebook(tab.page, site, EXERCISE)
+        tab.page.evaluate(CHANGE_COPY, [f"{EXERCISE}.ipynb", {CRANK: mine}])
+        del editions[0]
+    copies = tab.page.evaluate(ALL_COPIES)
+    for mine in ("first = 1", "second = 2", "third = 3"):
+        assert any(mine in content for _, content in copies), [path for path, _ in copies]
+
+
 def test_copy_of_the_first_edition_has_no_stamp(context, site):
     """It is the same notebook: its answers count. Or it is another one: the reader is asked."""
     served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))

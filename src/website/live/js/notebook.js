@@ -1,6 +1,6 @@
 // Runs before JupyterLite opens a notebook: brings the answers of its page into it, and asks where the book has changed.
 import { Answers, SITE } from "./answers.js";
-import { agreeOnRecords, bookCells, bringTogether, edition, newFile, readCopy, writeCopy } from "./notebooks.js";
+import { agreeOnRecords, bookCells, bringTogether, edition, newFile, placeBeside, readCopy, writeCopy } from "./notebooks.js";
 
 const plain = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
 const element = (tag, properties, ...children) => {
@@ -68,7 +68,7 @@ async function open(path) {
 // The book's notebook is no longer the one that the copy was made of. Whatever is chosen, the copy stays.
 async function choose(path, copy, book) {
   const written = bookCells(copy.content).filter(({ text, original }) => text && original !== null);
-  const name = path.replace(/\.ipynb$/, ` (my copy of ${copy.last_modified.slice(0, 16).replace(/[T:]/g, "-")}).ipynb`);
+  const name = await placeBeside(path, `my copy of ${copy.last_modified.slice(0, 16).replace(/[T:]/g, "-")}`, copy.content);
   const choice = await ask("The book has a new version of this notebook",
     "You have a copy of an older version, with what you wrote in it. The new version is opened with your answers in "
     + `the cells that are still the same, and your copy stays beside it as “${name.split("/").at(-1)}”.`,

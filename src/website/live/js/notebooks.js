@@ -35,6 +35,15 @@ export const allCopies = async () => (await files("readonly", async (store) => {
   return keys.map((key, k) => [key, values[k]]);
 })) ?? [];
 
+// Where ``content`` is put beside the file at ``path``, with ``words`` in its name: never in the place of something else.
+export async function placeBeside(path, words, content) {
+  for (let number = 1; ; number += 1) {
+    const place = path.replace(/(\.\w+)?$/, ` (${words}${number > 1 ? `, ${number}` : ""})$1`);
+    const there = await readCopy(place);
+    if (!there || JSON.stringify(there.content) === JSON.stringify(content)) return place;
+  }
+}
+
 export function newFile(path, content) {
   const now = new Date().toISOString();
   return {

@@ -1,6 +1,6 @@
 // What the reader takes away and brings back: the page's notebook with the answers in it, and all answers in one file.
 import { Answers, fingerprint, nameCells, PREFIX } from "./answers.js";
-import { allCopies, bookCells, readCopy, writeCopy } from "./notebooks.js";
+import { allCopies, bookCells, placeBeside, readCopy, writeCopy } from "./notebooks.js";
 
 const text = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
 const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
@@ -135,7 +135,7 @@ export async function restore() {
   for (const [path, copy] of Object.entries(saved.notebooks)) {
     const mine = await readCopy(path);
     if (JSON.stringify(mine?.content) === JSON.stringify(copy.content)) continue;
-    const place = mine ? path.replace(/(\.\w+)?$/, ` (from the backup of ${saved.day})$1`) : path;
+    const place = mine ? await placeBeside(path, `from the backup of ${saved.day}`, copy.content) : path;
     await writeCopy(place, { ...copy, path: place, name: place.split("/").at(-1) });
     brought += 1;
   }
