@@ -9,6 +9,8 @@ import json
 import random
 import re
 import shutil
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -247,11 +249,63 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
     last = coursework.variant(f"{NAME}/sibling-2")
     alone = coursework.check(f"{NAME}/sibling-2", last.force * last.arm)
     assert alone.outcome == "correct" and not alone.help and "in full" in alone.messages[0]
-    assert "a sibling earns" not in repr(coursework.progress()) and "1 of the 1 " in repr(coursework.progress())
+    assert "a sibling earns" not in repr(coursework.progress()) and "you have tried is right" in repr(
+        coursework.progress()
+    )
     with pytest.raises(questions.NoSuchQuestion, match="its siblings are levers/see-saw/sibling and"):
         coursework.check(f"{NAME}/sibling-3", 1)
     with pytest.raises(questions.NoSuchQuestion, match="it has no other numbers"):
         coursework.variant("levers/plain/sibling")
+
+
+def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recorded):
+    """The record is of a variant: with an identity the points are still to be earned, and no hint is brought along."""
+    coursework.me(" ")
+    everybody = coursework.variant(NAME)
+    for wrong in (11, 12, 13):
+        coursework.check(NAME, wrong)
+    assert coursework.check(NAME, everybody.force * everybody.arm).help == "hint"
+    assert "tried is right" in repr(coursework.progress())
+    coursework.me(student_with(3))
+    assert "Nothing has been checked" in repr(coursework.progress()) and "no hint yet" in repr(coursework.hint(NAME))
+    first = coursework.check(NAME, 11)
+    assert first.tries == 1 and "Hint:" not in repr(first) and "not right yet" in repr(coursework.progress())
+    lever = coursework.variant(NAME)
+    assert coursework.check(NAME, lever.force * lever.arm).help == ""
+    # Back again: nothing of the first record is lost.
+    variants._identity = ""
+    again = coursework.check(NAME, everybody.force * everybody.arm)
+    assert (again.tries, again.help) == (4, "hint") and "Right with help" in repr(coursework.progress())
+
+
+def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
+    script = (Path(__file__).parents[1] / "src/website/live/js/notebooks.js").read_text("utf8")
+    start, stop = script.index("const HELP"), script.index("\n}\n", script.index("export function joinProgress")) + 3
+    (tmp_path / "join.mjs").write_text(
+        script[start:stop] + "\nconsole.log(joinProgress(...process.argv.slice(2)));", "utf8"
+    )
+
+    def joined(*records):
+        texts = [json.dumps({NAME: record}) for record in records]
+        node = Path(sys.executable).with_name("node")
+        said = subprocess.run([node, tmp_path / "join.mjs", *texts], capture_output=True, check=True, text=True)
+        return json.loads(said.stdout)[NAME]
+
+    before = {"outcome": "correct", "help": "hint", "answers": ["a"]}
+    after = {"outcome": "wrong", "variant": 3, "answers": ["b"]}
+    assert joined(before, after) == {**after, "other variants": {"0": before}}
+    kept = {**after, "other variants": {"0": before}}
+    assert joined(kept, {**after, "answers": ["c"]}) == {**kept, "answers": ["b", "c"]}
+
+
+def test_a_name_that_is_no_text_or_names_a_notebook_is_explained(recorded):
+    for wrong in (None, 3, [1, 2]):
+        with pytest.raises(questions.NoSuchQuestion, match="comes first"):
+            coursework.check(wrong, NAME)
+    with pytest.raises(questions.NoSuchQuestion, match="'levers' is a notebook. Its questions are 'levers/"):
+        coursework.check("levers", 1)
+    with pytest.raises(questions.NoSuchQuestion, match=f"Did you mean '{NAME}'"):
+        coursework.check(NAME.upper(), 1)
 
 
 def test_what_is_no_help_asks_for_no_sibling(recorded):

@@ -8,7 +8,17 @@ from pathlib import Path
 
 from .kinds import calls_for
 from .plain import NotPlain, to_plain
-from .questions import code_text, find_question, judge, notebook_questions, open_page, opened, rung_key, solution_on
+from .questions import (
+    code_text,
+    find_question,
+    judge,
+    notebook_questions,
+    open_page,
+    opened,
+    own_number,
+    rung_key,
+    solution_on,
+)
 from .reply import HELP, Reply
 from .sealing import unseal
 from .variants import siblings_of, without_sibling
@@ -18,6 +28,8 @@ PROGRESS = Path(".coursework", "progress.json")
 #: After so many days an earlier mistake is worth another look.
 REVIEW_AFTER = 3
 DAY = 86_400
+#: In the entry of a question: what is known of its other variants, after somebody has said who they are, by number.
+OTHERS = "other variants"
 #: Different answers of one question that are remembered.
 MOST_ANSWERS = 100
 #: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are the same.
@@ -79,7 +91,7 @@ def check(name: str, answer: object) -> Reply:
 def hint(name: str) -> Reply:
     """Show the hints that you have earned for a question: each different answer that is wrong earns one more."""
     question = find_question(name)
-    entry = _read_progress().get(name, {})
+    entry = _entry(_read_progress(), name)
     steps, earned = _steps(question, entry), _earned(entry)
     if steps[:earned]:
         _note_help(name, "hint")
@@ -104,7 +116,7 @@ def worked_solution(name: str, code: str) -> Reply:
     if content is None or "solution" not in content:
         return Reply(name, "hints", "", ["This code opens no solution. Your instructor gives it out on a date."])
     _note_help(name, "solution")
-    entry = _read_progress().get(name, {})
+    entry = _entry(_read_progress(), name)
     said = ["Read it, close it, and write it down by yourself."]
     reply = Reply(name, "hints", "", said, solution_on(question, content))
     _offer_sibling(reply, question, entry.get("help", ""))
@@ -114,8 +126,8 @@ def worked_solution(name: str, code: str) -> Reply:
 def _note_help(name, kind):
     """Write down that somebody had help; after the right answer it is none."""
     record = _read_progress()
-    entry = record.setdefault(name, {})
-    if isinstance(entry, dict) and entry.get("outcome") != "correct":
+    entry = record[name] = _entry(record, name)
+    if entry.get("outcome") != "correct":
         kinds = list(HELP)
         entry["help"] = max(kind, entry.get("help", kind), key=lambda one: kinds.index(one) if one in kinds else -1)
         _write_progress(record)
@@ -171,12 +183,15 @@ def _show_next_hint(question, reply, entry):
 
 def progress() -> Reply:
     """Show how far you are, by chapter, and what is worth another look; from the record beside this notebook."""
-    known = {name: entry for name, entry in _read_progress().items() if isinstance(entry, dict) and "outcome" in entry}
+    record = _read_progress()
+    known = {name: entry for name in record if "outcome" in (entry := _entry(record, name))}
     record = {name: entry for name, entry in known.items() if not without_sibling(name)[1]}
     if not record:
         return Reply("progress", "hints", "", ["Nothing has been checked in this folder yet."])
     right = {name for name, entry in record.items() if entry["outcome"] == "correct"}
     lines = [f"{len(right)} of the {len(record)} questions that you have tried are right."]
+    if len(record) == 1:
+        lines = [f"The one question that you have tried is {'right' if right else 'not right yet'}."]
     for notebook in sorted({name.partition("/")[0] for name in record}):
         lines.append(_of_notebook(notebook, record, right))
     lines += _right_with_help(known, right)
@@ -230,6 +245,27 @@ def _worth_another_look(record):
     return [f"Worth another look, since you made a mistake there: {', '.join(found)}."] if found else []
 
 
+def _entry(record, name):
+    """What the record knows of a question in the variant of whoever works here; that of others stays beside it."""
+    entry, own = record.get(name), _own_number(name)
+    entry = dict(entry) if isinstance(entry, dict) else {}
+    if not entry or entry.get("variant", 0) == own:
+        return {**entry, "variant": own} if own else entry
+    others = entry.pop(OTHERS, {})
+    others = {**(others if isinstance(others, dict) else {}), str(entry.get("variant", 0)): entry}
+    found = others.pop(str(own), None)
+    if not isinstance(found, dict):
+        found = {"after": entry["after"]} if "after" in entry else {}
+    return {**found, **({"variant": own} if own else {}), OTHERS: others}
+
+
+def _own_number(name):
+    try:
+        return own_number(name)
+    except (LookupError, RuntimeError):
+        return 0  # a question of another release
+
+
 def _read_progress():
     try:
         record = json.loads(PROGRESS.read_text("utf8"))
@@ -252,8 +288,7 @@ def _write_progress(record):
 def _remember(name, reply, content):
     """Write down the outcome, and where hints can be read again: never the hints themselves."""
     record = _read_progress()
-    entry = record.get(name)
-    entry = entry if isinstance(entry, dict) else {}
+    entry = _entry(record, name)
     if reply.outcome == "not attempted":
         return entry
     # What was right once stays right: another try in the same cell takes nothing away.

@@ -101,6 +101,11 @@ def find_question(name):
     ------
     NoSuchQuestion
     """
+    if not isinstance(name, str):
+        raise NoSuchQuestion(
+            "The name of a question is a text and comes first: `check('notebook/question', answer)`. "
+            f"This is of type `{type(name).__name__[:40]}`."
+        )
     notebook, _, _ = name.partition("/")
     questions = notebook_questions(notebook)
     asked, order = without_sibling(name)
@@ -118,8 +123,18 @@ def find_question(name):
             f"beside it (in {Path.cwd()}), and no package with sealed questions is installed."
         )
     notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json"))
-    near = difflib.get_close_matches(name, [*questions, *notebooks], 1, 0.5)
+    if name in notebooks:
+        raise NoSuchQuestion(f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}.")
+    named = questions or notebook_questions(notebook.lower())
+    near = difflib.get_close_matches(name.lower(), [*named, *notebooks], 1, 0.5)
     raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
+
+
+def own_number(name):
+    """The number of the variant in which a question, or a sibling of one, is found here; 0 where there is only one."""
+    asked, order = without_sibling(name)
+    questions = notebook_questions(name.partition("/")[0])
+    return own_variant(asked, questions[asked], order) if asked in questions else 0
 
 
 def beside(question, first):

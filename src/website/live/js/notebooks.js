@@ -72,6 +72,8 @@ export async function agreeOnRecords(page, mayWrite = false) {
 }
 
 const HELP = ["mistake", "hint", "solution"]; // from little to much, as in coursework.checking.reply
+// In the entry of a question: what is known of its other variants, by number.
+const OTHERS = "other variants";
 
 // Two records of progress made one: what was right stays right, and no answer, hint or help is forgotten.
 export function joinProgress(older, newer) {
@@ -86,7 +88,13 @@ export function joinProgress(older, newer) {
   const both = { ...a, ...b };
   for (const name of Object.keys(a)) {
     if (!(name in b) || [a[name], b[name]].some((entry) => !entry || typeof entry !== "object")) continue;
+    if ((a[name].variant ?? 0) !== (b[name].variant ?? 0)) { // between the two somebody said who they are
+      const { [OTHERS]: others, ...own } = a[name];
+      both[name] = { ...b[name], [OTHERS]: { ...others, [own.variant ?? 0]: own, ...b[name][OTHERS] } };
+      continue;
+    }
     const joined = { ...a[name], ...b[name] };
+    if (joined[OTHERS]) joined[OTHERS] = { ...a[name][OTHERS], ...b[name][OTHERS] };
     const right = [a[name], b[name]].find(({ outcome }) => outcome === "correct");
     const help = right ? right.help : HELP.findLast((kind) => [a[name].help, b[name].help].includes(kind));
     if (right) joined.outcome = "correct";
