@@ -321,6 +321,15 @@ def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
         assert ("rounded too far" in reply.messages[0]) == rounded, reply.messages
 
 
+def test_no_turn_at_all_is_not_called_twice_half_a_turn():
+    axis = [sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)]
+    for half_turn in (sm.pi, np.pi, -3 * sm.pi):
+        one = make("trial/half", "axis and angle", [axis, half_turn])
+        assert one.reply_to(to_plain((axis, 0))).note == "" and one.reply_to(to_plain((axis, sm.pi / 2))).note == "half"
+    reply = KINDS["axis and angle"].reply_to(to_plain((axis, sm.pi / 2)))
+    assert reply.note == "double" and reply.messages[0].startswith("The angle is twice")
+
+
 @pytest.mark.parametrize("kind", ["numbers in a matrix", "numbers in a quaternion"])
 @pytest.mark.parametrize("off", [4, 6, 8])
 def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):

@@ -80,6 +80,9 @@ MESSAGES = {
         "would for turns about space fixed axes."
     ),
     "cosine for sine": lambda question: "Sine and cosine are interchanged.",
+    # Of an axis and an angle: the axis is neither halved nor doubled.
+    "half": lambda question: "The angle is half of what it should be; the axis is right.",
+    "double": lambda question: "The angle is twice what it should be; the axis is right.",
 }
 
 
@@ -285,7 +288,9 @@ def of_axis_and_angle(question, answer, turns, turned):
     yield Mistake("axis reversed", {}, [axis, -angle])
     yield Mistake("in degrees", {}, [axis, angle * 180 / sympy.pi])
     yield Mistake("half", {}, [axis, angle / 2])
-    yield Mistake("double", {}, [axis, 2 * angle])
+    left = sympy.cos(angle) + 1
+    if not left.is_number or left > 1e-9:  # twice half a turn is none at all, and that is nobody's doubled angle
+        yield Mistake("double", {}, [axis, 2 * angle])
 
 
 def of_sequence(question, answer, turns, turned):
