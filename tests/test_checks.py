@@ -19,7 +19,7 @@ from sympy.physics.mechanics import ReferenceFrame
 import coursework
 from coursework.authoring.author import AuthorError, question
 from coursework.authoring.forms import equivalent_forms, flat, random_form
-from coursework.checking import questions, sealing
+from coursework.checking import plugins, questions, sealing
 from coursework.checking.kinds import Fault, Undecidable, fault, read
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.questions import NoSuchQuestion
@@ -647,6 +647,24 @@ def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
     assert len(sealed["lockers"]) == 20 * len(lockers)
     assert one.sealed() == sealed
     assert questions.judge(one.name, sealed, one.plain)[0].outcome == "correct"
+
+
+def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
+    """The keys of the ladder follow from what is public, so its steps are general words, the same for many questions."""
+    general = {words for kind in plugins.kinds().values() for words in [kind.begin]}
+    general |= {f"It is built of {turns} turns, one after another. Check each of them alone." for turns in range(2, 9)}
+    opened = 0
+    for folder in plugins.sealed_folders():
+        for file in sorted(folder.iterdir()):
+            for name in questions.notebook_questions(file.name.removesuffix(".json")):
+                for number in range(questions.find_question(name).get("variants", 1)):
+                    one = questions.in_variant(name, number)
+                    for order, step in enumerate(one.get("ladder", ())):
+                        opened += 1
+                        assert sealing.unseal(step, questions.rung_key(one, order)) in general, (name, number)
+    assert opened > 500
+    about = {"solution": "It is 7. And this is a long way of saying so, longer than the first sentence by far."}
+    assert make("trial/said", "expression", 7, **about).ladder == [plugins.kinds()["expression"].begin]
 
 
 def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():

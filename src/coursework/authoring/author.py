@@ -138,7 +138,7 @@ class Question:
         )
         self.partial, self.rubric = partial, list(rubric or [])
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
-        self.ladder = ladder_of(public, ladder, turns, solution)
+        self.ladder = ladder_of(public, ladder, turns)
         self.turns, self.turned = list(turns), turned
         if exam:
             self.public["exam"] = True
@@ -343,17 +343,17 @@ class Question:
         return sealed
 
 
-def ladder_of(public, authored, turns, solution):
-    """The steps of a ladder: its author's, or where to begin, what the answer is built of, how the solution begins."""
+def ladder_of(public, authored, turns):
+    """The steps of a ladder: its author's, or where to begin, and what the answer is built of.
+
+    No secret locks them, so nothing of the solution is among them: its first sentence is often the answer.
+    """
     if authored is not None:
         return list(authored)
     begin = (kinds()[public["kind"]].begin, kind_of_values(public).begin)
     steps = [step for step in dict.fromkeys(begin) if step]
     if len(turns) > 1:
         steps.append(f"It is built of {len(turns)} turns, one after another. Check each of them alone.")
-    first = re.match(r"(.+?[.:;])(\s|$)", " ".join(solution.split()))
-    if first and len(solution) > 2 * len(first[1]):
-        steps.append(f"The worked solution begins: {first[1]}")
     return steps
 
 
