@@ -650,7 +650,7 @@ def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
 
 
 def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
-    """The keys of the ladder follow from what is public, so its steps are general words, the same for many questions."""
+    """The keys of the ladder follow from what is public, so its steps are general words."""
     general = {words for kind in plugins.kinds().values() for words in [kind.begin]}
     general |= {f"It is built of {turns} turns, one after another. Check each of them alone." for turns in range(2, 9)}
     opened = 0
