@@ -277,6 +277,13 @@ def test_one_function_makes_a_message_a_page_and_loses_no_sign(said, shown):
     assert plain_text("`2*a*b`, 2*a*b and $2\\pi$") == "2*a*b, 2*a*b and 2pi"
 
 
+def test_a_number_is_shown_with_the_digits_that_make_it_nearly_right():
+    from coursework.grading.mathematics import answer_as_mathematics
+
+    nearly = {"value": ["expression", 2], "nodes": [["symbol", "x"], ["float", "1.0000001"], ["Mul", 1, 0]]}
+    assert "1.0000001" in answer_as_mathematics(nearly) and "1.0000001" in pages.answer_as_text(nearly)
+
+
 def test_an_answer_is_printed_in_bounded_length():
     doubling = {
         "value": ["expression", 60],
@@ -455,6 +462,45 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
     students = {row["student"] for row in rows_of(copied / "grades.csv")}
     assert "renamed" in students and "warns" not in students and "right" in students
     assert (copied / "put-aside" / "warns" / "turns.json").exists()
+
+
+def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(course, copied, tmp_path):
+    """Names of folders first, a roster afterwards: two handed in the same, and each keeps the own decision."""
+    few, same, shown = tmp_path / "few", handed_in(sum="sine = sm.cos(alpha)"), io.StringIO()
+    for name in ("b", "c"):
+        put(few, name, same)
+    options = {"solutions": course / "solutions", "limits": LIMITS}
+    grade(few, copied, show=io.StringIO(), **options)
+    for name, credit in (("b", 0.5), ("c", 1)):
+        Ledger(copied).add(Store(copied).read(name, "turns"), "turns/sum", credit, who="Ann", why="appeal")
+    roster = tmp_path / "roster.csv"
+    roster.write_text("student,name\nanother,c\nsomebody,b\n")
+    grade(few, copied, roster=roster, show=shown, **options)
+    points = {row["student"]: row["points"] for row in rows_of(copied / "grades.csv")}
+    assert "b" not in points and (points["somebody"], points["another"]) == ("5.5", "6")
+    assert "'b' is now 'somebody'" in shown.getvalue() and "1 of the decisions" in shown.getvalue()
+    handed_on = {one.student: one for one in Ledger(copied).decisions}
+    assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")
+    assert handed_on["somebody"].when == handed_on["b"].when
+    # Folders that are renamed, too: nobody knows which is which.
+    for name in ("b", "c"):
+        (few / name).rename(few / f"{name}{name}")
+    shown = io.StringIO()
+    grade(few, copied, show=shown, **options)
+    assert "'somebody' is now 'bb' or 'cc'" in shown.getvalue() and "count for nobody now" in shown.getvalue()
+    assert Store(copied).read("bb", "turns")["points"] == 5
+
+
+def test_a_ledger_of_other_answers_is_said(course, copied, capsys, tmp_path):
+    found = Store(copied).read("mistaken", "turns")
+    (tmp_path / "other").mkdir()
+    other = Ledger(tmp_path / "other")
+    other.add(found, "turns/sum", 1)
+    other.add({**found, "student": "stranger"}, "turns/sum", 1)
+    other.add({**found, "answers": {}}, "turns/about-x", 1)
+    main(["merge", str(copied), str(other.path)])
+    said = capsys.readouterr().out
+    assert "3 decisions from" in said and "2 of them are on answers that are not here: stranger, mistaken. They" in said
 
 
 def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path, monkeypatch):

@@ -292,6 +292,43 @@ def test_a_folder_around_everything_is_no_student(box):
     assert list(found.values()) == ["jane"]
 
 
+def test_what_a_system_adds_is_no_refusal(box):
+    """Blackboard writes a text about each attempt; nbgrader keeps what is not handed in beside what is."""
+    blackboard = [
+        f"HW_{who}_attempt_2026-11-20-10-11-12{end}" for who in ("ann", "bob") for end in ("_a.ipynb", ".txt")
+    ]
+    text_only = "HW_eve_attempt_2026-11-20-10-11-13.txt"
+    found, refused = named(*blackboard, text_only, "HW_bob_attempt_2026-11-20-10-11-12_notes.txt", path=box)
+    assert sorted(found.values()) == ["ann", "bob"]
+    # Who handed in a text alone is named, and so is a text of one's own.
+    assert sorted(refused) == ["HW_bob_attempt_2026-11-20-10-11-12_notes.txt", text_only]
+    folders = [f"{place}/turns/turns.ipynb" for place in ("source", "release")]
+    folders += [f"{place}/ann/turns/turns.{end}" for place in ("autograded", "feedback") for end in ("ipynb", "html")]
+    found, refused = named("submitted/ann/turns/turns.ipynb", "submitted/ann/turns/answer.pdf", *folders, path=box)
+    assert list(found.values()) == ["ann"] and list(refused) == ["submitted/ann/turns/answer.pdf"]
+    assert "The notebook beside it can read it" in refused["submitted/ann/turns/answer.pdf"]
+    around = [f"course/{name}" for name in ("submitted/ann/turns/turns.ipynb", *folders)]
+    assert named(*around, path=box)[1] == {}
+
+
+def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, tmp_path):
+    """Canvas numbers what is handed in again; what one student handed in for Gradescope lies in no folder."""
+    files = ("doejane_101_5_turns-2.ipynb", "doejane_101_6_half-2.py", "doejane_101_7_data-1.npy", "leebob_2_8_a.ipynb")
+    files += ("leebob_2_9_part-1.py", "leebob_2_10_part.py", "leebob_2_11_x-3.csv", "leebob_2_12_x-10.csv")
+    with zipfile.ZipFile(box, "w") as opened:
+        for name in files:
+            opened.writestr(name, GOOD if name.endswith("ipynb") else name.encode())
+    notebooks, refused = intake.take_in(box, ["turns"])
+    jane, bob = (one.files for one in sorted(notebooks, key=lambda one: one.student))
+    assert jane["half.py"] == jane["half-2.py"] == b"doejane_101_6_half-2.py" and "data.npy" in jane
+    assert bob["part.py"].endswith(b"part.py") and bob["x.csv"].endswith(b"x-10.csv") and refused == []
+    for name in ("turns.ipynb", "helper.py", "data/numbers.csv"):
+        (tmp_path / "flat" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "flat" / name).write_bytes(GOOD if name.endswith("ipynb") else b"1")
+    (found,), refused = intake.take_in(tmp_path / "flat", ["turns"], student="ann")
+    assert set(found.files) == {"helper.py", "data/numbers.csv"} and refused == []
+
+
 def test_everything_from_one_student_is_a_question(tmp_path, course):
     for name in ("a", "b", "c"):
         put(tmp_path / "all", "homework", handed_in(), f"{name}.ipynb")

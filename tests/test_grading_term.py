@@ -95,6 +95,32 @@ def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
         assert found["axes"].penalty == pytest.approx(penalty)
 
 
+@pytest.mark.parametrize("when", ["2026-10-25T02:45:00", "2026-10-25T02:45:00+02:00"])
+def test_who_hands_in_in_an_hour_that_a_clock_shows_twice_is_believed(rules, when):
+    """A time without a zone is the earlier one then, as what is due is the later one: both in favour of the student."""
+    found, _ = result(rules(RULES.replace("02:30", "02:10")), record(2, 2, when, assignment="axes"))
+    assert (found["axes"].penalty, found["axes"].late) == (0, False)
+
+
+@pytest.mark.parametrize(
+    "due, when, penalty",
+    [
+        # A day later by the clock: 25 hours in autumn and 23 in spring.
+        ("2026-10-24T23:59:00", "2026-10-25T23:59:00", 0.1),
+        ("2026-10-24T23:59:00", "2026-10-25T22:59:00+00:00", 0.1),
+        ("2026-10-24T23:59:00", "2026-10-25T23:00:00+00:00", 0.2),
+        ("2027-03-27T23:59:00", "2027-03-28T23:59:00", 0.1),
+        ("2027-03-27T23:59:00", "2027-03-28T21:59:00+00:00", 0.1),
+        # Ten minutes later, though the clocks have gone on an hour: within the grace.
+        ("2027-03-28T01:55:00", "2027-03-28T03:05:00", 0),
+        ("2027-03-28T01:55:00", "2027-03-28T01:05:00+00:00", 0),
+    ],
+)
+def test_a_day_is_as_long_as_any_other_when_clocks_are_changed(rules, due, when, penalty):
+    found, _ = result(rules(RULES.replace("2026-10-25T02:30:00", due)), record(2, 2, when, assignment="axes"))
+    assert found["axes"].penalty == pytest.approx(penalty)
+
+
 def test_extensions_hold_for_whom_they_are(rules):
     text = RULES + '[extensions.ann]\nturns = 2026-10-08T12:00:00\n[extensions.bob]\nturns = "excused"\n'
     late = record(6, when="2026-10-08T12:00:00")
@@ -301,11 +327,13 @@ def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, 
     write_course(Store(out), rules())
     kept = (out / "course" / "counts.json").read_text()
     assert not re.search("ann|bob|carl|dora|sin|alpha", kept.replace("Europe", ""))
+    questions = json.loads(kept)["questions"]
     assert all(
         count >= HIDDEN_BELOW
-        for question in json.loads(kept)["questions"].values()
-        for count in question["mix-ups"].values()
+        for question in questions.values()
+        for count in (question["students"], *question["mix-ups"].values())
     )
+    assert {name.partition("/")[0] for name in questions} == {"turns"}  # the axes are of one student alone
     earlier = tmp_path / "2025.json"
     earlier.write_text(kept.replace("Autumn 2026", "Autumn <2025>"))
     write_course(Store(out), rules(), earlier=[earlier])

@@ -177,8 +177,10 @@ def merge(out, ledgers):
     from pathlib import Path
 
     from .ledger import Ledger
+    from .store import Store
+    from .tables import in_a_line
 
-    ledger = Ledger(Path(out))
+    ledger, store = Ledger(Path(out)), Store(out)
     missing = [path for path in ledgers if not Path(path).is_file()]
     if missing:
         sys.exit(
@@ -190,11 +192,23 @@ def merge(out, ledgers):
         except (OSError, ValueError) as error:
             sys.exit(f"coursework merge: {error}")
         print(f"{new} decisions from {path}.")
+        foreign = [one for one in ledger.decisions[len(ledger.decisions) - new :] if not _is_here(store, one)]
+        if foreign:
+            whose = ", ".join(in_a_line(name, 60) for name in dict.fromkeys(one.student for one in foreign))
+            print(f"  {len(foreign)} of them are on answers that are not here: {whose}. They change no mark.")
         for first, second in differing:
             print(
                 f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, {second.who} gave "
                 f"{second.credit}; the later one counts."
             )
+
+
+def _is_here(store, decision):
+    """Whether the answer that was decided on is that of the records."""
+    from .ledger import digest_of_answer
+
+    record = store.read(decision.student, decision.assignment)
+    return record is not None and digest_of_answer(record, decision.question) == decision.answer
 
 
 def term(out, rules, earlier):

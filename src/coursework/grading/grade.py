@@ -217,9 +217,9 @@ def grade(
         questions = course.questions(sorted({one.assignment for one in work}), store.folder / "questions")
         known = _read(store.folder / COURSE)
         write(store.folder / COURSE, as_text({**known, **course.assignments}))
-        for line in _put_renamed_aside(store, work):
-            print(line, file=show)
         ledger = Ledger(store.folder)
+        for line in _put_renamed_aside(store, work, ledger):
+            print(line, file=show)
         _take_in_decisions(ledger, store, show)
 
         def key(one):
@@ -306,23 +306,40 @@ def _demand_a_class(work, roster, student):
         )
 
 
-def _put_renamed_aside(store, work):
-    """Move the record of a student away whose very notebooks are now another's: the folder was renamed."""
+def _put_renamed_aside(store, work, ledger):
+    """Move the record of a student away whose very notebooks are now another's: the folder was renamed.
+
+    What people decided on the answers is entered for the new name too.
+    """
     present = {(one.student, one.assignment) for one in work}
-    owners = {}
-    for one in work:
-        owners.setdefault((one.assignment, frozenset(notebook.digest for notebook in one.notebooks)), one.student)
     known, absent = set(), []
     for record in store.all():
         known.add((record["student"], record["assignment"]))
         if (record["student"], record["assignment"]) not in present:
-            digests = frozenset(notebook["sha256"] for notebook in record["notebooks"])
-            absent.append((record["student"], record["assignment"], digests))
-    for student, assignment, digests in absent:
-        now = owners.get((assignment, digests))
-        if now is not None and (now, assignment) not in known:
+            files = {(notebook["file"], notebook["sha256"]) for notebook in record["notebooks"]}
+            absent.append((record["student"], record["assignment"], files))
+    owners = {}
+    for one in work if absent else ():
+        if (one.student, one.assignment) not in known:
+            digests = frozenset(notebook.digest for notebook in one.notebooks)
+            owners.setdefault((one.assignment, digests), []).append(one)
+    for student, assignment, files in absent:
+        fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
+        # Of equal notebooks, those that lie where they lay: then a roster has given the student another name.
+        there = [one for one in fitting if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}]
+        names = [one.student for one in there or fitting]
+        if names:
             place = store.put_aside(student, assignment)
-            yield f"{student!r} is now {now!r}: the record of {assignment} was moved to {place}."
+            said = (
+                f"{student!r} is now {' or '.join(map(repr, names))}: the record of {assignment} was moved to {place}."
+            )
+            decisions = ledger.of(student, assignment)
+            if decisions and len(names) == 1:
+                ledger.hand_on(decisions, names[0])
+                said += f" So were {len(decisions)} of the decisions, to the new name."
+            elif decisions:
+                said += f" Whose are the {len(decisions)} decisions? They count for nobody now."
+            yield said
 
 
 def _take_in_decisions(ledger, store, show):

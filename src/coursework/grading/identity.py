@@ -87,9 +87,12 @@ class Layout:
     roster : Roster, optional
     read : function, optional
         Gives the bytes of a file of these names, for a system that says in a table whose is what.
+    student : str, optional
+        The one student who handed all of it in.
     """
 
-    def __init__(self, names, assignments=(), repositories=(), roster=None, read=None):
+    def __init__(self, names, assignments=(), repositories=(), roster=None, read=None, student=None):
+        self.student = student
         self.assignments = sorted(assignments, key=len, reverse=True)
         self.roster = roster
         self.enclosing = ()
@@ -151,7 +154,19 @@ class Layout:
             return None
         parts = parts[len(self.enclosing) :]
         found = getattr(self, f"_{self.kind}")(parts)
+        if self.student is not None and self.kind == "own":
+            found = found._replace(source=f"all of {self.student}", file="/".join(parts))
         return found and found._replace(place=parts[0])
+
+    def is_beside_submissions(self, name):
+        """Whether a file is in one of the folders that nbgrader has beside what was submitted."""
+        parts = PurePosixPath(name).parts
+        return (
+            self.is_nbgraders
+            and len(parts) > 1
+            and not self._is_inside(parts)
+            and parts[len(self.enclosing) - 1] in NBGRADER
+        )
 
     # -- the systems: a part of the name that does not fit claims nothing
 

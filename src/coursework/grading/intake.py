@@ -24,7 +24,7 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from .identity import GRADESCOPE_TABLE, Claim, Layout, looks_like
+from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
 
 MOST_BYTES = 20 << 20  # of one notebook
 MOST_CELLS = 1_000
@@ -182,7 +182,7 @@ def take_in(path, assignments=(), roster=None, student=None):
             break
         files.append((name, when, read))
     contents = {name: read for name, _, read in files}
-    layout = Layout(list(contents), assignments, repositories, roster, lambda name: contents[name]())
+    layout = Layout(list(contents), assignments, repositories, roster, lambda name: contents[name](), student)
     others = {}
     for name, when, read in files:
         if name.lower().endswith(".zip"):
@@ -195,11 +195,14 @@ def take_in(path, assignments=(), roster=None, student=None):
     have = {one.claim.source for one in found}
     for source, beside in others.items():
         for claim, name, _ in beside:
-            if PurePosixPath(name).name in INDEXES:
+            if PurePosixPath(name).name in INDEXES or layout.is_beside_submissions(name):
                 continue
-            if not _is_by_the_way(name) or (claim and source not in have):
+            # Blackboard writes a text about each attempt, which nobody handed in.
+            of_system = claim and claim.given_by_system and not claim.file
+            if not (of_system or _is_by_the_way(name)) or (claim and source not in have):
                 whose = claim.student if claim else ""
-                refused.append(Refused(name, whose, "This is no notebook: its name does not end in .ipynb."))
+                read = " The notebook beside it can read it." if source in have else ""
+                refused.append(Refused(name, whose, f"This is no notebook: its name does not end in .ipynb.{read}"))
     return [
         one._replace(beside=_beside(one, others), handed_in=_when(one, others, layout)) for one in notebooks
     ], refused
@@ -257,6 +260,8 @@ def _take(found, others, refused, layout, name, when, read, outer):
         claim = claim._replace(file=name.removeprefix(f"{outer}/"))
     if not name.lower().endswith(".ipynb"):
         others.setdefault(claim.source if claim else None, []).append((claim, name, read))
+        return
+    if claim is None and layout.is_beside_submissions(name):
         return
     if claim is None:
         refused.append(Refused(name, "", "Its name does not say whose it is, as those of the others do."))
@@ -369,7 +374,20 @@ def _beside(one, others):
         if len(found) >= MOST_BESIDE or total > MOST_BYTES_BESIDE:
             break
         found.append(Beside(str(name.relative_to(folder)), hashlib.sha256(data).hexdigest(), read))
+    if one.claim.source.startswith("canvas "):
+        found += _as_named_before(found)
     return tuple(sorted(found))
+
+
+def _as_named_before(found):
+    """What Canvas numbered because it was handed in again, also by the name that the notebook's code uses."""
+    numbered, names = {}, {one.name for one in found}
+    for one in found:
+        path = PurePosixPath(one.name)
+        again = RESUBMITTED.fullmatch(path.stem)
+        if again and (bare := str(path.with_name(again["stem"] + path.suffix))) not in names:
+            numbered.setdefault(bare, []).append((int(again["number"]), one))
+    return [max(several, key=lambda entry: entry[0])[1]._replace(name=bare) for bare, several in numbered.items()]
 
 
 # --- finding the files --------------------------------------------------------------------------
@@ -594,6 +612,11 @@ def _is_by_the_way(name):
         or path.suffix.lower()
         in (
             ".csv",
+            ".tsv",
+            ".npy",
+            ".npz",
+            ".mat",
+            ".xlsx",
             ".png",
             ".jpg",
             ".jpeg",

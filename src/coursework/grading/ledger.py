@@ -92,6 +92,19 @@ class Ledger:
             found[one.student, one.assignment, one.question] = one
         return {key: one for key, one in found.items() if one.credit is not None}
 
+    def of(self, student, assignment):
+        """The decisions that count on one student's answers."""
+        return [one for one in self.current().values() if (one.student, one.assignment) == (student, assignment)]
+
+    def hand_on(self, decisions, student):
+        """Enter decisions once more, for another name of the same student: who decided, and when, stays."""
+        self.append(
+            one._replace(
+                id=secrets.token_hex(8), student=student, why=f"{one.why}; was {one.student!r}".removeprefix("; ")
+            )
+            for one in decisions
+        )
+
     def add(self, record, question, credit, *, who=None, comment="", rubric=(), why=""):
         """Decide on an answer of a record."""
         if credit is not None and not 0 <= credit <= 1:
@@ -114,6 +127,7 @@ class Ledger:
 
     def append(self, decisions):
         """Write decisions at the end; what stands before is never touched."""
+        decisions = list(decisions)
         with open(self.path, "ab") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
             file.write(b"".join(json.dumps(one._asdict(), ensure_ascii=False).encode() + b"\n" for one in decisions))

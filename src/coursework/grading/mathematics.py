@@ -113,7 +113,7 @@ class _Writer:
             sign = "-" if rest[0].startswith("-") else ""
             return bracketed(rf"{sign}\frac{{{rest[0].lstrip('-')}}}{{{rest[1]}}}", 1 if sign else 2)
         if operation == "float":
-            found = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(rest[0]):.6g}")
+            found = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(rest[0]):.10g}")
             if not found:
                 raise NoMathematics
             power = rf" \cdot 10^{{{int(found[2])}}}" if found[2] else ""

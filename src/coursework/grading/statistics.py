@@ -121,7 +121,7 @@ class Statistics:
                 question.discrimination.add(share, (earned - mark["points"]) / (worth - mark["worth"]))
 
     def counts(self, name):
-        """What can be kept for other years: numbers only, and none that points at somebody."""
+        """What can be kept for other years: numbers only, and none of so few that it points at somebody."""
         return {
             "format": FORMAT,
             "name": name,
@@ -137,6 +137,7 @@ class Statistics:
                     "mix-ups": _without_few(found.notes),
                 }
                 for (assignment, question), found in sorted(self.questions.items())
+                if found.number >= HIDDEN_BELOW
             },
         }
 

@@ -204,9 +204,25 @@ def _moment(path, where, value, zone):
     return in_zone(value, zone)
 
 
-def in_zone(moment, zone):
-    """A moment with its time zone; an hour that a clock shows twice is the later one, in favour of the student."""
-    return moment if moment.tzinfo else moment.replace(tzinfo=zone, fold=1)
+def in_zone(moment, zone, later=True):
+    """A moment with its time zone; of an hour that a clock shows twice, the later or the earlier one."""
+    return moment if moment.tzinfo else moment.replace(tzinfo=zone, fold=int(later))
+
+
+def delay(handed_in, due, zone):
+    """How late something was handed in.
+
+    By the time that went by, and by the clocks of the course where these show less: in a night in which they are
+    set back, a day is as long as any other, so that it is the same whether a system says its time in UTC or not.
+
+    >>> amsterdam = ZoneInfo("Europe/Amsterdam")
+    >>> due = datetime.datetime(2026, 10, 24, 23, 59, tzinfo=amsterdam)
+    >>> print(delay(datetime.datetime(2026, 10, 25, 22, 59, tzinfo=datetime.UTC), due, amsterdam))
+    1 day, 0:00:00
+    """
+    by_time = handed_in.astimezone(datetime.UTC) - due.astimezone(datetime.UTC)
+    by_clock = handed_in.astimezone(zone).replace(tzinfo=None) - due.astimezone(zone).replace(tzinfo=None)
+    return min(by_time, by_clock)
 
 
 def _times(path, zone):
@@ -221,7 +237,7 @@ def _times(path, zone):
         when = as_time(row[column])
         if when is None:
             raise BadRules(f"{path}: {student!r}: {row[column]!r} is no time that can be read.")
-        found[student] = in_zone(datetime.datetime.fromisoformat(when), zone)
+        found[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
     return {"roster": roster, "times": found}
 
 
@@ -305,8 +321,8 @@ def _result(student, name, record, rules, worth, now):
         if when is None:
             late = any(notebook["late"] for notebook in record["notebooks"]) and extension is None
         elif due is not None:
-            penalty = rules.penalty(when - due)
-            late = when - due > rules.grace
+            delayed = delay(when, due, rules.zone)
+            penalty, late = rules.penalty(delayed), delayed > rules.grace
     if extension == EXCUSED:
         state, late, penalty = EXCUSED, False, 0.0
     full = record["worth"] if record else worth.get(name, 0)
@@ -325,7 +341,8 @@ def _handed_in(student, record, about, zone):
         if found in about.times["times"]:
             return about.times["times"][found]
     said = [notebook.get("handed in") for notebook in record["notebooks"]]
-    return max((in_zone(datetime.datetime.fromisoformat(one), zone) for one in said if one), default=None)
+    moments = (in_zone(datetime.datetime.fromisoformat(one), zone, later=False) for one in said if one)
+    return max(moments, key=lambda moment: moment.astimezone(datetime.UTC), default=None)
 
 
 def _mean(results, rules):
