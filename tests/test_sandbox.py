@@ -319,6 +319,7 @@ def test_honest_cells_run(sandbox, source, monkeypatch):
         [(7, "3 * 4"), (8, "check('q', Out[7] + 1)")],
         [(7, "3 * 4"), (8, "check('q', _7 + 1)")],
         ["12", "None", "1 if False else None", "check('q', _ + 1)"],
+        [(7, "12"), (8, "check('q', eval(In[7]) + 1)")],
         ["import asyncio\nasync def f():\n    await asyncio.sleep(0)\n    return 13", "x = await f()", "check('q', x)"],
         ["import asyncio", "check('q', (await asyncio.gather(asyncio.sleep(0, 13)))[0])"],
         ["%%writefile own.py\nvalue = 12", "%%writefile -a own.py\nvalue += 1", "import own\ncheck('q', own.value)"],
@@ -331,6 +332,23 @@ def test_cells_run_as_in_jupyter(sandbox, cells):
     files = {name: base64.b64encode(data).decode() for name, data in beside.items()}
     result = sandbox.run(notebook(*cells, questions={"q": None}) | {"files": files})
     assert result["answers"]["q"].get("plain") == integer(13), result["cells"]
+
+
+@pytest.mark.parametrize(
+    "source, hint",
+    [
+        ("import socket\nsocket.create_connection(('192.0.2.1', 80), 1)", "tried to use a network"),
+        ("import urllib.request\nurllib.request.urlopen('https://uni.example/')", "tried to use a network"),
+        ("import asyncio\nasyncio.new_event_loop()", None),  # a pair of sockets that leads nowhere
+        ("import coursework\ncoursework.check = check = print", "replaced the check"),
+        ("import os\nos.system('ls')", "started a program"),
+        ("open('/etc/passwd')", "opened /etc/passwd"),
+        ("check('other', 1)", None),
+    ],
+)
+def test_what_an_exercise_does_not_need_is_a_hint(sandbox, source, hint):
+    tried = sandbox.run(notebook(source, questions={"q": None}))["tried"]
+    assert tried == ([hint] if hint else [])
 
 
 def test_files_beside_lead_nowhere(sandbox):

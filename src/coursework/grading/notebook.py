@@ -31,6 +31,7 @@ import re
 import resource
 import select
 import signal
+import socket
 import sys
 import threading
 import time
@@ -56,7 +57,9 @@ TICK = 0.5  # seconds by the clock between two looks at whether a step waits
 WAITING = 0.02
 #: Events of the interpreter that honest notebooks do not bring about, and what to say of them.
 SUSPICIOUS = {
-    "socket.connect": "connected to a socket",
+    "socket.__new__": "tried to use a network",
+    "socket.getaddrinfo": "tried to use a network",
+    "socket.connect": "tried to use a network",
     "socket.bind": "opened a server",
     "os.fork": "started a process",
     "os.forkpty": "started a process",
@@ -77,6 +80,11 @@ SUSPICIOUS = {
     "sys.setprofile": "traced the grader",
     "code.__new__": "made code by hand",
 }
+
+
+#: How many frames above an event a cell is looked for: what a library opens or starts on its own is nobody's. A network
+#: is used by none on its own, and what uses one lies far below the cell that asks for it.
+DEPTH, DEPTH_OF_NETWORK = 6, 40
 
 
 class OutOfTime(BaseException):
@@ -201,11 +209,15 @@ class _Notebook:
                 self.cell = index
                 # As Jupyter numbered it when it was run last; a cell that never ran follows the one before.
                 self.number = self.job["numbers"][index] or (self.number or 0) + 1
+                if isinstance(self.names.get("In"), dict):
+                    self.names["In"][self.number] = self.job["cells"][index]
                 self.step(["cell", index], lambda: self.execute(self.job["cells"][index]), self.limits["cell"])
         self.cell = None
         for question, variable in self.job["variables"].items():
             if question not in self.answered and variable in self.names:
                 self.record(question, self.names[variable], "variable")
+        if self.package.check != self.check:
+            self.hint("replaced the check")
         self.emit({"done": True})
         self.call_secretly()
 
@@ -239,10 +251,10 @@ class _Notebook:
     def prepare(self):
         sys.modules["__main__"] = self.module
         shell = Shell(self.execute)
-        self.names.update(get_ipython=lambda: shell, display=nothing, In=[], Out={})
+        self.names.update(get_ipython=lambda: shell, display=nothing, In={}, Out={})
         for name in OURS:
             sys.modules.pop(name, None)
-        package = types.ModuleType("coursework")
+        package = self.package = types.ModuleType("coursework")
         package.check = self.check
         package.hint = package.progress = package.me = package.worked_solution = nothing
         package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
@@ -339,10 +351,16 @@ class _Notebook:
             if not isinstance(path, str) or not self.is_elsewhere(path, mode):
                 return
             said = f"opened {path[:100]}"
-        elif self.is_from_a_cell():
+        elif event == "socket.__new__" and arguments[1] not in (socket.AF_INET, socket.AF_INET6):
+            return  # such as the pair through which an event loop wakes itself up
+        elif self.is_from_a_cell(DEPTH_OF_NETWORK if event.startswith("socket.") else DEPTH):
             said = SUSPICIOUS[event]
         else:
             return
+        self.hint(said)
+
+    def hint(self, said):
+        """Note once what a person may want to know."""
         if said not in self.tried and len(self.tried) < MOST_TRIED:
             self.tried.add(said)
             self.emit({"tried": said, "cell": self.cell})
@@ -355,10 +373,10 @@ class _Notebook:
             return False
         return self.is_from_a_cell()
 
-    def is_from_a_cell(self):
+    def is_from_a_cell(self, most=DEPTH):
         """Whether the code of a cell asks for it itself, and no library on its behalf."""
         frame, depth = sys._getframe(2), 0
-        while frame is not None and depth < 6:
+        while frame is not None and depth < most:
             if frame.f_code.co_filename.startswith("<cell "):
                 return True
             frame, depth = frame.f_back, depth + 1

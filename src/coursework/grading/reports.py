@@ -372,6 +372,8 @@ def _oddities(record):
     for notebook in record["notebooks"]:
         found.update(dict.fromkeys(notebook["notes"]))
         found.update(dict.fromkeys(f"its code {said}" for said in notebook.get("tried", ())))
+        if notebook["unknown questions"]:
+            found["it checks an answer to a question that there is not"] = None
         outcomes = sorted({cell["outcome"] for cell in notebook["cells"]} - {"done", "not run", "error"})
         found.update(dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes))
     if record["superseded"]:
