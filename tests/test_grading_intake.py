@@ -7,6 +7,7 @@ import json
 import os
 import stat
 import struct
+import tracemalloc
 import zipfile
 
 import nbformat
@@ -669,6 +670,24 @@ def test_a_mark_of_byte_order_and_older_notebooks_are_read():
         ],
     }
     assert intake.read_notebook(json.dumps(older).encode()) == ([{"source": "a = 1\nb = 2", "execution_count": 7}], [])
+
+
+def test_of_a_large_archive_little_is_held(box):
+    """What grows with the class is the names and where each file lies: of 100,000 it is to fit any machine."""
+    number, data = 3_000, nbformat.writes(notebook(["check('turns/sum', 1)"]))
+    with zipfile.ZipFile(box, "w") as opened:
+        for order in range(number):
+            opened.writestr(f"student-{order:06}/turns.ipynb", data)
+    intake.take_in(box, ["turns"])  # what is kept once, by caches
+    tracemalloc.start()
+    try:
+        notebooks, refused = intake.take_in(box, ["turns"])
+        held, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert len(notebooks) == number and refused == []
+    assert held / number < 1_450 and most / number < 1_800
+    assert notebooks[-1].cells[0]["source"] == "check('turns/sum', 1)"
 
 
 def test_submissions_stay_as_they_are(folder):

@@ -9,6 +9,7 @@ import base64
 import contextlib
 import hashlib
 import importlib.util
+import itertools
 import json
 import platform
 import sys
@@ -24,7 +25,7 @@ from .identity import BadRoster, Roster
 from .ledger import DECISIONS, Ledger, digest_of_answer
 from .secret import secret_beside
 from .store import FORMAT, Store, as_text, write
-from .tables import in_a_line, number, table
+from .tables import in_a_line, lines, number
 from .versions import software
 from .workers import processors, side_by_side
 
@@ -269,20 +270,22 @@ def grade(
 
 def _say_whose(work, refused, roster, store, show):
     """Say before anything is run whose each file is, and how that is known."""
-    rows = [
-        (one.student, one.assignment, notebook.file, notebook.matched)
-        for one in work
-        for notebook in (*one.notebooks, *one.superseded)
-    ]
-    write(store.folder / WHOSE, table(("student", "assignment", "file", "known by"), rows))
+
+    def rows():
+        for one in work:
+            for notebook in (*one.notebooks, *one.superseded):
+                yield one.student, one.assignment, notebook.file, notebook.matched
+
+    write(store.folder / WHOSE, lines(("student", "assignment", "file", "known by"), rows()))
     around = {one.file.partition(one.claim.place)[0].strip("/") for each in work for one in each.notebooks} - {""}
     if len(around) == 1:
         (folder,) = around
         print(f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for nobody's name.", file=show)
-    for student, assignment, file, matched in rows[:MOST_SHOWN]:
+    for student, assignment, file, matched in itertools.islice(rows(), MOST_SHOWN):
         print(f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})", file=show)
-    if len(rows) > MOST_SHOWN:
-        print(f"  ... and {len(rows) - MOST_SHOWN} more: {store.folder / WHOSE}", file=show)
+    more = sum(len(one.notebooks) + len(one.superseded) for one in work) - MOST_SHOWN
+    if more > 0:
+        print(f"  ... and {more} more: {store.folder / WHOSE}", file=show)
     asked = [one for one in refused if one.why.endswith(("whose are they?", intake.NOT_MATCHED))]
     for one in asked[:MOST_SHOWN]:
         print(f"  ? <- {in_a_line(one.file, 120)}: {in_a_line(one.why, 300)}", file=show)

@@ -14,10 +14,12 @@ import datetime
 import functools
 import hashlib
 import io
+import itertools
 import json
 import os
 import re
 import stat
+import struct
 import zipfile
 from collections import Counter
 from collections.abc import Callable
@@ -190,9 +192,11 @@ def take_in(path, assignments=(), roster=None, student=None):
                 _take(found, others, refused, layout, inner, when, data, name)
         else:
             _take(found, others, refused, layout, name, when, read, name)
-    notebooks = [_with_student(one, roster, student, refused) for one in found]
-    notebooks = _without_conflicts([one for one in notebooks if one], roster, refused)
     have = {one.claim.source for one in found}
+    for number, one in enumerate(found):  # each in its place: of a large class a second list is felt
+        one = _with_student(one, roster, student, refused)
+        found[number] = one and one._replace(beside=_beside(one, others), handed_in=_when(one, others, layout))
+    notebooks = _without_conflicts([one for one in found if one], roster, refused)
     for source, beside in others.items():
         for claim, name, _ in beside:
             if PurePosixPath(name).name in INDEXES or layout.is_beside_submissions(name):
@@ -203,9 +207,7 @@ def take_in(path, assignments=(), roster=None, student=None):
                 whose = claim.student if claim else ""
                 read = " The notebook beside it can read it." if source in have else ""
                 refused.append(Refused(name, whose, f"This is no notebook: its name does not end in .ipynb.{read}"))
-    return [
-        one._replace(beside=_beside(one, others), handed_in=_when(one, others, layout)) for one in notebooks
-    ], refused
+    return notebooks, refused
 
 
 #: nbgrader's file beside what was handed in. Its time zone is UTC unless a course has changed that.
@@ -523,12 +525,14 @@ class _OwnPlace(io.RawIOBase):
 
 def _files_of_archive(path, refused, repositories):
     archive = zipfile.ZipFile(_OwnPlace(path))
-    entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
-    times = {}
-    for entry in entries:
-        times[entry.filename] = times.get(entry.filename, 0) + 1
+    entries = sorted(archive.infolist(), key=lambda entry: entry.filename, reverse=True)
+    repeated = {one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename}
+    # What the archive knows of each is let go one by one: of a hundred thousand it would be half of the memory.
+    archive.filelist.clear()
+    archive.NameToInfo.clear()
     unpacked = 0
-    for entry in entries:
+    while entries:
+        entry = entries.pop()
         name = entry.filename
         shown = name.encode("utf8", "backslashreplace").decode("utf8")
         if "/.git/" in name:
@@ -536,7 +540,7 @@ def _files_of_archive(path, refused, repositories):
         if entry.is_dir() or _is_litter(name):
             continue
         why = _why_not_unpacked(entry, name)
-        if times[name] > 1:
+        if name in repeated:
             why = "The archive holds this name more than once."
         unpacked += min(entry.file_size, MOST_BYTES)
         if not why and unpacked > MOST_UNPACKED:
@@ -544,7 +548,42 @@ def _files_of_archive(path, refused, repositories):
         if why:
             refused.append(Refused(shown, "", why))
         else:
-            yield shown, entry.date_time, lambda entry=entry: _read_entry(archive, entry)
+            yield name if shown == name else shown, entry.date_time, _Entry(archive, entry)
+
+
+class _Entry:
+    """A function that reads an entry of an archive: no more is kept of it than where it lies."""
+
+    __slots__ = ("archive", "name", "place")
+    LAYOUT = struct.Struct("<QQQLHHq")
+
+    def __init__(self, archive, entry):
+        self.archive, self.name = archive, entry.orig_filename
+        end = getattr(entry, "_end_offset", None)  # by which newer Pythons notice entries that overlap
+        self.place = self.LAYOUT.pack(
+            entry.header_offset,
+            entry.compress_size,
+            entry.file_size,
+            entry.CRC,
+            entry.compress_type,
+            entry.flag_bits,
+            -1 if end is None else end,
+        )
+
+    def __call__(self):
+        entry = zipfile.ZipInfo(self.name)
+        (
+            entry.header_offset,
+            entry.compress_size,
+            entry.file_size,
+            entry.CRC,
+            entry.compress_type,
+            entry.flag_bits,
+            end,
+        ) = self.LAYOUT.unpack(self.place)
+        if end >= 0:
+            entry._end_offset = end
+        return _read_entry(self.archive, entry)
 
 
 def _why_not_unpacked(entry, name):
