@@ -15,8 +15,10 @@ hidden tests, with a call of :func:`question`:
 CONTRIBUTING.md explains each argument with an example.
 """
 
+import difflib
 import hashlib
 import html
+import inspect
 import itertools
 import json
 import re
@@ -44,6 +46,7 @@ from ..checking.plain import NotPlain, to_plain
 from ..checking.plugins import kind_of_values, kinds
 from ..checking.points import ANGLES
 from ..checking.questions import CODE_LETTERS, NEARLY, OUTCOMES, code_text, compare, rung_key
+from ..checking.units import UnknownUnit
 
 #: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
 TOLERANCE = 5e-4
@@ -105,6 +108,8 @@ class Question:
         What a person looks for who reads the answers.
     entries : dict
         :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
+    no_mistakes : list of str
+        What the author says of mistakes that give the right answer.
     near : list
         Fingerprints of answers that agree with an exact one to about three digits.
     """
@@ -154,7 +159,8 @@ class Question:
             *(Mistake("authored", {"text": text}, wrong) for text, wrong in (authored or {}).items()),
             *self._catalogued(),
         ]
-        self.near = []
+        self._demand_notes()
+        self.near, self.no_mistakes = [], []
         self.entries = {} if kinds()[public["kind"]].by_a_person else self._entries()
 
     def to_plain(self, answer):
@@ -219,6 +225,21 @@ class Question:
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
             raise AuthorError(f"{self.name}: the turns do not give the right answer.")
 
+    def _demand_notes(self):
+        """Hints and credit belong to mistakes that the question knows: for another one they would never be given."""
+        notes = dict.fromkeys(mistake.note for mistake in self.mistakes)
+        texts = [mistake.details["text"] for mistake in self.mistakes if mistake.note == "authored"]
+        for argument, keys, known in (
+            ("hints", self.hints, [*notes, *texts]),
+            ("credit", self.credit, [*notes, "help"]),
+        ):
+            for key in keys:
+                if key not in known:
+                    raise AuthorError(
+                        f"{self.name}: `{argument}` names {key!r}, and this question knows no such mistake. It knows "
+                        f"{', '.join(repr(one) for one in known)}."
+                    )
+
     def _catalogued(self):
         if self.public["kind"] != "function":
             return catalogued_mistakes(self.public, self.answer, self.turns, self.turned)
@@ -253,7 +274,7 @@ class Question:
 
     def _known(self):
         """The right answer, and then every other answer that a mistake leads to."""
-        known = [self._one("correct", [], self.plain)]
+        known, self.no_mistakes = [self._one("correct", [], self.plain)], []
         for mistake in self.mistakes:
             try:
                 one = self._one("mistake", [[mistake.note, mistake.details]], self.to_plain(mistake.answer))
@@ -264,6 +285,8 @@ class Question:
                 known.append(one)
             elif same is not known[0] and one.notes[0] not in same.notes and mistake.note not in GENERAL:
                 same.notes.append(one.notes[0])
+            elif same is known[0] and mistake.note == "authored":
+                self.no_mistakes.append(mistake.details["text"])
         return known
 
     def _one(self, outcome, notes, plain):
@@ -279,7 +302,13 @@ class Question:
 
     def _case(self, one, alone):
         case = {"outcome": one.outcome, "notes": one.notes}
-        steps = [step for note, _ in one.notes for step in self.hints.get(note, [])]
+        steps = [
+            step
+            for note, details in one.notes
+            # Those for one mistake of the author's are named by what it says; `authored` is for all of them.
+            for key in dict.fromkeys((details.get("text") if note == "authored" else note, note))
+            for step in self.hints.get(key, [])
+        ]
         if steps:
             case["hints"] = steps
         if self.public.get("tolerance") is not None and one.numbers and (one.outcome == "correct" or not alone):
@@ -453,6 +482,42 @@ def to_page(markdown):
     return MarkdownIt().use(dollarmath_plugin, renderer=formula).render(markdown)
 
 
+def _demand_arguments(name, given):
+    """What a question may say beside the arguments of :func:`question`."""
+    known = [
+        parameter.name
+        for function in (question, Question.__init__)
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.kind is parameter.KEYWORD_ONLY
+    ]
+    for one in sorted(given - set(known)):
+        close = difflib.get_close_matches(one, known, 1)
+        raise AuthorError(f"{name}: a question has no `{one}`." + (f" Did you mean `{close[0]}`?" if close else ""))
+
+
+def _demand_forms(name, mistakes, hints, credit, worth):
+    """What an author says of a question has the form that the manual shows."""
+    for argument, value, example in (
+        ("mistakes", mistakes, "{'what the student is told': the_wrong_answer}"),
+        ("hints", hints, "{'opposite': ['the first step', 'the second']}"),
+        ("credit", credit, "{'opposite': 0.5}"),
+    ):
+        if value is not None and not (isinstance(value, dict) and all(isinstance(key, str) for key in value)):
+            raise AuthorError(f"{name}: `{argument}` is a dictionary with texts as its keys: {example}.")
+    for note, steps in (hints or {}).items():
+        if not isinstance(steps, (list, tuple)) or not all(isinstance(step, str) for step in steps):
+            raise AuthorError(f"{name}: the hints of {note!r} are a list of texts.")
+    for note, share in (credit or {}).items():
+        if not _is_number(share) or not 0 <= share <= 1:
+            raise AuthorError(f"{name}: the credit of {note!r} is a share from 0 to 1, and this is {share!r}.")
+    if worth is not None and (not _is_number(worth) or worth < 0):
+        raise AuthorError(f"{name}: `worth` is a number of points, and this is {worth!r}.")
+
+
+def _is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
 def question(
     name,
     kind,
@@ -484,9 +549,18 @@ def question(
         The question is not well posed.
     """
     if kind not in kinds():
-        raise AuthorError(f"{name}: the kind {kind!r} is none of {sorted(kinds())}.")
+        raise AuthorError(f"{name}: the kind {kind!r} is none of {', '.join(sorted(kinds()))}.")
     known, values = kinds()[kind], kinds()[result or kind]
-    public = {"kind": kind, **(variant or {}), **(known.public(answer) if known.public else {})}
+    _demand_arguments(name, {*rest} - {*values.arguments})
+    _demand_forms(name, mistakes, **{key: rest.get(key) for key in ("hints", "credit", "worth")})
+    try:
+        public = {"kind": kind, **(variant or {}), **(known.public(answer) if known.public else {})}
+    except (TypeError, LookupError, AttributeError, UnknownUnit) as error:
+        what = f"`{error}` is no unit that is known here." if isinstance(error, UnknownUnit) else f"This is {answer!r}."
+        raise AuthorError(
+            f"{name}: the right answer cannot be read. The solution of a question of kind {kind!r} is a number with "
+            f"its unit, such as `(3.2, 'kN m')`. {what}"
+        ) from None
     if rest.get("rubric") and not known.by_a_person:
         raise AuthorError(f"{name}: a rubric is for answers that a person reads, of the kind 'free text'.")
     if rest.get("partial") and kind not in PARTS:

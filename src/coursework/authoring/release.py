@@ -121,9 +121,22 @@ def _checksum(cell, about):
 def run_notebook(notebook, folder):
     """Run an exercise notebook, blanks and all, and keep what it shows."""
     from nbclient import NotebookClient
+    from nbclient.exceptions import CellExecutionError
 
-    client = NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(folder)}})
-    client.execute()
+    client = NotebookClient(
+        notebook,
+        timeout=120,
+        kernel_name="python3",
+        resources={"metadata": {"path": str(folder)}},
+        extra_arguments=["--IPKernelApp.log_level=ERROR"],  # it warns of its own sockets, which are on this machine
+    )
+    try:
+        client.execute()
+    except CellExecutionError as error:
+        raise AuthorError(
+            f"The notebook for students does not run with its blanks as they are: {error.ename}: {error.evalue}. Does "
+            f"a cell that is no solution use an answer? {error.traceback.partition(chr(10) * 3)[0]}"
+        ) from None
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)
     notebook.metadata = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
@@ -156,6 +169,13 @@ def _release_one(path, course):
         fault = too_heavy(question, declared)
         if fault:
             raise AuthorError(f"{name}, in {path.name}: {fault}")
+        for text in question.no_mistakes:
+            raise AuthorError(f"{name}, in {path.name}: This authored mistake gives the right answer: {text}")
+    if source.rules and not source.asks_who and source.name != CHAPTERS:
+        raise AuthorError(
+            f"{path.name}: students say nowhere who they are, so all would get the same numbers. Near the top, write a "
+            'cell `me("")`, with `from coursework import check, hint, me, variant` above it.'
+        )
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
         nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")

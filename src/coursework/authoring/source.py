@@ -33,8 +33,11 @@ DECLARED = "guessable.json"
 #: The most points that a question carries which can be guessed.
 LIGHT = 1
 
-SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
-HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
+SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
+HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
+#: What is marked, and every line that was meant as a mark.
+MARKED = ("SOLUTION", "HIDDEN TESTS", "VARIANTS")
+MARK = re.compile(r"[ \t]*#+[ \t]*(BEGIN|END)[ \t]+((?:SOLUTION|HIDDEN|VARIANT).*)", re.I)
 
 
 class Drawing(NamedTuple):
@@ -68,6 +71,7 @@ class Source(NamedTuple):
     questions: dict
     figures: dict
     rules: dict
+    asks_who: bool
 
 
 def notebooks_in(folder):
@@ -139,8 +143,12 @@ def read_source(path, variant=0, edition="", only=None):
 
     path = Path(path)
     notebook = nbformat.read(path, as_version=4)
+    for number, cell in enumerate(notebook.cells):
+        cell.source = cell.source.replace("\r\n", "\n")  # as some editors of Windows write it
+        if cell.cell_type == "code":
+            _demand_marks(cell.source, f"{path.name}, cell {number}")
     answers, questions, figures = {}, {}, {}
-    rules, given, texts = {}, {}, _texts_of_variants(notebook)
+    rules, given, texts, identities = {}, {}, _texts_of_variants(notebook), []
 
     def draw(name, count=COUNT, where=None, picture=None, **pools):
         rules[name] = Rule(name, count, pools, where, picture)
@@ -152,13 +160,18 @@ def read_source(path, variant=0, edition="", only=None):
 
     def record_question(name, **about):
         if name not in answers:
-            raise author.AuthorError(f"{name}: the question stands before its check.")
+            raise author.AuthorError(
+                f"{name}: the question stands before its check"
+                + (f"; what is checked so far: {', '.join(answers)}." if answers else ".")
+            )
         if name in questions:
             raise author.AuthorError(f"{name}: there are two questions of this name.")
         if name.partition("/")[0] != path.stem:
             raise author.AuthorError(f"{name}: a question of this notebook is named '{path.stem}/...'.")
         if only is not None and name not in only:
             return
+        if "kind" not in about:
+            raise author.AuthorError(f"{name}: say of which kind it is: kind='expression', for example.")
         if name not in rules:
             if not variant:
                 questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
@@ -175,9 +188,12 @@ def read_source(path, variant=0, edition="", only=None):
                 about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
             questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
 
+    def record_identity(identity=""):
+        identities.append(identity)
+
     namespace = {"__name__": "__main__", "question": record_question, "draw": draw, "drawing": Drawing}
     needed = range(len(notebook.cells)) if only is None else cells_needed(notebook, only)
-    with _replaced(coursework, "check", record_check), _replaced(coursework, "me", lambda identity="": None):
+    with _replaced(coursework, "check", record_check), _replaced(coursework, "me", record_identity):
         for number, cell in enumerate(notebook.cells):
             if cell.cell_type != "code" or number not in needed:
                 continue
@@ -197,7 +213,67 @@ def read_source(path, variant=0, edition="", only=None):
         raise author.AuthorError(f"{path.name}: two questions have an answer of the same name.")
     for name, question in questions.items():
         question.variable = variables[name]
-    return Source(path.stem, notebook, questions, figures, rules)
+    if only is None and not variant:
+        _demand_hidden(path.name, notebook, variables)
+        _demand_shown(path.name, rules, given, texts, questions)
+    return Source(path.stem, notebook, questions, figures, rules, bool(identities))
+
+
+def _demand_marks(text, where):
+    """Marks that are not understood would leave a solution in what students get."""
+    open_one = ""
+    for line in text.splitlines():
+        found = MARK.fullmatch(line)
+        if not found:
+            continue
+        what, marked = found[1], found[2].rstrip()
+        if line.strip() != f"### {what} {marked}" or what != what.upper() or marked not in MARKED:
+            known = ", ".join(f"`### {what.upper()} {name}`" for name in MARKED)
+            raise author.AuthorError(f"{where}: `{line.strip()}` is no mark; there are {known}.")
+        if what == "BEGIN" and open_one:
+            raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
+        if what == "END" and marked != open_one:
+            raise author.AuthorError(f"{where}: `### END {marked}` has no `### BEGIN {marked}` before it.")
+        open_one = marked if what == "BEGIN" else ""
+    if open_one:
+        raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
+
+
+def _demand_hidden(file, notebook, variables):
+    """An answer or a question that stands outside of the marks would be given to students."""
+    owners = {variable: name for name, variable in variables.items()}
+    cells = [(number, cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
+    solved_here = {name for _, text in cells for name in answered_in(text, owners)}
+    for variable, name in owners.items():
+        if variable not in solved_here:
+            raise author.AuthorError(
+                f"{name}: no solution in {file} sets `{variable}`, so students would get the answer, or no blank. "
+                f"Write `{variable} = ...` between `### BEGIN SOLUTION` and `### END SOLUTION`."
+            )
+    for number, text in cells:
+        for node in ast.walk(ast.parse(posed(text, owners))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "question":
+                raise author.AuthorError(
+                    f"{file}, cell {number}: the question stands between `### BEGIN HIDDEN TESTS` and "
+                    "`### END HIDDEN TESTS`, or students would get it."
+                )
+
+
+def _demand_shown(file, rules, given, texts, questions):
+    """What varies belongs to a question, and what a text shows in braces is drawn."""
+    for name in rules:
+        if name not in questions:
+            raise author.AuthorError(
+                f"{name}: {file} draws what varies in it, and asks no such question; it asks {', '.join(questions)}."
+            )
+        braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", texts[name]))
+        unknown = [one for one in braces if one not in (*given[name], "picture")]
+        unshown = [one for one in given[name] if one not in braces]
+        # Braces within braces may be TeX; a parameter that is shown nowhere makes it a slip.
+        if unknown and unshown:
+            raise author.AuthorError(
+                f"{name}: its text shows {{{{{unknown[0]}}}}}, which is not drawn; drawn are {', '.join(given[name])}."
+            )
 
 
 def _texts_of_variants(notebook):

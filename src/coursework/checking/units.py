@@ -56,6 +56,9 @@ def unit(text):
     ((2, 1, -2, 0, 0, 0, 0), 1000)
     >>> unit("J/(kg K)") == unit("m²·s⁻²/K"), unit("N/m/s") == unit("kg s^-3")
     (True, True)
+    >>> unit("°C")  # temperatures are in kelvins: a product of units has no other zero
+    Traceback (most recent call last):
+    coursework.checking.units.UnknownUnit: °C
     """
     size, exponents, place, sign, inside = MP.one, [0] * len(BASE), 0, 1, None
     plain = text.translate(RAISED).replace("\u03bc", "µ").replace("\u2126", "Ω").strip()
@@ -64,6 +67,10 @@ def unit(text):
         if not found:
             raise UnknownUnit(plain[place:][:20])
         place = found.end()
+        if found["unit"] == "°" and plain[place : place + 1] in ("C", "F"):
+            raise UnknownUnit(
+                plain[place - 1 : place + 1]
+            )  # a scale with a zero of its own, and no angle times coulomb
         if found["over"]:
             sign = -1
         elif found["open"]:
