@@ -36,7 +36,30 @@ def depart_entry(translator, node):
     HTML5Translator.depart_entry(translator, node)
 
 
+def name_of_caption(node):
+    """The identifier of what names a figure with a caption: browsers no longer take its name from the caption."""
+    has_caption = any(isinstance(part, nodes.caption) for part in node)
+    return f"{node['ids'][0]}-name" if has_caption and node["ids"] else None
+
+
+def visit_figure(translator, node):
+    HTML5Translator.visit_figure(translator, node)
+    if name := name_of_caption(node):
+        translator.body[-1] = translator.body[-1].replace("<figure", f'<figure aria-labelledby="{name}"', 1)
+
+
+def visit_caption(translator, node):
+    """The number of a figure is its name; without one, the words of its caption are."""
+    start = len(translator.body)
+    HTML5Translator.visit_caption(translator, node)
+    if isinstance(node.parent, nodes.figure) and (name := name_of_caption(node.parent)):
+        written = "".join(translator.body[start:])
+        translator.body[start:] = [written.replace('<span class="caption-', f'<span id="{name}" class="caption-', 1)]
+
+
 def setup(app):
+    app.add_node(nodes.figure, override=True, html=(visit_figure, HTML5Translator.depart_figure))
+    app.add_node(nodes.caption, override=True, html=(visit_caption, HTML5Translator.depart_caption))
     app.add_node(nodes.entry, override=True, html=(visit_entry, depart_entry))
     app.add_node(HideCodeCellNode, override=True, html=(visit_hidden, depart_hidden))
     app.add_node(nodes.citation, override=True, html=(visit_citation, depart_citation))

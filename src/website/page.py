@@ -129,8 +129,9 @@ def lighten(body):
     """Say once what a page would repeat.
 
     Every figure brings the style sheet of all figures and the outlines of its letters, since in a notebook it stands
-    alone. Names, brackets, blanks and operators of a program have the colour of the text around them, and need no
-    element each; nor does a single word within an element.
+    alone. There it is a figure to a screen reader, too; here it lies in one that has a name, or its drawing has one.
+    Names, brackets, blanks and operators of a program have the colour of the text around them, and need no element
+    each; nor does a single word within an element.
     """
     seen = set()
 
@@ -140,6 +141,7 @@ def lighten(body):
         return "" if known else style[0]
 
     body = re.sub(r"<style>\.orientation-figure[^<]*</style>", first_only, body)
+    body = re.sub(r'<figure (?=class="orientation-figure)', '<figure role="none" ', body)
     body = NAME.sub(r"\1\2", LITERAL.sub(r'<code class="\1">\2</code>', body))
     return share_outlines(re.sub(r'<span class="(?:n|p|w|nn|o)">([^<]*)</span>', r"\1", body))
 

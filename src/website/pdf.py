@@ -179,6 +179,8 @@ def article(site, page, set_formula=as_picture):
     for element in text.find_all(True):
         if element.get("role", "").startswith("doc-"):
             del element["role"]  # in a PDF a link with such a role would be none
+        if element.name == "figure":
+            element.attrs.pop("aria-labelledby", None)  # in a PDF it would be heard by that name alone
         if element.get("id"):
             element["id"] = place(page, element["id"])
         for name, value in list(element.attrs.items()):

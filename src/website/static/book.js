@@ -45,6 +45,7 @@ const watch = new ResizeObserver((entries) => {
     const words = target.matches(".math-box") ? "Wide equation" : target.matches("figure") && "Wide figure";
     for (const [name, value] of Object.entries({ tabindex: "0", ...(words && { role: "group", "aria-label": words }) })) {
       if (scrolls) target.setAttribute(name, value);
+      else if (name === "role" && target.matches("figure")) target.setAttribute(name, "none"); // its drawing has a name
       else target.removeAttribute(name);
     }
   }
