@@ -205,8 +205,11 @@ def _moment(path, where, value, zone):
 
 
 def in_zone(moment, zone, later=True):
-    """A moment with its time zone; of an hour that a clock shows twice, the later or the earlier one."""
-    return moment if moment.tzinfo else moment.replace(tzinfo=zone, fold=int(later))
+    """A moment with its time zone; of an hour that a clock shows twice, or leaves out, the later or the earlier one."""
+    if moment.tzinfo:
+        return moment
+    both = [moment.replace(tzinfo=zone, fold=fold) for fold in (0, 1)]
+    return (max if later else min)(both, key=lambda one: one.astimezone(datetime.UTC))
 
 
 def delay(handed_in, due, zone):
@@ -236,7 +239,10 @@ def _times(path, zone):
             continue
         when = as_time(row[column])
         if when is None:
-            raise BadRules(f"{path}: {student!r}: {row[column]!r} is no time that can be read.")
+            raise BadRules(
+                f"{path}: {student!r}: {row[column]!r} is no time that can be read. Write such as 2026-10-06 20:01, or "
+                "download the table with your system in English."
+            )
         found[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
     return {"roster": roster, "times": found}
 
