@@ -1,11 +1,14 @@
 """What an author forgets or misspells is refused before anything is released, in words that say what to do."""
 
+from pathlib import Path
+
 import pytest
 from test_release import made_in, write_source
 
 from coursework.authoring.author import AuthorError
 from coursework.authoring.release import release
 from coursework.authoring.source import read_source
+from coursework.authoring.trial import trial
 
 SETUP = "import sympy as sm\nfrom coursework import check, me, variant\nx = sm.Symbol('x')"
 ANSWER = "### BEGIN SOLUTION\nanswer = 3 * x\n### END SOLUTION"
@@ -118,3 +121,26 @@ def test_hints_may_belong_to_one_mistake_of_the_author(tmp_path):
         if entry.notes and entry.notes[0][0] == "authored"
     }
     assert hints == {"Too few.": ["Count."], "Too many.": ["Count again.", "Count."]}
+
+
+def test_the_preview_shows_all_that_stands_above_a_question(tmp_path):
+    """The heading above a question with variants and the figure above its text were left out."""
+    drawing = "class Line:\n    alt = 'A line'\n    picture = lambda self: '<svg width=\"9\"></svg>'\nLine()"
+    cells = [
+        ("code", f"{SETUP}\nme('')"),
+        ("markdown", "## Another heading"),
+        ("code", ANSWER.replace("answer", "other") + "\ncheck('trial/other', other)\n"
+         + QUESTION.replace("/one", "/other")),
+        ("markdown", "## The heading"),
+        ("code", drawing, "figure"),
+        ("code", DRAWN),
+        ("markdown", "Add {{n}} to `x`."),
+        ("code", "\n".join([ANSWER, CHECK, QUESTION.replace("'x')", "'x', exam=True)")])),
+    ]  # fmt: skip
+    made = made_in(tmp_path)
+    write_source(made.sources, *cells)
+    page = Path(trial(made, "trial/one", tmp_path / "try.html")).read_text("utf8")
+    heading, figure, text = (page.index(part) for part in ("<h3>The heading</h3>", 'alt="A line"', "Add 1 to"))
+    assert heading < figure < text and "Another heading" not in page and "{{n}}" not in page
+    # As wide as the screen of a telephone, and as dark as its reader wants it.
+    assert 'name="viewport"' in page and "color-scheme:light dark" in page and 'data-of="Kind"' in page

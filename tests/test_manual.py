@@ -3,6 +3,7 @@
 import csv
 import os
 import re
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -10,7 +11,6 @@ import pytest
 from test_course import SOLVE
 from test_release import write_source
 
-from coursework.authoring.packing import DISTRIBUTIONS, wheel
 from coursework.authoring.selftest import _judge, try_question
 from coursework.authoring.source import read_source
 
@@ -58,18 +58,18 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
     """From an empty folder to the marks, as one who has nothing but the manual and the two packages."""
     blocks = re.findall(r"```console\n(.*?)```", MANUAL, re.S)
     assert (
-        "venv" in blocks[0] and "new" in blocks[1] and "try" in blocks[2] and "grade" in blocks[3] and len(blocks) == 4
+        "venv" in blocks[0] and "new" in blocks[1] and "try" in blocks[2] and "grade" in blocks[3] and len(blocks) == 5
     )
-    (tmp_path / "wheels").mkdir()
-    for name in DISTRIBUTIONS:
-        wheel(name, tmp_path / "wheels")
+    blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(Path(__file__).parent.parent)))
+    (rules,) = re.findall(r"```toml\n(time-zone.*?)```", MANUAL, re.S)
     (tmp_path / "solve.py").write_text(SOLVE)
     handing_in = (
         "mkdir -p handed-in/ada handed-in/ben\n"
         "python ../solve.py solutions/first-steps.ipynb handed-in/ada/first-steps.ipynb\n"
         "cp exercises/first-steps.ipynb handed-in/ben\n"
     )
-    script = "\n".join(["set -e", *blocks[:3], handing_in, blocks[3]])
+    (tmp_path / "rules.toml").write_text(rules)
+    script = "\n".join(["set -e", *blocks[:3], handing_in, blocks[3], "cp ../rules.toml .", blocks[4]])
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     environment["PIP_CONSTRAINT"] = str(Path(__file__).parent.parent / "constraints.txt")
     done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
@@ -79,6 +79,7 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
     assert (course / "marks" / "report.html").is_file() and len(
         list((course / "marks" / "feedback").rglob("*.html"))
     ) >= 2
+    assert (course / "feedback.zip").is_file() and (course / "marks" / "course" / "course.csv").is_file()
     with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
         points = {row["student"]: float(row["points"]) for row in csv.DictReader(file)}
     assert points["ada"] > 0 == points["ben"]

@@ -1,6 +1,7 @@
 """``coursework new``: a small course that works at once."""
 
 import re
+import shlex
 from pathlib import Path
 
 from .author import AuthorError
@@ -159,6 +160,6 @@ def new(folder):
     made = sorted(path for path in folder.rglob("*") if path.is_file())
     return [
         *(f"made  {path}" for path in made),
-        f"The course works as it is: `cd {folder}`, then `coursework try {NOTEBOOK}/area`.",
+        f"The course works as it is: `cd {shlex.quote(str(folder))}`, then `coursework try {NOTEBOOK}/area`.",
         f"Students get {course.archive}.",
     ]

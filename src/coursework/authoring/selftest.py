@@ -14,6 +14,7 @@ import os
 import random
 import re
 import zipfile
+from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,6 +48,34 @@ SECONDS_PER_TRY = 0.012
 FORMS = 6
 #: Variants of a question that are attacked beside the first one; which ones follows from the name of the notebook.
 ATTACKED = 2
+COLUMNS = (
+    "Question",
+    "Kind",
+    "Forms that pass",
+    "Mistakes named",
+    "Mistakes that change nothing here",
+    "To guess it",
+    "Faults",
+)
+#: On a narrow screen each question stands by itself, and each cell says what it is of.
+STYLE = """
+:root{color-scheme:light dark}
+body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;overflow-wrap:break-word}
+section{border-top:1px solid #8888;margin-top:2rem}
+img{background:#fff;height:auto;max-width:100%}
+pre,math[display=block]{overflow-x:auto}
+table{border-collapse:collapse;width:100%}
+th,td{border-bottom:1px solid #8888;padding:.4rem;text-align:left;vertical-align:top}
+td ul{margin:0;padding-left:1.2em}
+@media (max-width:60rem){
+thead{display:none}
+tr,th,td{display:block}
+th,td{border:0;padding:.2rem 0}
+tr{border-bottom:1px solid #8888;padding:.6rem 0}
+td::before{content:attr(data-of) ": ";font-weight:600}
+td details{display:inline-block;max-width:100%;vertical-align:top}
+}
+"""
 NO_LEAK = "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"
 
 
@@ -117,7 +146,7 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     if found.way and found.tries < min(declared or BUDGET, budget):
         faults.append(
             f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}, with "
-            f"{LIGHT} point at most."
+            f'{LIGHT} point at most: "{question.name}": {rounded_down(found.tries)}'
         )
     return Finding(
         question.name,
@@ -129,6 +158,15 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
         question.worth,
         faults,
     )
+
+
+def rounded_down(tries):
+    """As many tries as an author declares of a question that was found after some: not to the last one.
+
+    >>> rounded_down(8731), rounded_down(143), rounded_down(4)
+    (8000, 100, 4)
+    """
+    return int(str(tries)[0]) * 10 ** (len(str(tries)) - 1)
 
 
 def _try_text(question):
@@ -413,34 +451,46 @@ def _share_of_guessable(findings):
 def write_page(findings, found, before=""):
     rows = []
     for finding in findings:
-        mistakes = "".join(f"<li><b>{html.escape(note)}</b>: {to_html(said)}</li>" for note, said in finding.mistakes)
+        said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
+        mistakes = "".join(
+            f"<li><b>{html.escape(note)}</b>: {said}{f' ({times} of these)' if times > 1 else ''}</li>"
+            for (note, said), times in said_of.items()
+        )
         faults = "".join(f"<li>{html.escape(fault)}</li>" for fault in finding.faults)
+        cells = (
+            html.escape(finding.kind),
+            _folded(len(finding.forms), html.escape(", ".join(finding.forms))),
+            _folded(len(finding.mistakes), f"<ul>{mistakes}</ul>"),
+            html.escape(", ".join(dict.fromkeys(finding.unmoved))) or "none",
+            html.escape(str(finding.attack)),
+            f"<ul>{faults}</ul>" if faults else "ready",
+        )
         rows.append(
-            f'<tr><th scope="row">{html.escape(finding.name)}</th><td>{html.escape(finding.kind)}</td>'
-            f"<td><details><summary>{len(finding.forms)}</summary>{html.escape(', '.join(finding.forms))}</details>"
-            "</td>"
-            f"<td><details><summary>{len(finding.mistakes)}</summary><ul>{mistakes}</ul></details></td>"
-            f"<td>{html.escape(', '.join(dict.fromkeys(finding.unmoved))) or 'none'}</td>"
-            f"<td>{html.escape(str(finding.attack))}</td>"
-            f"<td>{f'<ul>{faults}</ul>' if faults else 'ready'}</td></tr>"
+            f'<tr><th scope="row">{html.escape(finding.name)}</th>'
+            + "".join(f'<td data-of="{head}">{cell}</td>' for head, cell in zip(COLUMNS[1:], cells, strict=True))
+            + "</tr>"
         )
     listed = "".join(f"<li>{html.escape(what)} stands in {html.escape(place)}</li>" for what, place in found or [])
     # Where only a few questions are tried, nothing was looked for.
     leaked = "" if found is None else f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
     return (
-        '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title><style>'
-        "body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem}"
-        "table{border-collapse:collapse;width:100%}th,td{border-bottom:1px solid #bbb;padding:.4rem;"
-        "text-align:left;vertical-align:top}</style>"
-        f"<h1>Exercises, tried</h1><p>{len(findings)} questions; {sum(bool(f.faults) for f in findings)} with faults. "
-        f"{sum(len(f.mistakes) for f in findings)} mistakes are recognised.</p>"
+        '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title>'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{STYLE}</style>'
+        f"<h1>Exercises, tried</h1><p>{_of(len(findings), 'question')}; {sum(bool(f.faults) for f in findings)} with "
+        f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
         "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
         f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has needed to find the "
         "answer. Not found means not found by this attack: somebody may have a better idea. An answer that can be "
         f"guessed should not count much: here such answers carry {_share_of_guessable(findings)} of the points.</p>"
-        f"{before}{leaked}"
-        "<h2>Questions</h2><table><thead><tr><th>Question</th><th>Kind</th><th>Forms that pass</th>"
-        "<th>Mistakes named</th><th>Mistakes that change nothing here</th><th>To guess "
-        "it</th><th>Faults</th></tr></thead>"
-        f"<tbody>{''.join(rows)}</tbody></table></html>"
+        f"{before}{leaked}<h2>Questions</h2><table><thead><tr>"
+        + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
+        + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"
     )
+
+
+def _of(count, what):
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def _folded(summary, inside):
+    return f"<details><summary>{summary}</summary>{inside}</details>" if summary else "none"

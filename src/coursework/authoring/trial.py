@@ -5,10 +5,12 @@ import re
 from pathlib import Path
 
 from ..checking.reply import to_html
+from ..checking.variants import image
 from ..checking.variants import text_of as whole_text
 from .author import AuthorError, to_page
+from .release import shows_variants
 from .selftest import text_of, try_question, write_page
-from .source import declared_strengths, read_source
+from .source import answered_in, declared_strengths, read_source
 
 
 def trial(course, name, page):
@@ -35,7 +37,7 @@ def trial(course, name, page):
     if not chosen:
         raise AuthorError(f"There is no question {name!r}; {path.name} has {', '.join(source.questions)}.")
     texts = "".join(
-        f"<section><h2>{html.escape(question.name)}</h2>{to_page(_text(source, question))}"
+        f"<section><h2>{html.escape(question.name)}</h2>{_under(to_page(_text(source, question)))}"
         f"<details><summary>The worked solution</summary>{to_page(question.solution) or '<p>None.</p>'}</details>"
         f"{_hints(question)}{_rubric(question)}</section>"
         for question in chosen
@@ -47,6 +49,11 @@ def trial(course, name, page):
     return page
 
 
+def _under(text):
+    """A text whose headings stand below that of its section."""
+    return re.sub(r"(</?)h[12]>", r"\1h3>", text)
+
+
 def _with_mathematics(page):
     """The page with its formulas as browsers show them."""
     from latex2mathml.converter import convert
@@ -55,8 +62,27 @@ def _with_mathematics(page):
 
 
 def _text(source, question):
-    """The text of a question, with its picture."""
-    return whole_text(question.public) if "text" in question.public else text_of(source, question)
+    """All that stands above a question as students meet it: the heading, the text and the pictures."""
+    return "\n\n".join(
+        [*_above(source, question), *([whole_text(question.public)] if "text" in question.public else [])]
+    )
+
+
+def _above(source, question):
+    """The Markdown and the figures between the question before and the cell that its answer stands in."""
+    cells, found = source.notebook.cells, []
+    owners = {one.variable: name for name, one in source.questions.items()}
+    for number, cell in enumerate(cells):
+        if cell.cell_type == "markdown":
+            if not shows_variants(cells, number):
+                found = [cell.source] if cell.source.lstrip().startswith("#") else [*found, cell.source]
+        elif number in source.figures:
+            found.append(image(source.figures[number].picture(), source.figures[number].alt))
+        elif question.variable in answered_in(cell.source, owners):
+            return found
+        elif answered_in(cell.source, owners):
+            found = []
+    return found
 
 
 def _rubric(question):

@@ -174,7 +174,8 @@ def _show_next_hint(question, reply, entry):
         _note_help(reply.question, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
     if len(steps) > earned:
-        reply.messages.append(f"`hint('{reply.question}')` tells how to come by a hint." if earned == 0 else "")
+        # In words, and not as a call of `hint`, which few notebooks import.
+        reply.messages.append("Each further answer, if it is another one, earns a hint." if earned == 0 else "")
     reply.messages = [line for line in reply.messages if line]
 
 
