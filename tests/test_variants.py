@@ -28,7 +28,7 @@ from coursework.authoring.selftest import try_question
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import check as check_module
-from coursework.checking import questions, variants
+from coursework.checking import questions, sealing, variants
 from coursework.checking.plain import to_plain
 from coursework.grading import intake, marking
 from coursework.grading.grade import grade
@@ -142,6 +142,32 @@ def of_the_book():
         for name, about in json.loads(path.read_text("utf8"))["questions"].items()
         if "variants" in about
     }
+
+
+def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
+    """Of a question's variants all but one have as many as each other; without variants it is a multiple of eight."""
+    counts = collections.defaultdict(list)
+    for path in COURSE.sealed.rglob("*.json"):
+        for name, about in json.loads(path.read_text("utf8"))["questions"].items():
+            if about.get("lockers"):
+                counts[name].append(sealing.count_of(about["lockers"]))
+    assert len(counts) > 150
+    for name, found in counts.items():
+        if len(found) > 2:
+            assert len(set(sorted(found)[:-1])) == 1, name
+        else:
+            assert max(found) % 8 == 0 and len(set(found)) == 1, name
+
+
+def test_empty_lockers_are_like_the_others_and_come_again(course):
+    """A second release gives the same; what the first one sealed is all there, and opens as before."""
+    known = sorted(course.sealed.rglob("*.json"))
+    before = {path: path.read_bytes() for path in known}
+    release(course, run=False)
+    assert {path: path.read_bytes() for path in known} == before
+    about = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]
+    data = base64.b85decode(about["lockers"])
+    assert len({data[start : start + 16] for start in range(0, len(data), 16)}) == sealing.count_of(about["lockers"])
 
 
 def test_the_book_has_variants_that_stay_small():

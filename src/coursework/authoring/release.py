@@ -15,6 +15,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from ..checking import sealing
 from ..checking.questions import FORMAT, beside
 from ..checking.variants import image
 from .author import AuthorError, solution_code
@@ -32,6 +33,8 @@ from .source import (
 )
 from .variation import drawn_in
 
+#: The lockers of a question without variants are so many, or twice as many, and so on.
+TOGETHER = 8
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
 
@@ -157,7 +160,11 @@ def sealed_file(source, first=None, pages=None):
     }
     if first:
         questions = {name: beside(one, first[name]) for name, one in questions.items()}
-    return json.dumps({"format": FORMAT, "questions": questions}, indent=0, sort_keys=True, ensure_ascii=False) + "\n"
+    return _as_text({"format": FORMAT, "questions": questions})
+
+
+def _as_text(content):
+    return json.dumps(content, indent=0, sort_keys=True, ensure_ascii=False) + "\n"
 
 
 def _release_one(path, course):
@@ -180,7 +187,12 @@ def _release_one(path, course):
     if source.name != CHAPTERS:
         nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")
     pages = {name: source.questions[name].pages for name in source.rules}
-    return source.name, max((rule.count for rule in source.rules.values()), default=1), pages
+    return (
+        source.name,
+        max((rule.count for rule in source.rules.values()), default=1),
+        pages,
+        solution_code(source.notebook),
+    )
 
 
 def _release_variant(path, number, pages, course):
@@ -204,6 +216,30 @@ def _release_variant(path, number, pages, course):
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
+
+
+def _even_out(name, code, course):
+    """Give all variants of a question as many lockers as the one but most of them has, with empty ones.
+
+    How many there are follows from the answer: from what mistakes lead to the same, and how near to the edges of
+    their cells the numbers lie. Over sixteen variants that singles out a right formula with no slow hash at all.
+    """
+    first = course.sealed / f"{name}.json"
+    variants = sorted((course.sealed / "variants").glob(f"{name}-*.json"))
+    files = [first, *(path for path in variants if path.stem.removeprefix(f"{name}-").isdigit())]
+    contents = [json.loads(file.read_text("utf8")) for file in files]
+    for question in contents[0]["questions"]:
+        ones = [content["questions"].get(question, {}) for content in contents]
+        ones = [one for one in ones if one.get("lockers")]
+        if not ones:
+            continue  # of an exam, or a text that a person reads
+        counts = sorted(sealing.count_of(one["lockers"]) for one in ones)
+        # Up to the very most would make the file of every variant as large as the largest.
+        most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
+        for one in ones:
+            one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
+    for file, content in zip(files, contents, strict=True):
+        file.write_text(_as_text(content), "utf8")
 
 
 def _run_one(path, sealed):
@@ -252,22 +288,23 @@ def release(course, only=(), run=True, variants=None):
         folder.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
-        names = [name for name, _, _ in made]
+        names = [name for name, *_ in made]
         wanted = [
             (path, number, pages)
-            for path, (_, count, pages) in zip(paths, made, strict=True)
+            for path, (_, count, pages, _) in zip(paths, made, strict=True)
             for number in range(1, count)
             if variants is None or number in variants
         ]
         if wanted:
             list(pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted)))
-        for name, count, _ in made:
+        for name, count, _, code in made:
             for path in (course.sealed / "variants").glob(f"{name}-*.json"):
                 if (
                     re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))
                     and int(path.stem.rpartition("-")[2]) >= count
                 ):
                     path.unlink()  # this notebook made it when it had more variants
+            _even_out(name, code, course)
         if run:
             made = [course.exercises / f"{name}.ipynb" for name in names if name != CHAPTERS]
             list(pool.map(_run_one, made, [course.sealed] * len(made)))

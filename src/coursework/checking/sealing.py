@@ -86,6 +86,25 @@ def pack(lockers):
     return _text(b"".join(sorted(lockers)))
 
 
+def count_of(lockers):
+    """How many lockers there are in the text of some."""
+    return len(base64.b85decode(lockers)) // LOCKER
+
+
+def filled_up(lockers, count, secret):
+    """The text of some lockers with empty ones among them, ``count`` in all: only the secret tells them apart.
+
+    >>> few = pack([locker(bytes(32), 0)])
+    >>> many = filled_up(few, 8, "a secret")
+    >>> count_of(many), open_locker(many, bytes(32)) == open_locker(few, bytes(32))
+    (8, True)
+    """
+    data = base64.b85decode(lockers)
+    full = [data[start : start + LOCKER] for start in range(0, len(data), LOCKER)]
+    empty = [hashlib.shake_256(f"{secret} {order}".encode()).digest(LOCKER) for order in range(count - len(full))]
+    return pack(full + empty)
+
+
 def open_locker(lockers, key):
     """Open the locker of a key: its outcome, its mistakes, its page and the key of that; or give ``None``.
 
