@@ -262,7 +262,8 @@ def secrets_of(source):
 
 
 def _tells_nothing(line):
-    return re.match(r"\s*(import |from \w[\w.]* import |def |### |class )", line) is not None
+    """Whether a line is an import, a mark, or the head of a function, a class or a loop over what has a name."""
+    return re.match(r"\s*(import |from \w[\w.]* import |def |### |class |for \w+ in \w+:$)", line) is not None
 
 
 def _writings(answer):

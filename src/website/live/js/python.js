@@ -4,6 +4,8 @@
 const SILENCE = 18_000;
 // A run that cannot be interrupted in this time is ended, and everything that it knew with it.
 const PATIENCE = 2500;
+// Python that has heard, and is slow, or holds on to its life, is given this time more.
+const LONGER = 10_000;
 
 export class Python {
   constructor(runtime, pyodide, listener) {
@@ -67,7 +69,12 @@ export class Python {
     if (!this.interrupts || !this.current) return this.end("interrupted");
     this.interrupts[0] = 2; // SIGINT
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.end("interrupted"), PATIENCE);
+    const giveUp = () => this.end("interrupted");
+    // Python takes the number away when it hears.
+    this.timer = setTimeout(() => {
+      if (this.interrupts[0]) giveUp();
+      else this.timer = setTimeout(giveUp, LONGER);
+    }, PATIENCE);
   }
 
   // End the thread; what runs in it has no outcome but this one.
