@@ -1,9 +1,7 @@
 """Live cells in Firefox and WebKit: what they give is what the book prints."""
 
-import random
 
 import pytest
-from conftest import SEED
 from engines import ENGINES
 from test_live import PAGES, PLAYABLE, QUIET, RESULTS, kinds
 from test_servers import SIZE
@@ -43,13 +41,12 @@ def compare(engine, site, name):
     return compared
 
 
-# As in Chromium (test_live.py). To start Python takes WebKit a minute or two on a busy machine: each night draws three
-# pages, so that in a month all have been seen.
+# As in Chromium (test_live.py).
 CHAPTERS = [name for name in PAGES if not name.startswith(STORED)]
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", random.Random(f"{SEED} engines").sample(CHAPTERS, 3))
+@pytest.mark.parametrize("name", CHAPTERS)
 def test_results_equal_the_stored_ones(engine, site, name):
     compare(engine, site, name)
 

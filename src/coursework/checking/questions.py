@@ -282,6 +282,7 @@ def _compare(name, question, plain, reading, text, find):
 
 
 def _close(name, question):
+    """The reply to an answer that rounding has made wrong, or seems to have."""
     allowed = "" if question.get("tolerance") is None else f" the {question['tolerance']:g} that is"
     said = (
         f"This is close, but off by more than{allowed} allowed. Was it rounded too far, here or on the way? "
@@ -320,16 +321,7 @@ def _not_known(name, question, plain, reading, find, content):
     if content is not None and any(
         case["outcome"] == "correct" and _far(question, reading, case) <= NEARLY for case in content["cases"]
     ):
-        tolerance = question["tolerance"]
-        return Reply(
-            name,
-            "wrong",
-            "rounded too far",
-            [
-                f"This is close, but off by more than the {tolerance:g} that is allowed. Was it rounded too far, "
-                "here or on the way? Keep all digits until the end."
-            ],
-        )
+        return _close(name, question)
     decimals = _decimals(question, plain, reading)
     # Each look costs a slow hash: what is exact was not rounded, and what was rounded is no known mistake to the digit.
     precise, rounded = _precision(plain) if decimals else (True, False)

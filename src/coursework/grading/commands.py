@@ -237,7 +237,8 @@ def export(out, lms, filled, column, name, overwrite, assignment, feedback, nbgr
             said = gradebooks.fill(lms, marks, column, filled, names, overwrite)
             print(*said, sep="\n")
         if feedback:
-            print(f"{gradebooks.write_feedback(feedback, marks, store)} pages of feedback: {feedback}")
+            written = gradebooks.write_feedback(feedback, marks, store)
+            print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
         if nbgrader:
             gradebooks.write_nbgrader(nbgrader, marks)
         if gradescope:
