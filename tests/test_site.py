@@ -194,13 +194,15 @@ def test_little_is_awaited_before_the_first_line_is_seen():
     assert not any("base64" in path.read_text("utf8") for path in styles), "what is inside a style sheet is awaited"
 
 
-def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_it(browser, site):
+@pytest.mark.parametrize(
+    ("name", "uses_all"), [("chapters/unit-quaternions.html", False), ("chapters/angular-velocity.html", True)]
+)
+def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_it(browser, site, name, uses_all):
     """What the head names is what the first view uses, so that no typeface comes after the others.
 
     Looked at twice, without a clock: while the script that lays out the rest does not come, the typefaces in use are
     those named; when it comes, the others are asked for after these.
     """
-    name = "chapters/unit-quaternions.html"
     named = set(re.findall(r'<link rel="preload" as="font"[^>]* href="\.\./([^"]*)"', text(name)))
     assert len(named) > 3
 
@@ -218,7 +220,8 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
     page.close()
     with Visit(browser, site, name, "light", WIDE) as visit:
         fetched = asked(visit.page)
-    assert set(fetched[: len(named)]) == named and len(fetched) > len(named), fetched
+    assert set(fetched[: len(named)]) == named, fetched
+    assert (len(fetched) == len(named)) == uses_all, fetched
     assert not any("KaTeX" in address for address in re.findall(r'<link rel="preload"[^>]*', text("search.html")))
 
 

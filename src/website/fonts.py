@@ -39,6 +39,7 @@ FACES = (
     ("KaTeX_Main", "400", "normal", KATEX / "fonts" / "KaTeX_Main-Regular.woff2", FORMULAS, True),
     ("KaTeX_Main", "700", "normal", KATEX / "fonts" / "KaTeX_Main-Bold.woff2", "U+20-7E,U+A0,U+2C6-2DC,U+D7", True),
     ("KaTeX_Math", "400", "italic", KATEX / "fonts" / "KaTeX_Math-Italic.woff2", f"U+20-7E,U+A0,{GREEK}", True),
+    ("KaTeX_Math", "700", "italic", KATEX / "fonts" / "KaTeX_Math-BoldItalic.woff2", f"U+20-7E,U+A0,{GREEK}", True),
     *((f"KaTeX_Size{n}", "400", "normal", KATEX / "fonts" / f"KaTeX_Size{n}-Regular.woff2", None, False)
       for n in (1, 2, 3, 4)),
 )  # fmt: skip
@@ -168,6 +169,7 @@ SEEN_BY = {
     ("KaTeX_Main", "400", "normal"): r'class="katex\b',
     ("KaTeX_Main", "700", "normal"): r"\bmathbf\b",
     ("KaTeX_Math", "400", "italic"): r"\b(?:mathnormal|boldsymbol)\b",
+    ("KaTeX_Math", "700", "italic"): r"\bboldsymbol\b",
     ("KaTeX_Size1", "400", "normal"): r"\b(?:delimsizing size1|delim-size1|small-op)\b",
     ("KaTeX_Size2", "400", "normal"): r"\b(?:delimsizing size2|large-op)\b",
     ("KaTeX_Size3", "400", "normal"): r"\bdelimsizing size3\b",
