@@ -100,7 +100,7 @@ export function render({ model, el }) {
     show: (time) => { if (!alive) show(recorded(time)); } });
   const use = button('Use the sensors of this phone', ask);
   const record = button(`Record ${RECORD_SECONDS} seconds`, () => { rows = []; began = null; recording = true; say(); }, { disabled: '' });
-  const save = element('a', { class: 'button', hidden: '', download: 'phone.csv' }, 'Download phone.csv');
+  const save = element('a', { class: 'button', download: 'phone.csv' }, 'Download phone.csv'); // there when it leads somewhere
   const copy = button('Copy for a cell', async () => {
     await navigator.clipboard.writeText(`phone = '''${file}'''\n`);
     text.say('Copied. Paste it into a cell: phone is then the text of the file.');
@@ -116,7 +116,7 @@ export function render({ model, el }) {
     names: [['rate b x', 'rate b y', 'rate b z']], light });
   const text = liveText();
   open(el, stage(sheet, text),
-    element('div', { class: 'controls' }, group('Sensors', 'row-of-controls', use, record, save, copy),
+    element('div', { class: 'controls' }, group('Sensors', 'row-of-controls', use, record, copy),
       ...sliders.map((one) => one.element), film.element),
     element('div', { class: 'readouts' },
       readout(['Direction cosine matrix ${}^B\\mathbf{C}^N$'], matrix.element),
@@ -178,7 +178,8 @@ export function render({ model, el }) {
     file = csv(rows);
     URL.revokeObjectURL(save.href);
     save.href = URL.createObjectURL(new Blob([file], { type: 'text/csv' }));
-    save.hidden = copy.hidden = false;
+    copy.before(save);
+    copy.hidden = false;
     say();
   }
 
