@@ -500,6 +500,32 @@ def test_copy_of_the_first_edition_has_no_stamp(context, site):
         assert visit_notebook(tab.page, site, EXERCISE)[CRANK] == expected
 
 
+def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
+    """Tabs hear of each other late: the other one, played here, changes what it does not know."""
+    tab, other = Tab(context, site).edit(), context.new_page()
+    other.goto(f"{site}search.html")
+    change = "([key, text]) => text === null ? localStorage.removeItem(key) : localStorage.setItem(key, text)"
+
+    def written(code):
+        tab.write(ANSWER, code)
+        [(key, entry)] = [one for one in tab.page.evaluate(KEPT).items() if " answer " in one[0]]
+        return key, json.loads(entry)
+
+    key, _ = written("mine = 1")
+    other.evaluate(change, [key, None])  # it took the book's code for that of the page
+    tab.wait(ANSWER, BLANK)
+    assert "mine = 1" in tab.shown()
+    key, entry = written("mine = 2")
+    other.evaluate(change, [key, json.dumps(entry | {"code": "theirs = 1"})])
+    tab.wait(ANSWER, "theirs = 1")
+    assert "mine = 2" in tab.shown()
+    key, entry = written("mine = 3")
+    late = json.dumps(entry | {"code": "theirs = 2"})
+    tab.page.evaluate("([key, newValue]) => dispatchEvent(new StorageEvent('storage', { key, newValue }))", [key, late])
+    assert tab.text(ANSWER) == "mine = 3" and "theirs = 2" in tab.shown()
+    assert tab.errors == []
+
+
 # --- where nothing can be kept ----------------------------------------------------------------------
 
 

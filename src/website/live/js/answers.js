@@ -100,6 +100,17 @@ export class Answers {
     return put(key, entry);
   }
 
+  isOf(name, key) {
+    return key === this.answer + name;
+  }
+
+  // Tabs hear of each other a moment late. What another one wrote at the moment in which this one wrote ``own``, over
+  // which it did not know to write, is set aside.
+  overtake(name, value, own) {
+    const theirs = value && JSON.parse(value);
+    if (theirs && theirs.code !== own && this.read(name)?.code === own) this.setAside(name, theirs.code, theirs.at);
+  }
+
   // The text makes room before it is set aside, which takes a little less.
   remove(name) {
     const there = this.read(name);

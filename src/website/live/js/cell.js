@@ -102,9 +102,11 @@ export class Cell {
     this.page.run(this);
   }
 
-  // Another tab, or the notebook, holds this text now.
+  // Another tab, or the notebook, holds this text now. It may not have known what was written here a moment before.
   follow(code) {
     this.known = code;
+    if (this.own !== undefined && this.own !== code) this.page.answers.setAside(this.id, this.own);
+    this.own = undefined;
     if (code === this.code) return;
     this.following = true;
     this.write(code);

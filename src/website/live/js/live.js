@@ -73,6 +73,7 @@ class Page {
       kept = this.answers.remove(id);
     }
     cell.known = code;
+    cell.own = cell.edited ? code : undefined; // until another tab's text takes its place
     if (!kept || window.keepsNothing) {
       this.bar.say(`${window.keepsNothing ? "Your browser forbids this page to keep anything" : "This browser has no room left for your answers"}: what you write lasts until you leave the page. “Take away: with my answers” saves it.`);
     }
@@ -84,8 +85,11 @@ class Page {
     this.answers.bringOld(this.cells.map(({ id }) => id), this.cells.map(({ original }) => original));
     await this.lookAtNotebook();
     if (this.reread()) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
-    addEventListener("storage", ({ key }) => {
-      if (key === null || (key.startsWith(PREFIX) && key.includes(` ${this.answers.page} `))) this.reread();
+    addEventListener("storage", ({ key, newValue }) => {
+      if (key !== null && !(key.startsWith(PREFIX) && key.includes(` ${this.answers.page} `))) return;
+      const cell = this.cells.find(({ id }) => this.answers.isOf(id, key));
+      if (cell?.own !== undefined) this.answers.overtake(cell.id, newValue, cell.own);
+      this.reread();
     });
     // A tab that slept has missed what others wrote.
     const wake = async () => document.hidden || (await this.lookAtNotebook(), this.reread());
