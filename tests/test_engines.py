@@ -1,6 +1,5 @@
 """Live cells in Firefox and WebKit: what they give is what the book prints."""
 
-
 import pytest
 from engines import ENGINES
 from test_live import PAGES, PLAYABLE, QUIET, RESULTS, kinds
