@@ -511,7 +511,10 @@ def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
         [(key, entry)] = [one for one in tab.page.evaluate(KEPT).items() if " answer " in one[0]]
         return key, json.loads(entry)
 
-    key, _ = written("mine = 1")
+    key, entry = written("mine = 1")
+    other.evaluate(change, [f"{key}-of-none", json.dumps(entry)])  # news of something else
+    tab.wait(ANSWER, "mine = 1")
+    other.evaluate(change, [f"{key}-of-none", None])
     other.evaluate(change, [key, None])  # it took the book's code for that of the page
     tab.wait(ANSWER, BLANK)
     assert "mine = 1" in tab.shown()

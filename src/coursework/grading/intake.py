@@ -555,32 +555,19 @@ class _Entry:
     """A function that reads an entry of an archive: no more is kept of it than where it lies."""
 
     __slots__ = ("archive", "name", "place")
+    FIELDS = ("header_offset", "compress_size", "file_size", "CRC", "compress_type", "flag_bits")
     LAYOUT = struct.Struct("<QQQLHHq")
 
     def __init__(self, archive, entry):
         self.archive, self.name = archive, entry.orig_filename
         end = getattr(entry, "_end_offset", None)  # by which newer Pythons notice entries that overlap
-        self.place = self.LAYOUT.pack(
-            entry.header_offset,
-            entry.compress_size,
-            entry.file_size,
-            entry.CRC,
-            entry.compress_type,
-            entry.flag_bits,
-            -1 if end is None else end,
-        )
+        self.place = self.LAYOUT.pack(*(getattr(entry, field) for field in self.FIELDS), -1 if end is None else end)
 
     def __call__(self):
         entry = zipfile.ZipInfo(self.name)
-        (
-            entry.header_offset,
-            entry.compress_size,
-            entry.file_size,
-            entry.CRC,
-            entry.compress_type,
-            entry.flag_bits,
-            end,
-        ) = self.LAYOUT.unpack(self.place)
+        *values, end = self.LAYOUT.unpack(self.place)
+        for field, value in zip(self.FIELDS, values, strict=True):
+            setattr(entry, field, value)
         if end >= 0:
             entry._end_offset = end
         return _read_entry(self.archive, entry)

@@ -105,8 +105,10 @@ export class Cell {
   // Another tab, or the notebook, holds this text now. It may not have known what was written here a moment before.
   follow(code) {
     this.known = code;
-    if (this.own !== undefined && this.own !== code) this.page.answers.setAside(this.id, this.own);
-    this.own = undefined;
+    if (this.own !== undefined && this.own !== code) {
+      this.page.answers.setAside(this.id, this.own);
+      this.own = undefined;
+    }
     if (code === this.code) return;
     this.following = true;
     this.write(code);
