@@ -202,7 +202,7 @@ def test_fingerprints_are_those_of_the_page(context, site):
 def test_page_is_handed_in_and_graded(context, site, tmp_path):
     tab = Tab(context, site).edit()
     right = re.sub("### (BEGIN|END) SOLUTION\n?", "", solution("simple-orientations/crank")).strip()
-    who = tab.text(1).replace("me('')", "me('ada')")
+    who = tab.text(1).replace("student('')", "student('ada')")
     tab.write(1, who)  # the numbers are her own
     tab.write(ANSWER, right)
     download = tab.take()

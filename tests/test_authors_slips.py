@@ -10,7 +10,7 @@ from coursework.authoring.release import release
 from coursework.authoring.source import read_source
 from coursework.authoring.trial import trial
 
-SETUP = "import sympy as sm\nfrom coursework import check, me, variant\nx = sm.Symbol('x')"
+SETUP = "import sympy as sm\nfrom coursework import check, student, variant\nx = sm.Symbol('x')"
 ANSWER = "### BEGIN SOLUTION\nanswer = 3 * x\n### END SOLUTION"
 CHECK = "check('trial/one', answer)"
 QUESTION = "### BEGIN HIDDEN TESTS\nquestion('trial/one', kind='expression', symbols='x')\n### END HIDDEN TESTS"
@@ -127,7 +127,7 @@ def test_the_preview_shows_all_that_stands_above_a_question(tmp_path):
     """The heading above a question with variants and the figure above its text were left out."""
     drawing = "class Line:\n    alt = 'A line'\n    picture = lambda self: '<svg width=\"9\"></svg>'\nLine()"
     cells = [
-        ("code", f"{SETUP}\nme('')"),
+        ("code", f"{SETUP}\nstudent('')"),
         ("markdown", "## Another heading"),
         ("code", ANSWER.replace("answer", "other") + "\ncheck('trial/other', other)\n"
          + QUESTION.replace("/one", "/other")),

@@ -265,7 +265,7 @@ def test_a_plot_of_matplotlib_is_a_figure_of_a_question(tmp_path):
     write_source(
         course.sources,
         ("markdown", "# Trial"),
-        ("code", "from coursework import check, me, variant\nme('')"),
+        ("code", "from coursework import check, student, variant\nstudent('')"),
         ("code", plot, "figure"),
         ("code", drawn),
         ("markdown", "{{picture}}\n\nHow steep is it?"),

@@ -577,7 +577,7 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     again = Page(context, site, name)
     assert run(again) == mine
     assert f"those of {students[own].upper()}" in again.cell(1).locator(".live-who").inner_text()
-    again.write(1, codes[0].replace("me('')", f"me('{students[0]}')"))
+    again.write(1, codes[0].replace("student('')", f"student('{students[0]}')"))
     assert run(again) == everybodys
     again.page.wait_for_selector(f".live-who:has-text('those of {students[0]}')")
 

@@ -71,7 +71,7 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
     write_source(
         made.sources,
         ("markdown", "# Levers"),
-        ("code", "from coursework import check, me, variant\nme('')"),
+        ("code", "from coursework import check, student, variant\nstudent('')"),
         (
             "code",
             "### BEGIN VARIANTS\nlever = draw('levers/arm', count=3, arm=[0.7391234, 1, 2])\n### END VARIANTS",

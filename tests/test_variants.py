@@ -48,7 +48,7 @@ CHECKED = (
 )
 CELLS = [
     ("markdown", "# Levers"),
-    ("code", "from coursework import check, me, variant\nme('')"),
+    ("code", "from coursework import check, student, variant\nstudent('')"),
     ("code", DRAWN),
     ("markdown", TEXT),
     ("code", SOLVED),
@@ -66,7 +66,7 @@ CELLS = [
 @pytest.fixture(autouse=True)
 def nobody_is_kept(monkeypatch, tmp_path):
     """Who works in a test is not written down, and not in the next one."""
-    monkeypatch.setattr(variants, "KEPT", tmp_path / "no" / "such" / "me.txt")
+    monkeypatch.setattr(identity, "KEPT", tmp_path / "no" / "such" / "me.txt")
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +84,7 @@ def beside(course, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     questions.notebook_questions.cache_clear()
     yield
-    coursework.me("")
+    coursework.student("")
     questions.notebook_questions.cache_clear()
 
 
@@ -100,7 +100,7 @@ def variant(student):
 
 @pytest.mark.parametrize("number", range(6))
 def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number):
-    coursework.me(student_with(number) if number else "")
+    coursework.student(student_with(number) if number else "")
     lever = coursework.variant("levers/see-saw")
     assert repr(lever) == f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. " + (
         "Give its moment as moment, in N m."
@@ -194,12 +194,12 @@ def test_a_variant_of_the_book_is_opened_by_its_own_answer_and_by_no_other():
     for number, question in asked.items():
         assert try_question(question, budget=0).faults == [], (name, number)
         student = next(f"s{k}" for k in range(999) if variants.variant_of(f"s{k}", name, count) == number)
-        coursework.me(student)
+        coursework.student(student)
         assert "{{" not in repr(coursework.variant(name))
         for other, theirs in asked.items():
             outcome = questions.judge(name, questions.find_question(name), theirs.plain)[0].outcome
             assert (outcome == "correct") == (number == other), (name, number, other)
-    coursework.me("")
+    coursework.student("")
 
 
 def test_the_grader_finds_the_same_variant_from_the_roster():
@@ -228,26 +228,26 @@ def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course
 
 def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(variants, "KEPT", Path(".coursework", "me.txt"))
+    monkeypatch.setattr(identity, "KEPT", Path(".coursework", "me.txt"))
     try:
-        coursework.me("")
-        assert not list(tmp_path.iterdir()) and variants._identity == ""
-        coursework.me(" Ada@Uni.example")
-        coursework.me("")
-        assert variants._identity == "ada@uni.example" and "those of ada@uni.example" in capsys.readouterr().out
-        coursework.me("ben")  # another one says it anew
-        coursework.me("")
-        assert variants._identity == "ben"
+        coursework.student("")
+        assert not list(tmp_path.iterdir()) and identity._identity == ""
+        coursework.student(" Ada@Uni.example")
+        coursework.student("")
+        assert identity._identity == "ada@uni.example" and "those of ada@uni.example" in capsys.readouterr().out
+        coursework.student("ben")  # another one says it anew
+        coursework.student("")
+        assert identity._identity == "ben"
         (tmp_path / ".coursework" / "me.txt").write_bytes(b"\xff\xfe")
-        coursework.me("")
-        assert variants._identity == ""
+        coursework.student("")
+        assert identity._identity == ""
         monkeypatch.chdir(tmp_path / ".coursework")
         (tmp_path / ".coursework" / ".coursework").write_text("a file where the folder would be")
-        coursework.me("ada")
-        assert variants._identity == "ada"
+        coursework.student("ada")
+        assert identity._identity == "ada"
     finally:
         monkeypatch.chdir(tmp_path.parent)
-        monkeypatch.setattr(variants, "_identity", "")
+        monkeypatch.setattr(identity, "_identity", "")
 
 
 # --- siblings: other numbers for one who had help ------------------------------------------------
@@ -256,7 +256,7 @@ def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
 @pytest.fixture
 def recorded(beside, monkeypatch, tmp_path):
     monkeypatch.setattr(check_module, "PROGRESS", tmp_path / ".coursework" / "progress.json")
-    coursework.me(student_with(2))
+    coursework.student(student_with(2))
 
 
 def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorded):
@@ -286,20 +286,20 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
 
 def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recorded):
     """The record is of a variant: with an identity the points are still to be earned, and no hint is brought along."""
-    coursework.me(" ")
+    coursework.student(" ")
     everybody = coursework.variant(NAME)
     for wrong in (11, 12, 13):
         coursework.check(NAME, wrong)
     assert coursework.check(NAME, everybody.force * everybody.arm).help == "hint"
     assert "tried is right" in repr(coursework.progress())
-    coursework.me(student_with(3))
+    coursework.student(student_with(3))
     assert "Nothing has been checked" in repr(coursework.progress()) and "no hint yet" in repr(coursework.hint(NAME))
     first = coursework.check(NAME, 11)
     assert first.tries == 1 and "Hint:" not in repr(first) and "not right yet" in repr(coursework.progress())
     lever = coursework.variant(NAME)
     assert coursework.check(NAME, lever.force * lever.arm).help == ""
     # Back again: nothing of the first record is lost.
-    variants._identity = ""
+    identity._identity = ""
     again = coursework.check(NAME, everybody.force * everybody.arm)
     assert (again.tries, again.help) == (4, "hint") and "Right with help" in repr(coursework.progress())
 
@@ -420,7 +420,7 @@ def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
     for name, student in students.items():
         notebook = copy.deepcopy(solved)
         if name != "ada":
-            coursework.me(student)
+            coursework.student(student)
             given = coursework.variant(NAME)
             check_module.PROGRESS.unlink(missing_ok=True)
             coursework.check(NAME, given.force + given.arm)
@@ -502,7 +502,7 @@ def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
 
 PICTURED = [
     ("markdown", "# Levers"),
-    ("code", "from coursework import check, me, variant\nme('')"),
+    ("code", "from coursework import check, student, variant\nstudent('')"),
     (
         "code",
         "### BEGIN VARIANTS\nclass Drawn:\n    def __init__(self, force):\n"
@@ -531,7 +531,7 @@ def test_a_picture_differs_from_variant_to_variant(tmp_path, monkeypatch):
     try:
         for number in range(3):
             student = next(f"s{k}" for k in range(99) if variants.variant_of(f"s{k}", "levers/see-saw", 3) == number)
-            coursework.me(student)
+            coursework.student(student)
             lever = coursework.variant("levers/see-saw")
             data = re.search(
                 r'<p><img alt="A beam &amp; (\d) arrows" width="9" src="data:[^,]+,(.*?)"></p>', lever._repr_markdown_()
@@ -541,7 +541,7 @@ def test_a_picture_differs_from_variant_to_variant(tmp_path, monkeypatch):
             assert coursework.check("levers/see-saw", lever.force).outcome == "correct"
             seen.add(lever.force)
     finally:
-        coursework.me("")
+        coursework.student("")
         questions.notebook_questions.cache_clear()
     assert seen == {2, 5, 6}
 

@@ -4,8 +4,9 @@ A student needs ``from coursework import check`` and no more.
 """
 
 from .checking.check import check, hint, progress, worked_solution
-from .checking.variants import me, variant
+from .checking.identity import me, student
+from .checking.variants import variant
 
 __version__ = "1.1.0"
 
-__all__ = ["check", "hint", "me", "progress", "variant", "worked_solution"]
+__all__ = ["check", "hint", "me", "progress", "student", "variant", "worked_solution"]

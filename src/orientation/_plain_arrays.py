@@ -162,7 +162,8 @@ def _operation(work, swapped=False):
 for _name in ("add", "sub", "mul", "truediv", "pow"):
     setattr(PlainArray, f"__{_name}__", _operation(getattr(operator, _name)))
     setattr(PlainArray, f"__r{_name}__", _operation(getattr(operator, _name), swapped=True))
-setattr(PlainArray, "__eq__", _operation(operator.eq))  # noqa: B010 (each of the others is set so)
+for _name in ("eq", "ne", "lt", "le", "gt", "ge"):
+    setattr(PlainArray, f"__{_name}__", _operation(getattr(operator, _name)))
 
 
 def _shape(rows):

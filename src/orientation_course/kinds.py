@@ -48,6 +48,12 @@ def _dcm(question, value):
                 f"for the orientation of `{target}` with respect to `{source}`.",
             )
         value = others[source]
+    if value[0] == "list" and value[1] and all(row[0] == "vector" for row in value[1]):
+        # Its rows as the unit vectors themselves: their components are along the source frame.
+        source = question["frames"][1]
+        if not all(source in row[1] for row in value[1]):
+            raise Fault("frame", f"These vectors are not connected with the frame `{source}` that the question names.")
+        value = ["list", [row[1][source] for row in value[1]]]
     return row_entries(value, 3, 3, "A matrix of 3 × 3")
 
 

@@ -20,6 +20,19 @@ def _transposed(question):
     return f"This is {given}, the transpose of {wanted}: its columns are what should be the rows. Transpose it."
 
 
+def _other_order(question):
+    if question.get("result", question["kind"]) == "quaternion":
+        return (
+            "The quaternions are multiplied in the other order. That of the first turn stands on the left, the other "
+            "way round than with matrices; in this order the same turns are about axes fixed in the first frame "
+            "(space fixed)."
+        )
+    return (
+        "The factors are multiplied in the other order. The matrix of the first turn stands on the right; in this "
+        "order the same turns are about axes fixed in the first frame (space fixed)."
+    )
+
+
 def _turn(number):
     return "the turn" if number is None else f"the {ORDINALS[number]} turn"
 
@@ -31,10 +44,7 @@ MESSAGES = {
         f"The angles of {_turn(first)} and of {_turn(second)} have the wrong sign."
     ),
     "sign of every turn": lambda question: "Every angle has the wrong sign: each turn goes the wrong way round.",
-    "other order": lambda question: (
-        "The factors are multiplied in the other order. The matrix of the first turn stands on the right; in this "
-        "order the same turns are about axes fixed in the first frame (space fixed)."
-    ),
+    "other order": _other_order,
     "other order, transposed": lambda question: (
         "The factors are multiplied in the other order, and the product is transposed."
     ),
@@ -76,13 +86,17 @@ MESSAGES = {
     "sign of every angle": lambda question: "All angles have the wrong sign.",
     "axis reversed": lambda question: "The turn goes the wrong way round: the axis, or the angle, has the wrong sign.",
     "sequence reversed": lambda question: (
-        "This sequence is the reverse of the right one: it counts the turns from the last to the first, as one "
-        "would for turns about space fixed axes."
+        "Are these turns about axes fixed in space, or counted from the last to the first? Go through them once more: "
+        "each is about an axis of the frame that the turn before it has reached."
     ),
     "cosine for sine": lambda question: "Sine and cosine are interchanged.",
     # Of an axis and an angle: the axis is neither halved nor doubled.
     "half": lambda question: "The angle is half of what it should be; the axis is right.",
     "double": lambda question: "The angle is twice what it should be; the axis is right.",
+    "other order, and a sign": lambda question, turn: (
+        f"Two things: the angle of {_turn(turn)} has the wrong sign, and the product is in the wrong order. "
+        f"{_other_order(question)}"
+    ),
 }
 
 
@@ -123,6 +137,7 @@ DEEDS = {
     "axis reversed": "turned the wrong way round",
     "sequence reversed": "gave the sequence in reverse",
     "cosine for sine": "interchanged sine and cosine",
+    "other order, and a sign": "multiplied in the other order and gave the {turn} angle the wrong sign",
     "impossible sequence": "gave a sequence that is none",
     "zero axis": "gave an axis of length zero",
     "not orthogonal": "gave a matrix that is not orthogonal",
@@ -186,6 +201,8 @@ def _of_turns(build, turns):
     if count > 1:
         yield Mistake("other order", {}, build(turns[::-1]))
         yield Mistake("sign of every turn", {}, build(changed(*range(count))))
+        for turn in range(count):
+            yield Mistake("other order, and a sign", {"turn": turn}, build(changed(turn)[::-1]))
         for turn in range(count):
             yield Mistake("turn missing", {"turn": turn}, build(turns[:turn] + turns[turn + 1 :]))
     for first, second in itertools.combinations(range(count), 2):

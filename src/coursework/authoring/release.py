@@ -181,7 +181,7 @@ def _release_one(path, course):
     if source.rules and not source.asks_who and source.name != CHAPTERS:
         raise AuthorError(
             f"{path.name}: students say nowhere who they are, so all would get the same numbers. Near the top, write a "
-            'cell `me("")`, with `from coursework import check, hint, me, variant` above it.'
+            'cell `student("")`, with `from coursework import check, hint, student, variant` above it.'
         )
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:

@@ -6,6 +6,7 @@ import random
 import time
 from pathlib import Path
 
+from .identity import forgotten
 from .kinds import calls_for
 from .plain import NotPlain, to_plain
 from .questions import (
@@ -77,6 +78,8 @@ def check(name: str, answer: object) -> Reply:
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
         _offer_sibling(reply, question, reply.help)
+    if reply.outcome != "not attempted" and forgotten(question):
+        reply.messages.append(forgotten(question))
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
     if isinstance(entry.get("answers"), list):
         reply.tried = [str(answer)[:DIGITS] for answer in entry["answers"][-MOST_TOLD:]]

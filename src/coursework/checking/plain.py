@@ -23,6 +23,7 @@ import contextlib
 import dis
 import functools
 import io
+import math
 import numbers
 import re
 import sys
@@ -168,10 +169,10 @@ class _Writer:
         if isinstance(answer, numbers.Number):
             return ["expression", self.number(answer)]
         origin = _module(type(answer)).partition(".")[0]
-        if origin == "numpy":
-            return self.numpy(answer, depth)
         if origin == "mpmath":
             return self.mpmath(answer, depth)
+        if origin != "sympy" and _is_array(answer):
+            return self.array(answer, depth)
         if origin == "orientation" and hasattr(answer, "reference_frames"):
             return self.frames(answer, depth)
         if isinstance(answer, dict) and len(answer) == 1:
@@ -188,8 +189,8 @@ class _Writer:
             raise NotPlain(f"The answer has {len(answer)} parts; no question asks for that many.")
         return ["list", [self.value(part, depth + 1) for part in answer]]
 
-    def numpy(self, answer, depth):
-        size = getattr(answer, "size", 1)
+    def array(self, answer, depth):
+        size = math.prod(answer.shape)
         if size > MOST_PARTS:
             raise NotPlain(f"The array has {size} entries; no question asks for that many.")
         return self.value(answer.tolist(), depth)
@@ -496,7 +497,16 @@ class _Writer:
 
 
 #: What SymPy may have put off and would work out by ``.doit()``.
-PUT_OFF = (sympy.Derivative, sympy.Integral, sympy.Subs)
+PUT_OFF = (
+    sympy.Derivative,
+    sympy.Integral,
+    sympy.Subs,
+    sympy.Sum,
+    sympy.Product,
+    sympy.Limit,
+    sympy.Trace,
+    sympy.Determinant,
+)
 
 
 def _name_of(symbol):
@@ -524,6 +534,11 @@ def _text(text):
 def _module(kind):
     # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no module.
     return kind.__module__ or ""
+
+
+def _is_array(answer):
+    """Whether this is an array of NumPy, or one of those that stand in for it where it is not: by what it can do."""
+    return callable(getattr(answer, "tolist", None)) and isinstance(getattr(answer, "shape", None), tuple)
 
 
 def _has_unit(part):

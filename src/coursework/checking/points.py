@@ -25,8 +25,12 @@ MOST_TRIES = 200
 
 def spellings(name):
     """Other names of the symbol of this name."""
-    if name.endswith("'") and not name.endswith("''"):
-        return [rate.format(name[:-1]) for rate in RATES]
+    if name.endswith("'"):
+        letter = name.rstrip("'")
+        order = name[len(letter) :]
+        letters = [letter, *spellings(letter)]
+        rates = [rate.format(one) for one in letters for rate in RATES] if order == "'" else []
+        return [*(f"{one}{order}" for one in letters[1:]), *rates]
     return [TWINS[name]] if name in TWINS else []
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from . import sealing
 from .evaluate import MP
-from .kinds import Blank, Fault, Reading, Undecidable, canonical, distance, fault, fingerprint, read
+from .kinds import Blank, Fault, Reading, Undecidable, canonical, distance, fault, fingerprint, read, tolerances
 from .mistakes import message, numbered
 from .plugins import kind_of_values, kinds, sealed_folders
 from .points import spellings
@@ -32,8 +32,10 @@ CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 OUTCOMES = ("correct", "mistake")
 #: Faults of the form that no right value makes good.
 ALWAYS_WRONG = ("not unit length",)
-#: Up to so many tolerances from the right answer, one is told that it is close.
+#: Up to so many tolerances from the right answer, its locker opens, and one is told that it is close.
 NEARLY = 3
+#: As far from it one is told so where the locker has opened all the same: its cell is wider for several numbers.
+CLOSE = 30
 #: What numbers may be off by that were rounded to two digits after the point.
 COARSE = 0.005
 #: Denominators up to which a decimal fraction is plainly that fraction: one with few digits, and one with all of them.
@@ -292,10 +294,9 @@ def _close(name, question):
 
 
 def _messages(question, case):
-    messages = [message(question, note, details) for note, details in case["notes"][:2]]
-    if len(messages) > 1:
-        messages[1] = f"Or, which comes to the same here: {messages[1]}"
-    return messages
+    """What is said of a mistake: of several that lead to one answer the first, since each of them is true of it."""
+    note, details = case["notes"][0]
+    return [message(question, note, details)]
 
 
 def _case_of(question, reading, content):
@@ -319,7 +320,7 @@ def _far(question, reading, case):
 def _not_known(name, question, plain, reading, find, content):
     """The reply to an answer that is neither right nor a mistake of the catalogue."""
     if content is not None and any(
-        case["outcome"] == "correct" and _far(question, reading, case) <= NEARLY for case in content["cases"]
+        case["outcome"] == "correct" and _far(question, reading, case) <= CLOSE for case in content["cases"]
     ):
         return _close(name, question)
     decimals = _decimals(question, plain, reading)
@@ -342,8 +343,8 @@ def _not_known(name, question, plain, reading, find, content):
             reply = Reply(name, "wrong", f"{slip}, and {case['notes'][0][0]}", [f"Two things at once: {why} {said}"])
             reply.details = case["notes"][0][1]
             return reply
-    said = what_can_be_said(question, plain)
-    return Reply(name, "wrong", "", [f"{decimals} {said}" if decimals else said])
+    said = [decimals, what_can_be_said(question, plain), "" if decimals else _few_digits(question, plain)]
+    return Reply(name, "wrong", "", [" ".join(filter(None, said))])
 
 
 def _each(find, texts):
@@ -368,6 +369,27 @@ def _decimals(question, plain, reading):
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
     return "It holds decimal fractions; an exact answer is asked for: write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+
+
+def _few_digits(question, plain):
+    """What is said of numbers that are given to fewer places than the answer may be off by: they may be rounded.
+
+    It follows from what the student wrote and from the tolerance alone, so it tells nothing of the right answer.
+    """
+    if question.get("tolerance") is None:
+        return ""
+    absolute, relative = (float(part) for part in tolerances(question))
+    for node in plain["nodes"]:
+        if node[0] == "float" and "e" not in node[1]:
+            places = len(node[1].partition(".")[2].rstrip("0"))
+            allowed = absolute + relative * abs(float(node[1]))
+            if 0.5 * 10.0**-places > allowed and Fraction(node[1]).denominator > 4:
+                count = f"{places} place{'' if places == 1 else 's'}"
+                return (
+                    f"`{float(node[1]):g}` has {count} after the point, and an answer may be off by {allowed:.1g} only: "
+                    "if you have rounded, keep all digits until the end."
+                )
+    return ""
 
 
 def _coarse(question, reading):

@@ -14,49 +14,15 @@ import html
 import json
 import re
 import zlib
-from pathlib import Path
 
-#: Where it is kept who works in this folder.
-KEPT = Path(".coursework", "me.txt")
+from .identity import forgotten, identity, plain_identity
+
 #: So many siblings of a question count: with all of them, somebody else's answer would count, too.
 SIBLINGS = 2
 SIBLING = re.compile(r"(?P<question>.+)/sibling(?:-(?P<order>[2-9]))?")
-#: Who works in this notebook; set by :func:`me`, anew in each run of it.
-_identity = ""
 
 
-def me(identity: str = "") -> None:
-    """Say who you are, so that you get your own numbers: ``me('ada@uni.example')``.
-
-    Once is enough: it is kept beside your notebooks (in JupyterLite, in the browser), and ``me('')`` in another one
-    finds it there, and says so. Without it you get the numbers that everybody sees; who hands in answers to another
-    one's numbers gets no points for them.
-
-    Parameters
-    ----------
-    identity : str
-        As your instructor's roster has it; capitals and spaces around it make no difference.
-    """
-    global _identity
-    _identity = plain_identity(identity)
-    try:
-        if _identity:
-            KEPT.parent.mkdir(exist_ok=True)
-            KEPT.write_text(_identity, "utf8")
-        elif KEPT.is_file():
-            _identity = plain_identity(KEPT.read_text("utf8"))
-            if _identity:
-                print(f"The numbers below are those of {_identity}, as you have said before.")
-    except (OSError, UnicodeError):
-        pass  # a folder that cannot be written to: then it is said anew in each notebook
-
-
-def plain_identity(identity):
-    """An identity as it is compared: without spaces around it and without capitals."""
-    return " ".join(str(identity).split()).casefold()
-
-
-def variant_of(identity, name, count, edition=""):
+def variant_of(student, name, count, edition=""):
     """The number of a student's variant of a question, below ``count``.
 
     >>> variant_of('Ada@Uni.example ', 'levers/see-saw', 16) == variant_of('ada@uni.example', 'levers/see-saw', 16)
@@ -64,18 +30,18 @@ def variant_of(identity, name, count, edition=""):
     >>> variant_of('', 'levers/see-saw', 16)
     0
     """
-    identity = plain_identity(identity)
-    if not identity or count < 2:
+    student = plain_identity(student)
+    if not student or count < 2:
         return 0
     # JSON and the like could be read in two ways only if a part held a line break: names and editions hold none.
-    digest = hashlib.sha256(f"{edition}\n{name}\n{identity}".encode()).digest()
+    digest = hashlib.sha256(f"{edition}\n{name}\n{student}".encode()).digest()
     return int.from_bytes(digest[:8], "big") % count
 
 
 def own_variant(name, question, order=0):
     """The number of the variant of whoever works here, or of one of its siblings."""
     count = question.get("variants", 1)
-    return (variant_of(_identity, name, count, question.get("edition", "")) + order) % count
+    return (variant_of(identity(), name, count, question.get("edition", "")) + order) % count
 
 
 def siblings_of(name, count):
@@ -183,4 +149,5 @@ def variant(name: str) -> Given:
     from .questions import find_question
 
     question = find_question(name)
-    return Given(text_of(question), question.get("given", {}))
+    said = forgotten(question)
+    return Given(text_of(question) + (f"\n\n*For everybody.* {said}" if said else ""), question.get("given", {}))

@@ -256,7 +256,7 @@ class _Notebook:
             sys.modules.pop(name, None)
         package = self.package = types.ModuleType("coursework")
         package.check = self.check
-        package.hint = package.progress = package.me = package.worked_solution = nothing
+        package.hint = package.progress = package.student = package.me = package.worked_solution = nothing
         package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
         sys.modules["coursework"] = package
         for name, data in self.job["files"].items():

@@ -255,7 +255,7 @@ class _Student:
         self.exercise, self.answers, self.dice, self.identity = exercise, answers, dice, identity
         self.cells = copy.deepcopy(exercise.cells)
         for cell in self.cells:
-            cell.source = cell.source.replace("me('')", f"me({identity!r})")
+            cell.source = cell.source.replace("student('')", f"student({identity!r})")
         self.expected = {name: ["not attempted", ""] for name in exercise.questions}
         self.did = []
         skill = dice.betavariate(4, 1.6)

@@ -36,15 +36,24 @@
     };
     return replies(box).map((item) => item.dataset.name).find((name) => name !== ANY_OTHER && away(name) <= tolerance) ?? ANY_OTHER;
   };
+  // A number as one writes it: "0,5", "1/2", "45°", "45 degrees". A unit says nothing new where the question names it, too.
+  const DEGREES = /^(°|deg\b|degrees?\b)/i;
+  const numberIn = (text, asked) => {
+    const found = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(?:\s*\/\s*(\d+\.?\d*))?\s*(\D*)$/i.exec(text.trim().replace(",", ".").replace("\u2212", "-"));
+    if (!found) return NaN;
+    const [, above, below = 1, unit] = found;
+    const named = DEGREES.test(unit) ? /°|degree/i.test(asked) : asked.toLowerCase().includes(unit.trim().toLowerCase());
+    return named ? above / below : NaN;
+  };
   const typing = (box) => {
     const input = make("input", { type: "text", inputMode: "decimal", autocomplete: "off", size: 8, name: box.id });
-    const value = () => (/\d/.test(input.value) ? Number(input.value.trim().replace(",", ".").replace("\u2212", "-")) : NaN);
+    const value = () => numberIn(input.value, box.textContent);
     return {
       element: make("label", { className: "number" }, "Your number: ", input),
       answer: () => (Number.isFinite(value()) ? String(value()) : undefined),
       show: (answer) => (input.value = answer),
       reply: (answer) => nearest(box, answer, 0),
-      hint: "Type a number first.",
+      hint: "Type a number first, in the unit that the question names: 0.5, 1/2 and 45° can be read.",
     };
   };
   // An arrow to be dragged round a circle, from the x axis on the right towards the y axis, or turned by arrow keys.

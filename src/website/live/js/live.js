@@ -37,10 +37,10 @@ class Page {
 
   // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.
   askWho() {
-    const cell = this.cells.find(({ original }) => /^me\(/m.test(original));
+    const cell = this.cells.find(({ original }) => /^(?:student|(?:coursework\.)?me|this_is_me)\(/m.test(original));
     if (!cell || this.who?.contains(document.activeElement)) return;
     const name = coursework.read("me.txt")?.text ?? "";
-    const field = Object.assign(element("input"), { value: name, name: "me", autocomplete: "email", spellcheck: false });
+    const field = Object.assign(element("input"), { value: name, name: "student", autocomplete: "email", spellcheck: false });
     const label = element("label", "", "Your name or address, as your course has it: ", field);
     const button = element("button", "", name ? "Change" : "Give me my own numbers");
     const words = name ? `The numbers on these pages are those of ${name}.`

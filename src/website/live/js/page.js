@@ -145,6 +145,32 @@
     });
   }
 
+  // The outputs that the page was built with are those of nobody: what coursework knows of this reader is said over them.
+  const kept = (name) => {
+    try {
+      return JSON.parse(localStorage.getItem(`book ${place} coursework ${name}`)).text;
+    } catch {
+      return "";
+    }
+  };
+  const tellWhatIsKnown = (student, record) => {
+    boxes.forEach((box, number) => {
+      const output = box.querySelector(".cell_output");
+      const shown = /\bvariant\(\s*["']([^"']+)["']/.exec(originals[number]), checked = /\bcheck\(\s*["']([^"']+)["']/.exec(originals[number]);
+      const outcome = record[checked?.[1]]?.outcome;
+      let said = "";
+      if (shown && student) said = `Below are the numbers that everybody sees. Run this cell: you get those of ${student}.`;
+      else if (outcome === "correct") said = "✓ Correct, when you checked it last. Run this cell to see the reply again.";
+      else if (outcome) said = "You have tried this one before. Run this cell to see the reply again.";
+      if (!said || !output) return;
+      output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
+      output.prepend(make("p", { className: "live-note" }, said));
+    });
+  };
+  try {
+    tellWhatIsKnown(kept("me.txt"), JSON.parse(kept("progress.json") || "{}"));
+  } catch {} // a damaged record: then nothing is known
+
   // What the reader has written here before comes back, also from another tab; see answers.js for the keys.
   const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`];
   const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));

@@ -124,10 +124,9 @@ def step_aside(names):
     for part in (STAND_IN, *PARTS.values()):
         del sys.modules[part.__name__]
     numpy = importlib.import_module("numpy")
-    for space in (
-        names,
-        *(vars(module) for module in list(sys.modules.values()) if isinstance(module, types.ModuleType)),
-    ):
+    # Not here: this module knows by its own names which is the real one.
+    others = [module for module in sys.modules.values() if isinstance(module, types.ModuleType)]
+    for space in (names, *(vars(module) for module in others if module.__name__ != __name__)):
         for name, value in list(space.items()):
             if value is STAND_IN:
                 space[name] = numpy
