@@ -52,6 +52,22 @@ def changed(old, new, text=QUESTION):
         ({"question": changed("'x')", "'x', hints={'oposite': ['Think.']})")}, "`hints` names 'oposite', and this"),
         ({"question": changed("'x')", "'x', credit={'oposite': 0.5})")}, "knows no such mistake. It knows 'opposite'"),
         ({"question": changed("'x')", "'x', credit={'opposite': 50})")}, "is a share from 0 to 1, and this is 50"),
+        ({"question": changed("'x')", "'x', tolerance=0, relative=0.01)")}, "more than zero, and this is 0. With `rel"),
+        ({"question": changed("'x')", "'x', relative=2)")}, "`relative` is a share between 0 and 1, and this is 2"),
+        (
+            {"question": changed("expression', symbols='x'", "function', result='expression', calls=[1, 2]")},
+            "`calls` is a list of calls, each a list of its arguments: calls=[[1], [2]]",
+        ),
+        ({"answer": changed("3 * x", "3.14 * x", ANSWER)}, "the solution has 3.14 for pi, and a student who takes all"),
+        ({"answer": changed("3 * x", "3.1416 * x", ANSWER)}, "the solution has 3.1416 for pi"),
+        ({"before": [("code", DRAWN)]}, "trial/one: students would not see n, which is drawn"),
+        (
+            {
+                "before": [("code", changed("[1, 2, 3]", "[0.1 + 0.2, 1, 2]", DRAWN))],
+                "text": "Of {{n}}, give `answer`.",
+            },
+            "its text would show 0.30000000000000004 for n. Round it",
+        ),
         ({"question": changed("'x')", "'x', worth='two')")}, "`worth` is a number of points, and this is 'two'"),
         ({"question": changed("'x')", "'x', mistakes={x: 'It is more.'})")}, "`mistakes` is a dictionary with texts"),
         (
@@ -144,3 +160,11 @@ def test_the_preview_shows_all_that_stands_above_a_question(tmp_path):
     assert heading < figure < text and "Another heading" not in page and "{{n}}" not in page
     # As wide as the screen of a telephone, and as dark as its reader wants it.
     assert 'name="viewport"' in page and "color-scheme:light dark" in page and 'data-of="Kind"' in page
+
+
+def test_variants_with_one_answer_are_refused(tmp_path):
+    made = made_in(tmp_path)
+    before = [("code", "student('')"), ("code", DRAWN)]
+    sources(made.sources, before=before, text="Of {{n}} apples, give `answer`.")
+    with pytest.raises(AuthorError, match="trial/one: all of its 3 variants have one answer"):
+        release(made, run=False)

@@ -14,13 +14,14 @@ import pytest
 import sympy as sm
 from conftest import SEED
 from sympy.physics import units
-from sympy.physics.mechanics import ReferenceFrame
+from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
 import coursework
 from coursework.authoring.author import AuthorError, question
 from coursework.authoring.forms import equivalent_forms, flat, random_form
 from coursework.checking import plugins, questions, sealing
 from coursework.checking.kinds import Fault, Undecidable, fault, read
+from coursework.checking.mistakes import message
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.questions import NoSuchQuestion
 from coursework.checking.reply import Reply
@@ -387,7 +388,7 @@ def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
     [
         (lambda right: right, 3, "not orthogonal"),
         (lambda right: right.T, 15, "transposed"),
-        (lambda right: right.subs(theta, -theta).T, 15, "transposed, and sign of one turn"),
+        (lambda right: simple_dcm("z", theta).T, 15, "transposed, and turn missing"),
         (lambda right: simple_dcm("y", sm.pi / 3) * right, 15, ""),
         (lambda right: simple_dcm("y", sm.pi / 3) * right, 4, "not orthogonal"),
     ],
@@ -724,4 +725,78 @@ def test_products_of_quaternions_in_the_other_order_are_named():
         quaternion_from_axis_angle(axis, angle) for axis, angle in (((1, 0, 0), theta), ((0, 1, 0), alpha))
     )
     one = make("trial/qq", "quaternion", multiply_quaternions(first, second), symbols="theta alpha", turns=turns)
-    assert reply_to(one, multiply_quaternions(second, first)).note == "other order"
+    reply = reply_to(one, multiply_quaternions(second, first))
+    assert reply.note == "other order"
+    # The rule for matrices is another one, and this answer already follows it.
+    assert "quaternion" in reply.messages[0] and "matrix" not in reply.messages[0]
+
+
+def test_messages_speak_of_what_was_asked_for():
+    """Quaternions, angles and sequences are no factors of a product of matrices, and have no columns."""
+    turns = [("x", theta), ("y", alpha)]
+    product = make(
+        "trial/qq", "quaternion", plugins.kinds()["quaternion"].build(turns), symbols="theta alpha", turns=turns
+    )
+    tried = [product, *(one for one in KINDS.values() if one.public["kind"] in ("quaternion", "axis and angle"))]
+    for one in tried:
+        for mistake in one.mistakes:
+            if mistake.note != "authored":
+                assert "matrix" not in message(one.public, mistake.note, mistake.details).replace("with matrices", "")
+
+
+@pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
+@pytest.mark.parametrize("sequence", ["zx", "zxy", "xyx"])
+def test_another_order_with_a_wrong_sign_is_one_diagnosis(kind, sequence):
+    turns = list(zip(sequence, (theta, alpha, phi)))
+    build = plugins.kinds()[kind].build
+    symbols = " ".join(str(angle) for _, angle in turns)
+    one = make("trial/os", kind, build(turns), frames=("D", "A"), symbols=symbols, turns=turns)
+    for turn in range(len(turns)):
+        slipped = [(axis, -angle if place == turn else angle) for place, (axis, angle) in enumerate(turns)]
+        reply = reply_to(one, build(slipped[::-1]))
+        assert reply.note == "other order, and a sign" and len(reply.messages) == 1
+        assert reply.details == {"turn": turn}
+
+
+def test_one_answer_gets_one_diagnosis():
+    """Where two mistakes lead to one answer, both are true of it; being told two things helps nobody."""
+    one = KINDS["symbols in a matrix"]
+    for entry in one.entries.values():
+        if entry.outcome == "mistake":
+            assert len(one.reply_to(entry.plain).messages) == 1
+
+
+@pytest.mark.parametrize(("answer", "rounded"), [("0.87", True), ("0.9", True), ("0.8660254", False), ("0.5", False)])
+def test_numbers_with_fewer_places_than_the_tolerance_are_called_rounded(answer, rounded):
+    one = make("trial/few", "vector", [0.8660254, 0.31], length=2)
+    reply = reply_to(one, [sm.Float(answer), 0.4711])
+    assert reply.outcome == "wrong" and ("keep all digits" in repr(reply)) == rounded
+    exact = make("trial/few", "expression", theta, symbols="theta")
+    assert "places after" not in repr(reply_to(exact, theta + sm.Float("0.87")))
+
+
+def test_a_sequence_is_not_given_away():
+    one = make("trial/seq", "sequence", "yxz")
+    reply = reply_to(one, "zxy")
+    assert reply.note == "sequence reversed" and "reverse" not in reply.messages[0]
+
+
+def test_what_sympy_has_put_off_and_what_mechanics_makes_is_read():
+    k, time = sm.Symbol("k"), dynamicsymbols._t
+    one = make("trial/late", "expression", 3 * sm.sin(phi), symbols="varphi")
+    for answer in (
+        sm.Sum(sm.sin(phi), (k, 1, 3)),
+        sm.Limit(3 * sm.sin(phi) * sm.sin(k) / k, k, 0),
+        sm.Trace(sm.diag(sm.sin(phi), 2 * sm.sin(phi))),
+        sm.Determinant(sm.diag(3, sm.sin(phi))),
+        3 * sm.sin(dynamicsymbols("phi")),
+    ):
+        assert passes(one, answer), answer
+    rate = make("trial/rate", "expression", 2 * dynamicsymbols("varphi").diff(time), symbols="varphi'")
+    assert passes(rate, 2 * dynamicsymbols("phi").diff(time))
+    assert passes(rate, 2 * sm.Symbol("phidot"))
+    frames = [ReferenceFrame(name) for name in ("N", "A")]
+    frames[1].orient_axis(frames[0], frames[0].z, theta)
+    rows = make("trial/rows", answer=frames[1].dcm(frames[0]), frames=("A", "N"), symbols="theta")
+    assert passes(rows, [frames[1].x, frames[1].y, frames[1].z])
+    assert reply_to(rows, [ReferenceFrame("Q").x] * 3).note == "frame"

@@ -76,8 +76,8 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
             "code",
             "### BEGIN VARIANTS\nlever = draw('levers/arm', count=3, arm=[0.7391234, 1, 2])\n### END VARIANTS",
         ),
-        ("markdown", "How long is the arm?"),
-        ("code", "### BEGIN SOLUTION\narm = lever.arm\n### END SOLUTION"),
+        ("markdown", "A square has sides of {{arm}} m. What is its area?"),
+        ("code", "### BEGIN SOLUTION\narm = lever.arm**2\n### END SOLUTION"),
         (
             "code",
             "check('levers/arm', arm)\n### BEGIN HIDDEN TESTS\nquestion('levers/arm', kind='expression')\n"
@@ -104,3 +104,35 @@ def test_what_can_be_guessed_carries_one_point_at_most(tmp_path):
     write_source(made.sources, *((kind, text.replace("worth=2", "worth=1"), *tags) for kind, text, *tags in CELLS))
     release.release(made, run=False)
     assert not any("points" in fault for fault in selftest(made, None, budget=10))
+
+
+@pytest.mark.parametrize(
+    ("step", "said"),
+    [
+        ("It is `3 * sm.cos(x) * sm.sin(x)` all along.", "gives the right answer"),
+        ("It is `answer = 1.5*sin(2*x)`.", "gives the right answer"),
+        ("Write down: answer = 3 * sm.sin(x) * sm.cos(x)", "holds a line of a solution"),
+        ("Begin with `sm.sin(x)`, and ask what is missing.", ""),
+    ],
+)
+def test_a_step_of_the_ladder_that_holds_the_answer_is_refused_and_listed(tmp_path, step, said):
+    """No secret locks the ladder: whoever reads our code can open it."""
+    made = made_in(tmp_path)
+    write_source(
+        made.sources,
+        ("code", "import sympy as sm\nfrom coursework import check\nx = sm.Symbol('x')"),
+        ("markdown", "What is it? Call it `answer`."),
+        (
+            "code",
+            "### BEGIN SOLUTION\nanswer = 3 * sm.sin(x) * sm.cos(x)\n### END SOLUTION\ncheck('trial/one', answer)\n"
+            f"### BEGIN HIDDEN TESTS\nquestion('trial/one', kind='expression', symbols='x', ladder=[{step!r}])\n"
+            "### END HIDDEN TESTS",
+        ),
+    )
+    if said:
+        with pytest.raises(AuthorError, match=f"trial/one.*anybody can open.*{said}"):
+            release.release(made, run=False)
+    else:
+        release.release(made, run=False)
+    faults = selftest(made, None, budget=1)
+    assert any("anybody can open" in fault and said in fault for fault in faults) == bool(said)

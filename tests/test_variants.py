@@ -28,7 +28,7 @@ from coursework.authoring.selftest import try_question
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import check as check_module
-from coursework.checking import questions, sealing, variants
+from coursework.checking import identity, questions, sealing, variants
 from coursework.checking.plain import to_plain
 from coursework.grading import intake, marking
 from coursework.grading.grade import grade
@@ -102,9 +102,14 @@ def variant(student):
 def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number):
     coursework.student(student_with(number) if number else "")
     lever = coursework.variant("levers/see-saw")
-    assert repr(lever) == f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. " + (
-        "Give its moment as moment, in N m."
-    )
+    text = f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. "
+    text += "Give its moment as moment, in N m."
+    forgotten = identity.FORGOTTEN.replace("`", "")
+    assert repr(lever) == text + ("" if number else f"\n\n{forgotten}")
+    # Whoever has not said who they are hears it at the question, and in each reply to an answer.
+    replies = [coursework.check("levers/see-saw", answer) for answer in (lever.force * lever.arm, 0, "a text", ...)]
+    assert [identity.FORGOTTEN in reply.messages for reply in replies] == [number == 0] * 3 + [False]
+    assert identity.FORGOTTEN not in coursework.check("levers/plain", 7).messages  # without variants
     assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
     assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
     assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
@@ -157,6 +162,15 @@ def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
             assert len(set(sorted(found)[:-1])) == 1, name
         else:
             assert max(found) % 8 == 0 and len(set(found)) == 1, name
+
+
+def test_how_many_pages_there_are_tells_no_variant_from_another():
+    """All but the first, whose pages the others share, have as many as each other."""
+    counts = collections.defaultdict(set)
+    for path in (COURSE.sealed / "variants").glob("*.json"):
+        for name, about in json.loads(path.read_text("utf8"))["questions"].items():
+            counts[name].add(len(about.get("pages") or ()))
+    assert len(counts) >= 60 and all(len(found) == 1 for found in counts.values())
 
 
 def test_empty_lockers_are_like_the_others_and_come_again(course):

@@ -514,6 +514,27 @@ def _demand_forms(name, mistakes, hints, credit, worth):
         raise AuthorError(f"{name}: `worth` is a number of points, and this is {worth!r}.")
 
 
+def _demand_tolerance(name, tolerance, relative):
+    """What an answer may be off by is more than nothing: the last digits differ from machine to machine."""
+    if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
+        also = " With `relative`, it is what an answer of zero may be off by." if relative is not None else ""
+        raise AuthorError(
+            f"{name}: `tolerance` is what an answer may be off by, more than zero, and this is {tolerance!r}.{also}"
+        )
+    if relative is not None and (not _is_number(relative) or not 0 < relative < 1):
+        raise AuthorError(f"{name}: `relative` is a share between 0 and 1, and this is {relative!r}.")
+
+
+def _demand_calls(name, calls):
+    if calls is None:
+        return
+    if not isinstance(calls, (list, tuple)) or not calls or not all(isinstance(one, (list, tuple)) for one in calls):
+        raise AuthorError(
+            f"{name}: `calls` is a list of calls, each a list of its arguments: calls=[[1], [2]] calls the function "
+            f"with 1, and then with 2. This is {calls!r}."
+        )
+
+
 def _is_number(value):
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
@@ -553,6 +574,8 @@ def question(
     known, values = kinds()[kind], kinds()[result or kind]
     _demand_arguments(name, {*rest} - {*values.arguments})
     _demand_forms(name, mistakes, **{key: rest.get(key) for key in ("hints", "credit", "worth")})
+    _demand_tolerance(name, tolerance, relative)
+    _demand_calls(name, calls)
     try:
         public = {"kind": kind, **(variant or {}), **(known.public(answer) if known.public else {})}
     except (TypeError, LookupError, AttributeError, UnknownUnit) as error:

@@ -16,10 +16,12 @@ import tempfile
 from pathlib import Path
 
 from ..checking import sealing
+from ..checking.evaluate import MP
+from ..checking.kinds import canonical, read
 from ..checking.questions import FORMAT, beside
 from ..checking.variants import image
 from .author import AuthorError, solution_code
-from .selftest import try_question
+from .selftest import secrets_of, told_openly, try_question
 from .source import (
     CHAPTERS,
     answered_in,
@@ -178,6 +180,8 @@ def _release_one(path, course):
             raise AuthorError(f"{name}, in {path.name}: {fault}")
         for text in question.no_mistakes:
             raise AuthorError(f"{name}, in {path.name}: This authored mistake gives the right answer: {text}")
+        for fault in told_openly(question, secrets_of(source)) if question.ladder else ():
+            raise AuthorError(f"{name}, in {path.name}: {fault}")
     if source.rules and not source.asks_who and source.name != CHAPTERS:
         raise AuthorError(
             f"{path.name}: students say nowhere who they are, so all would get the same numbers. Near the top, write a "
@@ -192,7 +196,27 @@ def _release_one(path, course):
         max((rule.count for rule in source.rules.values()), default=1),
         pages,
         solution_code(source.notebook),
+        {name: _answer_of(source.questions[name]) for name in source.rules},
     )
+
+
+def _answer_of(question):
+    """A short text that is the same for variants with one answer, whatever points each is compared at."""
+    public = {**question.public, "salt": question.name}
+    reading = read(public, question.plain)
+    numbers = canonical(public, reading) if reading.text is None else []
+    return reading.text or " ".join(MP.nstr(number, 9) for number in numbers)
+
+
+def _demand_answers(name, answers):
+    """Variants with one answer are one question: what a classmate has found is right for everybody."""
+    for question in answers[0]:
+        found = [one[question] for one in answers if question in one]
+        if len(found) > 1 and len(set(found)) == 1:
+            raise AuthorError(
+                f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: what is drawn "
+                "does not change it. Draw what the answer depends on, or ask it without variants."
+            )
 
 
 def _release_variant(path, number, pages, course):
@@ -202,7 +226,8 @@ def _release_variant(path, number, pages, course):
     """
     digest = hashlib.sha256(f"{course.edition}\n{number}\n{digest_of_code()}\n".encode() + path.read_bytes())
     kept = course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
-    if not kept.exists():
+    answers = kept.with_name(f"{kept.stem}-answers.json")
+    if not (kept.exists() and answers.exists()):
         source = read_source(path, number, course.edition)
         for name, question in source.questions.items():
             faults = try_question(question, budget=0, against_sealed=False).faults
@@ -213,9 +238,11 @@ def _release_variant(path, number, pages, course):
             outdated.unlink()
         first = json.loads((course.sealed / f"{path.stem}.json").read_text("utf8"))["questions"]
         kept.write_text(sealed_file(source, first, pages), "utf8")
+        answers.write_text(json.dumps({name: _answer_of(one) for name, one in source.questions.items()}), "utf8")
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
+    return json.loads(answers.read_text("utf8"))
 
 
 def _even_out(name, code, course):
@@ -238,8 +265,25 @@ def _even_out(name, code, course):
         most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
         for one in ones:
             one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
+        # The pages of a variant follow upon those of the first one, to which no empty one can be added.
+        _even_pages(ones[1:], code)
     for file, content in zip(files, contents, strict=True):
         file.write_text(_as_text(content), "utf8")
+
+
+def _even_pages(variants, code):
+    """Give variants of a question as many pages each, with empty ones after those that a locker names."""
+    lengths = [list(map(len, one.get("pages") or ())) for one in variants]
+    most = max(map(len, lengths), default=0)
+    usual = sorted(length for some in lengths for length in some)
+    for one in variants:
+        pages = list(one.get("pages") or ())
+        for order in range(most - len(pages)):
+            seed = hashlib.sha256(f"{code} {one['salt']} page {order}".encode())
+            length = usual[int.from_bytes(seed.digest()[:4], "big") % len(usual)]
+            pages.append(sealing.empty_page(length, seed.digest()))
+        if pages:
+            one["pages"] = pages
 
 
 def _run_one(path, sealed):
@@ -291,13 +335,18 @@ def release(course, only=(), run=True, variants=None):
         names = [name for name, *_ in made]
         wanted = [
             (path, number, pages)
-            for path, (_, count, pages, _) in zip(paths, made, strict=True)
+            for path, (_, count, pages, *_) in zip(paths, made, strict=True)
             for number in range(1, count)
             if variants is None or number in variants
         ]
+        answers = {path: [first] for path, (*_, first) in zip(paths, made, strict=True)}
         if wanted:
-            list(pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted)))
-        for name, count, _, code in made:
+            found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
+            for (path, *_), more in zip(wanted, found, strict=True):
+                answers[path].append(more)
+        for path in paths:
+            _demand_answers(path.name, answers[path])
+        for name, count, _, code, _ in made:
             for path in (course.sealed / "variants").glob(f"{name}-*.json"):
                 if (
                     re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))

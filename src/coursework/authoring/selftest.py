@@ -6,6 +6,7 @@ with it, if anything is.
 
 import base64
 import concurrent.futures
+import contextlib
 import hashlib
 import html
 import io
@@ -261,6 +262,36 @@ def secrets_of(source):
     return seen
 
 
+def told_openly(question, secrets):
+    """The faults of the ladder of a question: no secret locks its steps, so anybody can read them with a few lines.
+
+    Parameters
+    ----------
+    question : Question
+    secrets : dict
+        What :func:`secrets_of` gives.
+    """
+    openly = "A step of its ladder, which anybody can open with a few lines of code,"
+    faults = []
+    for step in question.ladder:
+        faults += [f"{openly} holds {what}: {step}" for what, _ in found_in({"": _dense(step)}, secrets)]
+        for code in re.findall(r"`([^`]+)`", step):
+            if _judge_code(question, code) == "correct":
+                faults.append(f"{openly} gives the right answer: {step}")
+    return [f"{fault} Lock it up as one of its `hints` or in `after`." for fault in faults]
+
+
+def _judge_code(question, code):
+    """The outcome of a piece of code as the answer to a question; empty where it gives none."""
+    import sympy
+
+    symbols = {name.rstrip("'"): sympy.Symbol(name.rstrip("'")) for name in question.public.get("symbols", ())}
+    with contextlib.suppress(Exception):  # whatever is wrong with it, it is no answer then
+        names = {**vars(sympy), "sm": sympy, **symbols}
+        return _judge(question, eval(code.partition("=")[2] or code, names)).outcome
+    return ""
+
+
 def _tells_nothing(line):
     """Whether a line is an import, a mark, or the head of a function, a class or a loop over what has a name."""
     return re.match(r"\s*(import |from \w[\w.]* import |def |### |class |for \w+ in \w+:$)", line) is not None
@@ -391,18 +422,20 @@ def _try_notebook(path, course, budget):
             found = attack_kept(question, text_of(source, question), budget, course.archive.parent / "attacks")
             if found.way and (not weakest[name].way or found.tries < weakest[name].tries):
                 weakest[name] = found
+    secrets = secrets_of(source)
     findings = [
         finding._replace(
             attack=weakest[finding.name],
             faults=[
                 *finding.faults,
+                *told_openly(source.questions[finding.name], secrets),
                 *_too_weak(finding, weakest, declared, budget),
                 *filter(None, [too_heavy(source.questions[finding.name], declared)]),
             ],
         )
         for finding in findings
     ]
-    return findings, {} if source.name == CHAPTERS else secrets_of(source)
+    return findings, {} if source.name == CHAPTERS else secrets
 
 
 def _numbers_attacked(source):

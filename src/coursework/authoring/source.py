@@ -26,6 +26,10 @@ from .variation import COUNT, VARIANTS, Rule, drawn_in, written
 CHAPTERS = "chapters"
 #: Where the code is that the seals of a question follow from.
 ROOMS = ("authoring", "checking")
+#: Digits after the point of which a number that students see has no more: others are the rounding of a machine.
+MOST_PLACES = 10
+#: What is written in place of pi, and is not: right to some digits, and the answer to no more.
+PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 #: Characters of a parameter up to which it is a word, and not a part of the text.
 LONGEST_WORD = 40
 #: The file beside the sources in which an author declares what may be guessed.
@@ -183,6 +187,7 @@ def read_source(path, variant=0, edition="", only=None):
                 "shown": {key: text for key, text in written(given[name]).items() if f"{{{{{key}}}}}" in texts[name]},
                 "given": {key: value for key, value in given[name].items() if _is_given(value)},
             } | ({"edition": edition} if edition else {})
+            _demand_few_digits(name, about["variant"]["shown"])
             if rules[name].picture and only is None:
                 drawing = rules[name].picture(given[name])
                 about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
@@ -218,7 +223,8 @@ def read_source(path, variant=0, edition="", only=None):
         question.variable = variables[name]
     if only is None and not variant:
         _demand_hidden(path.name, notebook, variables)
-        _demand_shown(path.name, rules, given, texts, questions)
+        _demand_pi(path.name, notebook)
+        _demand_shown(path.name, notebook, rules, given, texts, questions)
     return Source(path.stem, notebook, questions, figures, rules, bool(identities))
 
 
@@ -242,6 +248,28 @@ def _demand_marks(text, where):
         raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
 
 
+def _demand_pi(file, notebook):
+    """A rounded pi makes right answers wrong: those that students give with all of its digits."""
+    for number, cell in enumerate(notebook.cells):
+        for region in SOLUTION.findall(cell.source) if cell.cell_type == "code" else ():
+            found = PI_ROUNDED.search(re.sub(r"#.*", "", region))
+            if found:
+                raise author.AuthorError(
+                    f"{file}, cell {number}: the solution has {found[0]} for pi, and a student who takes all digits "
+                    "would be told that the value is wrong. Write `sm.pi` or `math.pi`."
+                )
+
+
+def _demand_few_digits(name, shown):
+    """A text shows numbers as they are meant, and not 0.30000000000000004."""
+    for parameter, text in shown.items():
+        found = re.search(rf"\d*\.\d{{{MOST_PLACES + 1},}}", text)
+        if found:
+            raise author.AuthorError(
+                f"{name}: its text would show {found[0]} for {parameter}. Round it where it is drawn: round(value, 3)."
+            )
+
+
 def _demand_hidden(file, notebook, variables):
     """An answer or a question that stands outside of the marks would be given to students."""
     owners = {variable: name for name, variable in variables.items()}
@@ -262,8 +290,10 @@ def _demand_hidden(file, notebook, variables):
                 )
 
 
-def _demand_shown(file, rules, given, texts, questions):
-    """What varies belongs to a question, and what a text shows in braces is drawn."""
+def _demand_shown(file, notebook, rules, given, texts, questions):
+    """What varies belongs to a question, and what a text shows in braces is drawn; students see all that is drawn."""
+    codes = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    code = "\n".join(VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", text))) for text in codes)
     for name in rules:
         if name not in questions:
             raise author.AuthorError(
@@ -276,6 +306,12 @@ def _demand_shown(file, rules, given, texts, questions):
         if unknown and unshown:
             raise author.AuthorError(
                 f"{name}: its text shows {{{{{unknown[0]}}}}}, which is not drawn; drawn are {', '.join(given[name])}."
+            )
+        unseen = [one for one in unshown if not re.search(rf"\b{one}\b", code)]
+        if unseen and not rules[name].picture:
+            raise author.AuthorError(
+                f"{name}: students would not see {unseen[0]}, which is drawn: neither its text, which would show it as "
+                f"{{{{{unseen[0]}}}}}, nor a cell that they get, nor a picture."
             )
 
 

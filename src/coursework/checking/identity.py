@@ -10,7 +10,7 @@ from pathlib import Path
 KEPT = Path(".coursework", "me.txt")
 #: What is said where nobody has said who works here.
 FORGOTTEN = (
-    "These are the numbers that everybody sees. In a course they earn no points: first say who you are, with "
+    "These are the numbers that everybody sees. In a course they earn no points: there, first say who you are, by "
     "`student('...')` in the first cell of code, and run it."
 )
 _identity = ""
@@ -57,5 +57,5 @@ def plain_identity(identity: str) -> str:
 
 
 def forgotten(question: dict) -> str:
-    """What is to be said beside a question that gives each student other numbers, where nobody has said who works here."""
+    """What is said beside a question with other numbers for each student, while nobody has said who works here."""
     return FORGOTTEN if question.get("variants", 1) > 1 and not _identity else ""

@@ -386,8 +386,8 @@ def _few_digits(question, plain):
             if 0.5 * 10.0**-places > allowed and Fraction(node[1]).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
-                    f"`{float(node[1]):g}` has {count} after the point, and an answer may be off by {allowed:.1g} only: "
-                    "if you have rounded, keep all digits until the end."
+                    f"`{float(node[1]):g}` has {count} after the point, and an answer may be off by {allowed:.1g} at "
+                    "most: if you have rounded, keep all digits until the end."
                 )
     return ""
 

@@ -150,4 +150,4 @@ def variant(name: str) -> Given:
 
     question = find_question(name)
     said = forgotten(question)
-    return Given(text_of(question) + (f"\n\n*For everybody.* {said}" if said else ""), question.get("given", {}))
+    return Given(text_of(question) + (f"\n\n{said}" if said else ""), question.get("given", {}))
