@@ -582,6 +582,43 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     again.page.wait_for_selector(f".live-who:has-text('those of {students[0]}')")
 
 
+@pytest.mark.long
+def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site):
+    """Without NumPy: what stands in for it there makes arrays of its own."""
+    name = "exercises/simple-orientations.html"
+    places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
+    page = Page(context, site, name)
+    answer = "from orientation import dcm_from_axis_angle\n\nA_C_N = dcm_from_axis_angle((0, 1, 0), 0.3)"
+    page.write(places["simple-orientations-crank"], answer)
+    check = places["check-simple-orientations-crank"]
+    page.page.click(f"button.run-cell >> nth={check - 1}")
+    page.wait()
+    assert "not the one that is asked for" in page.below(check)  # it was read
+    assert page.outside() == [] and page.errors == []
+
+
+@pytest.mark.sampled(1, of="what a page keeps")
+def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, site):
+    """Its outputs are those of nobody: everybody's numbers, and questions that nobody has attempted."""
+    name, question = "exercises/simple-orientations.html", "simple-orientations/boom"
+    page = Page(context, site, name)
+    codes = [
+        page.cell(k).locator("pre").first.inner_text() for k in range(1, page.page.locator("div.cell").count() + 1)
+    ]
+    shown = next(k for k, code in enumerate(codes, 1) if "variant(" in code)
+    check = next(k for k, code in enumerate(codes, 1) if f"check('{question}'" in code)
+    assert "Not attempted" in page.below(check)
+    record = json.dumps({question: {"outcome": "correct"}})
+    page.page.evaluate(
+        "(record) => { for (const [name, text] of [['me.txt', 'ada'], ['progress.json', record]]) "
+        "localStorage.setItem(`book / coursework ${name}`, JSON.stringify({text, at: 1})); }",
+        record,
+    )
+    page.page.reload()
+    assert "Correct, when you checked it last" in page.below(check) and "Not attempted" not in page.below(check)
+    assert "those of ada" in page.below(shown)
+
+
 @pytest.mark.sampled(1, of="what a page keeps")
 def test_tries_and_hints_of_a_page_outlive_it(context, site):
     name = "exercises/simple-orientations.html"

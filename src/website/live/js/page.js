@@ -164,7 +164,7 @@
       else if (outcome) said = "You have tried this one before. Run this cell to see the reply again.";
       if (!said || !output) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
-      output.prepend(make("p", { className: "live-note" }, said));
+      output.prepend(make("p", { className: "live-known" }, said));
     });
   };
   try {
