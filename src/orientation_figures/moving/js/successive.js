@@ -91,7 +91,7 @@ export function render({ model, el }) {
   const text = liveText();
   open(el, stage(sheet, text),
     element('div', { class: 'controls chain' }, chain.element,
-      element('div', { class: 'row-of-controls' }, about.element, compare.element), ...rows.map((row) => row.element),
+      ...(model.get('more') ? [element('div', { class: 'row-of-controls' }, about.element, compare.element)] : []), ...rows.map((row) => row.element),
       element('div', { class: 'row-of-controls' }, more, fewer)),
     element('div', { class: 'readouts' },
       readout([title], product), readout(['Multiplied out'], result.element)));
@@ -157,7 +157,7 @@ function sentence(end, kind, dcm, compare, otherDcm, lit) {
   }
   const { axis, angle } = axisAngleFromDcm(dcm);
   if (!otherDcm) {
-    return (kind === 'body' ? 'Each turn is about an axis of the frame before it (body fixed). '
+    return (kind === 'body' ? 'Each turn is about an axis of the frame before it. '
       : 'Each turn is about an axis of $N$ (space fixed). ')
       + (angle < 1e-9 ? end === 'N' ? 'No turn has been made yet: press Play.' : `Together the turns so far bring $${end}$ to where $N$ is.` : `From $N$ to $${end}$ they are one turn of ${angleText(angle)} about (${
         axis.map((entry) => fixed(entry, 2).trim()).join(', ')}).`);
