@@ -110,7 +110,7 @@ def build(folder, chapters, **changed):
     for key in list(settings["sphinx"]["config"]):
         if key.startswith("bibtex"):
             settings["sphinx"]["config"].pop(key)
-    settings["sphinx"]["config"] |= changed
+    settings["sphinx"]["config"] |= {"moved": {}, **changed}
     (folder / "_config.yml").write_text(json.dumps(settings))
     contents = {
         "format": "jb-book",
