@@ -7,6 +7,6 @@ from .checking.check import check, hint, progress, worked_solution
 from .checking.identity import me, student
 from .checking.variants import variant
 
-__version__ = "1.1.0"
+__version__ = "1.2.0"
 
 __all__ = ["check", "hint", "me", "progress", "student", "variant", "worked_solution"]
