@@ -1,0 +1,1 @@
+"""A bench for what others have measured or computed: in which conventions it is, and how wrong."""
