@@ -1,1 +1,5 @@
-"""A bench for what others have measured or computed: in which conventions it is, and how wrong."""
+"""Where the world's numbers meet this book: two programs that disagree, and recordings that are to be judged."""
+
+from .mismatch.explanation import Explanation, explain
+
+__all__ = ["Explanation", "explain"]

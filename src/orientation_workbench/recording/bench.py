@@ -61,8 +61,8 @@ class Examined(NamedTuple):
     verdicts : list of Verdict
     time : array of shape ``(n,)``
     rates, forces, field : arrays of shape ``(n, 3)`` or None
-        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity, and multiples of the
-        field's own length.
+        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity, and multiples of
+        the field's own length.
     orientation : tuple or None
         Times, and the file's orientations as ``B_C_N``.
     judgements : list of Judgement
@@ -376,7 +376,8 @@ class _Bench:
                 if off > max(0.02, 3 * uncertain)
                 else GREEN
             )
-            words = f"{found:.3f} ± {uncertain:.3f}: its turns carry gravity through {len(poses)} poses to {np.degrees(left):.1f}°"
+            words = f"{found:.3f} ± {uncertain:.3f}: its turns carry gravity through {len(poses)} poses"
+            words += f" to {np.degrees(left):.1f}°"
             advice = f"Multiply what it says by {found:.3f}." if light in (RED, YELLOW) else ""
             self.say("scale of the gyroscope", light, words, evidence, advice)
             if sure and off > max(0.02, 3 * uncertain):
@@ -518,7 +519,8 @@ class _Bench:
             "± (°)": round(float(np.degrees(fit.uncertainty)), 2),
         }
         light = RED if hard > 0.1 + 2 * fit.uncertainty else YELLOW if hard > 0.05 else GREEN
-        words = f"{fit.offset.round(2).tolist()}, {hard:.0%} of the field: up to {np.degrees(np.arcsin(min(1, hard))):.0f}° of direction"
+        aside = np.degrees(np.arcsin(min(1, hard)))
+        words = f"{fit.offset.round(2).tolist()}, {hard:.0%} of the field: up to {aside:.0f}° of direction"
         self.say(
             "offset of the magnetometer",
             light if sure or light == RED else UNKNOWN,
@@ -543,7 +545,7 @@ class _Bench:
                 for part in np.array_split(own, max(4, len(own) // max(10, round(1 / np.median(np.diff(self.time))))))
             ]
         )
-        uneven = float((np.percentile(smooth, 97) - np.percentile(smooth, 3)))
+        uneven = float(np.percentile(smooth, 97) - np.percentile(smooth, 3))
         dips = self._dips()
         evidence = {"length varies by": round(uneven, 3), "length by run": lengths.round(2).tolist()[:12]} | (
             {"dip varies by (°)": round(dips[1], 1), "dip (°)": round(dips[0], 1)} if dips else {}
@@ -761,7 +763,8 @@ class _Bench:
         )
         advice = ""
         if light == RED:
-            advice = f"It is too sure of itself by {max(worst, np.sqrt(high)):.0f} times: tell it of larger deviations, and use fewer samples as evidence."
+            advice = f"It is too sure of itself by {max(worst, np.sqrt(high)):.0f} times: "
+            advice += "tell it of larger deviations, and use fewer samples as evidence."
         elif light == YELLOW:
             advice = "Successive surprises are alike: what the sensors do wrong lasts for more than one sample."
         evidence = {

@@ -12,7 +12,7 @@ HEADINGS = {
     "quaternion": r"quat|^q[0-3wxyz]?$|orientation|attitude|rotation.?vector|\bq\b",
     "angles": r"roll|pitch|yaw|euler|heading|azimuth|^alpha|^beta|^gamma|\bphi\b|\btheta\b|\bpsi\b",
     "gravity": r"grav",
-    "linear acceleration": r"^lin(?!ear_acc)|user|without.?g|linear.?acceleration.*\(",
+    "linear acceleration": r"^lin|user|without.?g",
     "magnetometer": r"mag|field|compass|^m$|^b$",
     "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w$|^g$|^wib",
     "accelerometer": r"acc|force|^a$|^fib|^f$",
@@ -109,12 +109,14 @@ def read_content(source, name=None, rate=None):
         groups += found
         unused += left
     chosen = _roles(groups)
-    if not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
+    alone = set(chosen) == {"gyroscope"} and not chosen["gyroscope"].called
+    if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
         raise RecordingError(
             "no instrument is in this file: three columns that belong together and behave like a gyroscope, an "
             f"accelerometer or a magnetometer were sought among {', '.join(c for t in tables for c in t.columns)}"[:400]
         )
-    unused += [", ".join(group.names) for group in groups if not any(group is one for one in chosen.values())]
+    used = {tuple(group.names) for group in chosen.values()}
+    unused += [", ".join(group.names) for group in groups if tuple(group.names) not in used]
     kinds = {kind: group._replace(kind=kind) for kind, group in chosen.items()}
     first = next(kinds[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in kinds)
     clock, counted = next(
@@ -176,6 +178,7 @@ def _time(table):
 
 def _parts(heading):
     """A heading without its unit, parted into what it is about and the letter of its axis."""
+    heading = re.sub(r"^field\.", "", heading)  # before every heading of a robot's log
     text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
     text = re.sub(r"(?<=[a-z])(?=\[)|[\[\]|:. _-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)).strip()
     words = text.split()
@@ -278,7 +281,15 @@ def _roles(groups):
     quaternions = [group for group in groups if group.kind == "quaternion"]
     angles = [group for group in groups if group.kind == "angles"]
     vectors = [group for group in groups if group.kind == "vector" and np.ptp(group.values, axis=0).max() > 0]
-    vectors = [group for group in vectors if group.called not in ("gravity", "linear acceleration", "quaternion")]
+    # What some call linear holds gravity nevertheless: its length tells.
+    vectors = [
+        group._replace(called="accelerometer")
+        if group.called == "linear acceleration" and points_one_way(group.values)
+        else group
+        for group in vectors
+        if group.called not in ("gravity", "quaternion")
+    ]
+    vectors = [group for group in vectors if group.called != "linear acceleration"]
     for group in list(vectors):
         if group.called == "angles":
             angles.append(group)

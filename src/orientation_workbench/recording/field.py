@@ -19,7 +19,7 @@ class FieldFit(NamedTuple):
     strength : float
         Length of the field that is left, in that unit.
     uncertainty : float
-        Standard deviation of a direction that is computed with it, radians; infinite if the turns do not suffice.
+        Standard deviation of a direction that is computed with it, radians.
     fields : array of shape ``(k, 3)``
         The field in each run, along the axes at its beginning.
     axes : array of shape ``(3, 3)``
@@ -50,7 +50,7 @@ def fit_field(time, rates, field, seconds=0.25):
     Returns
     -------
     FieldFit or None
-        None where there is not enough turning to begin with.
+        None where the turns do not decide, or nothing is better for the correction.
 
     Notes
     -----
@@ -94,8 +94,8 @@ def fit_field(time, rates, field, seconds=0.25):
     shape = solution.reshape(3, 3)
     noise = sizes[-1] / np.sqrt(max(1, len(rest) - 12))
     size_of_shape = abs(np.linalg.det(shape)) ** (1 / 3)
-    if size_of_shape < 0.05:
-        return FieldFit(np.eye(3), np.zeros(3), np.nan, np.inf, np.zeros((0, 3)), np.eye(3), np.nan)
+    if size_of_shape < 0.05 or sizes[-1] > 0.4 * sizes[-2]:  # another shape fits nearly as well
+        return None
     shape = shape / size_of_shape
     offset = -onto @ solution / size_of_shape
     if np.linalg.det(shape) < 0:  # a field and its opposite fit alike: taken is what needs no mirror
@@ -111,4 +111,7 @@ def fit_field(time, rates, field, seconds=0.25):
     spread_a = noise / max(sizes[-2], 1e-12) * np.sqrt(3)
     spread_c = noise / max(np.linalg.svd(both[:, 9:], compute_uv=False)[-1], 1e-12)
     uncertainty = (spread_a + spread_c * scale / max(strength, 1e-12) / size_of_shape) if strength else np.inf
+    lengths, before = (np.linalg.norm(values, axis=1) for values in ((field - centre) @ shape.T, field))
+    if stretches[0] > 3 * stretches[-1] or lengths.std() / lengths.mean() > before.std() / before.mean() + 0.02:
+        return None  # a correction that makes things worse is none
     return FieldFit(shape, centre, strength, float(uncertainty), fields, axes, float(stretches[0] / stretches[-1]))

@@ -211,8 +211,8 @@ def pieces(time, rates, longest=40.0, seconds=0.5):
 def fit_axes(time, rates, vectors, scales, seconds=0.5, longest=40.0):
     """Try all 48 assignments of a gyroscope's axes to those of a vector that stays where it is.
 
-    While the instrument turns, a vector that stays (gravity, the Earth's field) turns backwards in it. Carried back by the
-    gyroscope, its means over short blocks must agree with those of the next block.
+    While the instrument turns, a vector that stays (gravity, the Earth's field) turns backwards in it. Carried back by
+    the gyroscope, its means over short blocks must agree with those of the next block.
 
     Parameters
     ----------

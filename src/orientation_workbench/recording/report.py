@@ -1,13 +1,14 @@
 """What the bench has found, as a text, as one page, and as the corrected recording."""
 
 import io
+import re
 from html import escape
 
 import numpy as np
 
 LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
-#: Ways to write an orientation down, by what they are called in ``--convention``.
-CONVENTIONS = ("book", "scalar-last", "ground-from-body", "ground-from-body-scalar-last", "yaw-pitch-roll")
+#: Ways to write an orientation down, by what the command calls them.
+CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
 
 
 def as_text(examined):
@@ -22,24 +23,29 @@ def as_text(examined):
     return "\n".join(lines)
 
 
-def as_csv(examined, convention="book"):
+def as_csv(examined, convention="wxyz"):
     """The corrected recording as CSV.
 
     Parameters
     ----------
     examined : Examined
     convention : str
-        Of the orientation: ``book`` (``B_C_N`` as a quaternion, scalar first), ``scalar-last``, ``ground-from-body`` (its
-        conjugate, as SciPy, ROS and Eigen read a quaternion that turns the body's components into the ground's, is the
-        same four numbers: see the card), ``ground-from-body-scalar-last``, or ``yaw-pitch-roll`` in degrees (body fixed
-        z-y-x).
+        Of the filter's orientation, the body's with respect to a ground with z up: ``wxyz`` and ``xyzw`` for a
+        quaternion with its scalar first or last, ``yaw-pitch-roll`` for degrees, body fixed z-y-x.
 
     Returns
     -------
     str
         Angular velocity in radians per second, specific force in multiples of gravity, the field in multiples of its
-        length, and the filter's orientation where it ran.
+        length, and the filter's orientation where it ran: elsewhere it is missing.
+
+    Raises
+    ------
+    ValueError
+        If the convention is another.
     """
+    if convention not in CONVENTIONS:
+        raise ValueError(f"there is no convention {convention!r}: it is {', '.join(CONVENTIONS)}")
     from orientation import body_fixed_from_dcm, quaternion_from_dcm
 
     names, columns = ["time (s)"], [examined.time[:, None]]
@@ -52,19 +58,19 @@ def as_csv(examined, convention="book"):
             names += [f"{kind} {axis} ({unit})" for axis in "xyz"]
             columns.append(values)
     if examined.judgements:
-        dcms = np.concatenate([one.dcms for one in examined.judgements])
-        times = np.concatenate([one.times for one in examined.judgements])
-        nearest = np.abs(np.searchsorted(times, examined.time).clip(1, len(times) - 1))
-        nearest -= examined.time - times[nearest - 1] < times[nearest] - examined.time
-        dcms = dcms[nearest]
         if convention == "yaw-pitch-roll":
             names += ["yaw (deg)", "pitch (deg)", "roll (deg)"]
-            columns.append(np.degrees(body_fixed_from_dcm(dcms, "zyx")))
         else:
-            quaternions = quaternion_from_dcm(dcms.swapaxes(-1, -2) if "ground" in convention else dcms)
-            last = convention.endswith("last")
-            names += ["qx", "qy", "qz", "qw"] if last else ["qw", "qx", "qy", "qz"]
-            columns.append(np.roll(quaternions, -1, axis=1) if last else quaternions)
+            names += [f"q{letter}" for letter in convention]
+        found = np.full((len(examined.time), len(names) - sum(part.shape[1] for part in columns)), np.nan)
+        for one in examined.judgements:
+            inside = np.flatnonzero((examined.time >= one.times[0]) & (examined.time <= one.times[-1]))
+            dcms = one.dcms[np.searchsorted(one.times, examined.time[inside])]
+            if convention == "yaw-pitch-roll":
+                found[inside] = np.degrees(body_fixed_from_dcm(dcms, "zyx"))
+            else:
+                found[inside] = np.roll(quaternion_from_dcm(dcms), -1 * (convention == "xyzw"), axis=1)
+        columns.append(found)
     lines = [",".join(f"{value:.9g}" for value in row) for row in np.concatenate(columns, axis=1)]
     return "\n".join([",".join(names), *lines]) + "\n"
 
@@ -72,7 +78,7 @@ def as_csv(examined, convention="book"):
 def as_html(examined):
     """The report as one page that needs nothing else: verdicts, evidence and plots."""
     rows = "".join(
-        f'<tr class="{escape(verdict.light.replace(" ", "-"))}"><td>{escape(verdict.light)}</td><th>{escape(verdict.about)}</th>'
+        f'<tr class="{verdict.light.replace(" ", "-")}"><td>{verdict.light}</td><th>{escape(verdict.about)}</th>'
         f"<td>{escape(verdict.words)}"
         + (f"<p><b>{escape(verdict.advice)}</b></p>" if verdict.advice else "")
         + (
@@ -95,18 +101,21 @@ def as_html(examined):
     return (
         f'<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
         f"<title>{escape(examined.name)} on the bench</title><style>{STYLE}</style>"
-        f"<h1>{escape(examined.name)}</h1><table>{rows}</table>{pictures}<h2>The code that made it</h2><pre>{escape(code)}</pre></html>\n"
+        f"<h1>{escape(examined.name)}</h1><table>{rows}</table>{pictures}"
+        f"<h2>The code that made it</h2><pre>{escape(code)}</pre></html>\n"
     )
 
 
 STYLE = """
 :root { color-scheme: light dark; font: 16px/1.45 system-ui, sans-serif; }
 body { max-width: 60rem; margin: 1rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; width: 100%; } td, th { text-align: left; vertical-align: top; padding: .35rem .6rem .35rem 0;
+table { border-collapse: collapse; width: 100%; }
+td, th { text-align: left; vertical-align: top; padding: .35rem .6rem .35rem 0;
 border-top: 1px solid #8886; overflow-wrap: anywhere; } th { font-weight: 600; min-width: 8rem; } p { margin: .2rem 0; }
 tr > td:first-child { white-space: nowrap; } tr.wrong > td:first-child { color: #c62828; font-weight: 700; }
 tr.look > td:first-child { color: #a66300; font-weight: 700; } tr.cannot-tell > td:first-child { color: #777; }
-@media (prefers-color-scheme: dark) { tr.wrong > td:first-child { color: #ff8a80; } tr.look > td:first-child { color: #ffb74d; } }
+@media (prefers-color-scheme: dark) { tr.wrong > td:first-child { color: #ff8a80; }
+tr.look > td:first-child { color: #ffb74d; } }
 figure { margin: 1rem 0; background: #fff; color: #222; border-radius: 4px; } figure svg { width: 100%; height: auto; }
 figcaption { padding: 0 .8rem .6rem; } pre { overflow-x: auto; } summary { cursor: pointer; opacity: .75; }
 @media (max-width: 40rem) { table, tbody, tr, td, th { display: block; } td, th { border: 0; padding: .1rem 0; }
@@ -131,7 +140,8 @@ def plots(examined):
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None})
         svg = text.getvalue()
-        svg = svg[svg.index("<svg") :].replace("<svg", f'<svg role="img" aria-label="{escape(words, quote=True)}"', 1)
+        svg = re.sub(r"<metadata>.*?</metadata>", "", svg[svg.index("<svg") :], flags=re.DOTALL)
+        svg = svg.replace("<svg", f'<svg role="img" aria-label="{escape(words, quote=True)}"', 1)
         found.append((svg, words))
 
     if examined.rates is not None:
@@ -150,7 +160,8 @@ def plots(examined):
         still = sum(one.still for one in examined.still)
         kept(
             figure,
-            f"How fast it turns. Shaded: {still} stretches in which it lies still, {len(examined.still) - still} in which it is held.",
+            f"How fast it turns. Shaded: {still} stretches in which it lies still, "
+            f"{len(examined.still) - still} in which it is held.",
         )
         times, deviations = allan_deviation(examined)
         if len(times):
@@ -161,7 +172,8 @@ def plots(examined):
             axes.legend()
             kept(
                 figure,
-                "Allan deviation of the gyroscope in its longest still stretch. Where it falls by half for four times the time, it is noise.",
+                "Allan deviation of the gyroscope in its longest still stretch. Where it falls by half for four times "
+                "the time, it is noise; its lowest point is the instability of its bias.",
             )
     if examined.judgements:
         figure, axes = drawing(2.6)
@@ -171,7 +183,8 @@ def plots(examined):
         axes.set(xlabel="time (s)", ylabel="tilt (°)", ylim=(0, None))
         kept(
             figure,
-            "Solid: by how much the filter run forwards and backwards differ in tilt. Dashed: how much they should by their own claims.",
+            "Solid: by how much the filter run forwards and backwards differ in tilt. Dashed: how much they should by "
+            "their own claims.",
         )
     return found
 

@@ -195,8 +195,8 @@ def _table(rows, name, comma, numbers=None, columns=None):
     if len(numeric) < 3 or len(full) < 8:
         line, row = (sample or rows)[0]
         raise RecordingError(
-            f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} columns of numbers, where "
-            f"a recording has three and more. Line {line} begins: {' '.join(row)[:60]!r}"
+            f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} columns of numbers, "
+            f"where a recording has three and more. Line {line} begins: {' '.join(row)[:60]!r}"
         )
 
     def values(row):
