@@ -68,9 +68,10 @@ def read_tables(source, name=None):
 
     Examples
     --------
-    >>> [table] = read_tables("time,x,y\\n0,1,2\\n0.01,1.5,2.5\\n0.02,2,\\n")
+    >>> rows = "\\n".join(f"{k / 100},{k},{k * k}" for k in range(9))
+    >>> [table] = read_tables("time,x,y\\n" + rows)
     >>> table.columns, table.values.shape
-    (['time', 'x', 'y'], (3, 3))
+    (['time', 'x', 'y'], (9, 3))
     """
     if isinstance(source, str) and "\n" in source:
         return _from_text(source, name or "recording")
