@@ -276,14 +276,8 @@ def release(course, only=(), run=True, variants=None):
     AuthorError
         A question is not well posed, or the folders hold what these sources do not make. Nothing is ever deleted.
     """
-    paths = notebooks_in(course.sources)
-    known = {path.stem for path in paths}
-    _demand_sources(course, known)
-    unknown = sorted(set(only) - known)
-    if unknown:
-        raise AuthorError(f"There is no {unknown[0]}.ipynb in {course.sources}; there are {', '.join(sorted(known))}.")
-    if only:
-        paths = [path for path in paths if path.stem in only]
+    _demand_sources(course, {path.stem for path in notebooks_in(course.sources)})
+    paths = notebooks_in(course.sources, only)
     for folder in (course.exercises, course.sealed):
         folder.mkdir(parents=True, exist_ok=True)
     if course.moved:

@@ -75,13 +75,13 @@ class Source(NamedTuple):
     asks_who: bool
 
 
-def notebooks_in(folder):
-    """The notebooks with solutions of a folder.
+def notebooks_in(folder, only=()):
+    """The notebooks with solutions of a folder, or those of them that are named.
 
     Raises
     ------
     AuthorError
-        There is none.
+        There is none, or none of a name.
     """
     found = sorted(Path(folder).glob("*.ipynb"))
     if not found:
@@ -89,7 +89,11 @@ def notebooks_in(folder):
             f"There is no notebook with solutions in {folder}. If the solutions are kept in a private repository, "
             "get them first; without them everything builds, but nothing is released or graded."
         )
-    return found
+    unknown = sorted(set(only) - {path.stem for path in found})
+    if unknown:
+        known = ", ".join(path.stem for path in found)
+        raise author.AuthorError(f"There is no {unknown[0]}.ipynb in {folder}; there are {known}.")
+    return [path for path in found if not only or path.stem in only]
 
 
 @functools.cache
