@@ -134,7 +134,8 @@ def test_newcomer_has_done_nothing_yet_and_sees_all_columns_on_a_telephone(conte
     box = page.locator(".pst-scrollable-table-container:has(table.my-progress)")
     assert box.evaluate("(box) => box.scrollWidth - box.clientWidth") <= 0
     row = page.locator("table.my-progress tbody tr").first
-    headings = row.locator("td").evaluate_all("(cells) => cells.map((cell) => getComputedStyle(cell, '::before').content)")
+    label = "(cells) => cells.map((cell) => getComputedStyle(cell, '::before').content)"
+    headings = row.locator("td").evaluate_all(label)
     assert len(set(headings)) == 5 and "none" not in headings
 
 
