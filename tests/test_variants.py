@@ -478,6 +478,27 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
     ]
 
 
+def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
+    """Their pages follow upon those of the first variant, which another machine's numbers had made others."""
+    made = made_in(tmp_path)
+    solved = SOLVED.replace("moment =", "import os\nmoment = float(os.environ['MOVED_BY']) +")
+    write_source(made.sources, *((kind, solved if text == SOLVED else text) for kind, text in CELLS), name="levers")
+    monkeypatch.chdir(tmp_path)
+    try:
+        for moved in (0, 1e-4, 2e-4, 3e-4):
+            monkeypatch.setenv("MOVED_BY", str(moved))
+            release(made, run=False)
+            for number in range(6):
+                questions.notebook_questions.cache_clear()
+                coursework.me(student_with(number) if number else "")
+                lever = coursework.variant("levers/see-saw")
+                assert coursework.check("levers/see-saw", lever.force * lever.arm + moved).outcome == "correct"
+                assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
+    finally:
+        coursework.me("")
+        questions.notebook_questions.cache_clear()
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
