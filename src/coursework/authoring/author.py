@@ -55,7 +55,7 @@ TOLERANCE = 5e-4
 #: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may cross.
 REACH = 0.5
 #: What is known of an answer is rounded to this share of what it may be off by; no finer than its doubles hold, and
-#: never to more than the last share: its seal must not follow from the last bits, which another processor has otherwise.
+#: never to more than the last share: a seal must not follow from the last bits, which other processors have otherwise.
 ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-2")
 #: Where rounding tips from one number to the next: no number of few digits or small denominator lies there.
 TIPS = MP.mpf("0.6371")
