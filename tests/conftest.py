@@ -1,8 +1,6 @@
 """What the tests share: which of them run, the built site, a server for it, and a browser."""
 
-import datetime
 import os
-import random
 import threading
 from collections import defaultdict
 from importlib import metadata
@@ -12,11 +10,11 @@ import nbval.kernel
 import nbval.plugin
 import pytest
 import times
-from moves import moves
 from xdist.scheduler import LoadFileScheduling
 
 from website import warm_kernels
 from website.browser import FLAGS, MISSING, find
+from website.moves import moves
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 HTML = REPOSITORY / "_build" / "html"
@@ -54,8 +52,8 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
-# What is drawn by lot in this run is drawn from this; another day draws another lot, and the same seed the same.
-SEED = os.environ.setdefault("BOOK_TEST_SEED", datetime.date.today().isoformat())
+# What tests draw by lot they draw from this: the same every day, and another lot where it is set, as at night.
+SEED = os.environ.setdefault("BOOK_TEST_SEED", "every day")
 
 
 compare_strictly = nbval.plugin.IPyNbCell.compare_outputs
@@ -63,7 +61,7 @@ format_difference = nbval.plugin.IPyNbCell.format_output_compare
 
 
 def compare_outputs(cell, test, ref, skip_compare=None):
-    """As nbval compares the outputs of a cell, but for numbers that moved by as little as :mod:`moves` allows."""
+    """As nbval compares outputs, but for numbers that moved by as little as :mod:`website.moves` allows."""
     for now, stored in zip(test, ref):
         _undo_small_moves(now.get("data", {}), stored.get("data", {}), cell.sanitize)
         _undo_small_moves(now, stored, cell.sanitize)
@@ -97,12 +95,12 @@ def pytest_configure(config):
     config.addinivalue_line(
         "markers",
         "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of all tests of the file "
-        "that name the same thing, only so many, drawn by lot, run every time; the rest is long",
+        "that name the same thing, only so many run every time, spread evenly over all; the rest is long",
     )
 
 
 def pytest_report_header():
-    return f"drawn by lot from BOOK_TEST_SEED={SEED}, which draws the same again"
+    return f"what is drawn by lot is drawn from BOOK_TEST_SEED={SEED!r}"
 
 
 @pytest.hookimpl(tryfirst=True)  # before those that are marked as long are left out
@@ -116,11 +114,21 @@ def pytest_collection_modifyitems(items):
                     name = f"{name.partition('::')[0]} {marker.kwargs['of']}"
                 cases[name, marker.args[0]].append(item)
             break  # the closest
-    for (name, number), found in cases.items():
-        chosen = random.Random(f"{SEED} {name}").sample(found, min(number, len(found)))
+    for (_, number), found in cases.items():
+        chosen = spread(found, number)
         for item in found:
             if item not in chosen:
                 item.add_marker(pytest.mark.long)
+
+
+def spread(cases, number):
+    """So many of the cases, spread evenly from the first to the last.
+
+    >>> spread("abcdefghij", 3), spread("abcdefghij", 1), spread("ab", 5)
+    (['b', 'f', 'i'], ['f'], ['a', 'b'])
+    """
+    number = min(number, len(cases))
+    return [cases[len(cases) * (2 * k + 1) // (2 * number)] for k in range(number)]
 
 
 def pytest_unconfigure():

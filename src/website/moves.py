@@ -32,8 +32,13 @@ class Move(NamedTuple):
     allowed: float
 
     @property
+    def share(self):
+        """Which part of what is allowed it has moved."""
+        return self.by / self.allowed if self.allowed else float("inf")
+
+    @property
     def too_far(self):
-        return not self.by <= self.allowed
+        return self.share > 1
 
     def __str__(self):
         if self.by == float("inf"):
@@ -82,8 +87,8 @@ def _in_a_drawing(stored, now):
 
 
 def _allowed(one, other):
-    """Counts are exact: what is written as a whole number on both sides must be the same."""
-    if all(text.lstrip("+-").isdigit() for text in (one, other)):
+    """Counts are exact: what is written as a whole number must be the same."""
+    if any(text.lstrip("+-").isdigit() for text in (one, other)):
         return 0.0
     return ALLOWED * max(1.0, abs(float(one)))
 
