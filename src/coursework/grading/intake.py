@@ -60,6 +60,10 @@ TRIED = re.compile(r"[0-9a-f]{6}")
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
 
+#: How a notebook says whose it is, to get the numbers of that student.
+SAYS = re.compile(r"""^[^#\n]*?\b(?:me|student)\(\s*(?P<mark>['"])(?P<who>[^'"\n]{1,200})(?P=mark)\s*,?\s*\)""", re.M)
+
+
 class Refused(NamedTuple):
     """A file that was handed in and is not graded, and why."""
 
@@ -104,6 +108,8 @@ class Notebook(NamedTuple):
     beside : tuple of Beside
     handed_in : str
         When, in ISO 8601, as the system says; without a time zone where the system names none.
+    says : str
+        Whose it says that it is, for the numbers of its questions; empty if it does not.
     """
 
     file: str
@@ -119,6 +125,7 @@ class Notebook(NamedTuple):
     read: Callable
     beside: tuple = ()
     handed_in: str = ""
+    says: str = ""
 
     @property
     def cells(self):
@@ -288,8 +295,15 @@ def _take(found, others, refused, layout, name, when, read, outer):
             claim.late,
             claim,
             read,
+            says=_says(cells),
         )
     )
+
+
+def _says(cells):
+    """Whose a notebook says that it is: the last time that it says so."""
+    said = [found["who"] for cell in cells for found in SAYS.finditer(cell["source"]) if found["who"].strip()]
+    return said[-1] if said else ""
 
 
 @functools.lru_cache(1_000)
