@@ -135,14 +135,15 @@ class Contracts:
         self.questions = Path(folder, "questions")
         self._older: dict[str, tuple[Question, Case]] | None = None
         self._known: dict[str, Question] = {}
+        self._kept: set[str] = set()
 
     def keep(self, question: Question) -> None:
         """Keep a question; it holds right answers, so that nobody else on this machine may read it."""
         path = self._path(question["version"])
-        if question["version"] not in self._known and not path.exists():
+        if question["version"] not in self._kept and not path.exists():
             bare = {name: value for name, value in question.items() if name not in NOT_KEPT}
             write(path, json.dumps(bare, ensure_ascii=False), private=True)
-        self._known[question["version"]] = question
+        self._kept.add(question["version"])
 
     def of(self, version: str) -> Question | None:
         """The question of a version, or ``None`` if nobody kept it."""

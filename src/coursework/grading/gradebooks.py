@@ -278,14 +278,14 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_ru
                     kept.append(f"{student}: {there}, and graded {text}")
                     continue
                 replaced.append(f"{student}: {there} -> {text}")
-            if not _is_same(there, text):
-                changes.append(f"{student}: {there or 'nothing'} -> {text}")
+            elif there not in ("", "-") and not _is_same(there, text):
+                changes.append(f"{student}: {there} -> {text}")
             if text not in before:
                 before.append(text)
             book.put(line, place, text.replace(".", ",") if comma else text)
             filled_in += 1
     if changes:
-        said.append(f"To be changed ({len(changes)}):")
+        said.append(f"Changed since it was written from here last ({len(changes)}):")
         said += [f"  {in_a_line(change, 200)}" for change in changes]
     target = Path(filled) if filled else path.with_name(f"{path.stem}-filled{path.suffix}")
     if dry_run:
