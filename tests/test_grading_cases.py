@@ -11,10 +11,11 @@ import pytest
 import sympy as sm
 from grading_class import notebook, put
 
+from coursework.__main__ import main
 from coursework.checking import evaluate
 from coursework.checking.plain import read_plain, to_plain
 from coursework.checking.variants import siblings_of, variant_of
-from coursework.grading import judging, marking, secret
+from coursework.grading import isolation, judging, marking, pictures, secret
 from coursework.grading.cases import Case, Contracts, variants_of
 from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.ledger import CUT, Collision, Ledger
@@ -360,3 +361,87 @@ def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(
             mark = marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
             earned += mark["points"] > 0
     assert earned == 2  # of 16
+
+
+# --- what was handed in -------------------------------------------------------------------------
+
+
+def _png(size=(2, 2)):
+    from matplotlib.figure import Figure
+
+    data = io.BytesIO()
+    Figure(figsize=size, dpi=10).savefig(data, format="png")
+    return data.getvalue()
+
+
+def _jpeg():
+    from PIL import Image
+
+    data = io.BytesIO()
+    Image.new("RGB", (24, 16), "teal").save(data, "jpeg", progressive=True)
+    return data.getvalue()
+
+
+@pytest.mark.parametrize("kind, made", [(pictures.PNG, _png), (pictures.JPEG, _jpeg)])
+def test_a_picture_is_one_from_its_first_byte_to_its_last(kind, made):
+    """What began as a picture was believed to be one."""
+    data = made()
+    assert pictures.is_picture(kind, data)
+    other = pictures.JPEG if kind == pictures.PNG else pictures.PNG
+    for wrong in (data[:8] + b"<script>", data + b"PK", data[:-1], data[: len(data) // 2], b"", data[:3], b"\xff" * 50):
+        assert not pictures.is_picture(kind, wrong)
+    assert not pictures.is_picture(other, data) and not pictures.is_picture("image/svg+xml", data)
+
+
+def test_a_picture_that_would_fill_the_memory_is_none():
+    import struct
+    import zlib
+
+    def part(name, body):
+        return struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+
+    def png(wide):
+        header = struct.pack(">IIBBBBB", wide, 60_000, 8, 2, 0, 0, 0)
+        return pictures.PNG_BEGINS + part(b"IHDR", header) + part(b"IDAT", zlib.compress(b"")) + part(b"IEND", b"")
+
+    assert pictures.is_picture(pictures.PNG, png(600)) and not pictures.is_picture(pictures.PNG, png(60_000))
+
+
+@pytest.mark.parametrize(
+    "submissions, out, said",
+    [
+        ("damaged.zip", "out", "no zip archive, or a damaged one"),
+        ("nothing", "out", "There is nothing in"),
+        ("class", "a-file", "Not a directory"),
+    ],
+)
+def test_what_cannot_be_read_or_written_is_named(tmp_path, submissions, out, said):
+    (tmp_path / "damaged.zip").write_bytes(b"PK\5\6" + b"\0" * 16)
+    (tmp_path / "nothing").mkdir()
+    (tmp_path / "a-file").touch()
+    put(tmp_path / "class", "ann", answered(1), "beams.ipynb")
+    solutions = write_beams(tmp_path / "solutions", WEIGHTS)
+    with pytest.raises(SystemExit, match=said):
+        main(["grade", str(tmp_path / submissions), "--out", str(tmp_path / out), "--solutions", str(solutions)])
+
+
+def test_who_handed_in_a_damaged_file_is_not_said_to_have_handed_in_nothing(begun, tmp_path):
+    put(tmp_path / "in", "ann", "no notebook at all", "beams.ipynb")
+    put(tmp_path / "in", "ben", answered(1), "beams.ipynb")
+    (tmp_path / "in" / "cem").mkdir()
+    (tmp_path / "in" / "cem" / "work.zip").write_bytes(b"PK damaged")
+    (tmp_path / "roster.csv").write_text("student\nann\nben\ncem\ndora\n")
+    options = {"solutions": begun.place / "solutions", "roster": tmp_path / "roster.csv", "only_list": True}
+    said = io.StringIO()
+    grade(tmp_path / "in", tmp_path / "out", show=said, **options)
+    assert "1 handed in nothing: dora." in said.getvalue()
+    assert "2 handed in what cannot be graded: ann, cem." in said.getvalue()
+
+
+def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
+    """It was "Errno 22"."""
+    monkeypatch.setattr("os.geteuid", lambda: 0)
+    assert isolation.user_for_students(4242, "0 0 4294967295\n") == 4242
+    assert isolation.user_for_students(4242, "0 1000 1\n65534 100000 1\n") == isolation.OUTSIDER
+    with pytest.raises(RuntimeError, match="no other user than root"):
+        isolation.user_for_students(4242, "         0       1000          1\n")

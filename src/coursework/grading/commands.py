@@ -305,6 +305,19 @@ def sample_class(out, students, seed, notebooks, solutions, layout):
     print(f"{students} students in {made}")
 
 
+def _told(name, command):
+    """A command that says what the system refused, in place of where in the code that happened."""
+
+    def told(**options):
+        try:
+            return command(**options)
+        except OSError as error:
+            where = f": {error.filename}" if error.filename else ""
+            sys.exit(f"coursework {name}: {error.strerror or error}{where}")
+
+    return told
+
+
 COMMANDS = {
     "grade": grade,
     "regrade": regrade,
@@ -315,3 +328,4 @@ COMMANDS = {
     "gradescope": gradescope,
     "sample-class": sample_class,
 }
+COMMANDS = {name: _told(name, command) for name, command in COMMANDS.items()}

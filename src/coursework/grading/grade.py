@@ -215,6 +215,8 @@ def grade(
             notebooks, refused = intake.take_in(submissions, course.assignments, roster, student)
         except intake.Unfit as error:
             raise NothingToGrade(str(error)) from None
+        if not notebooks and not refused:
+            raise NothingToGrade(f"There is nothing in {submissions}: no notebook, and no other file.")
         work = sort_work(notebooks, course, refused)
         _say_whose(work, refused, roster, store, show)
         foreign = _say_foreign(work, course, show)
@@ -309,18 +311,12 @@ def _say_whose(work, refused, roster, store, show):
     for one in asked[:MOST_SHOWN]:
         print(f"  ? <- {in_a_line(one.file, 120)}: {in_a_line(one.why, 300)}", file=show)
     if roster:
-        damaged = _of_the_roster(refused, roster)
+        damaged = {one.student for one in refused} & set(roster.people) - {one.student for one in work}
         missing = sorted(set(roster.people) - {one.student for one in work} - damaged)
         for names, what in ((missing, "handed in nothing"), (sorted(damaged), "handed in what cannot be graded")):
             if names:
                 shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
                 print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
-
-
-def _of_the_roster(refused, roster):
-    """Who of the roster handed in a file that was refused."""
-    found = (roster.find((("own", one.student), ("name", one.student)), one.student)[0] for one in refused)
-    return {student for student in found if student is not None}
 
 
 def _say_foreign(work, course, show):

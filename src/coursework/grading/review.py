@@ -458,6 +458,8 @@ class _Answer(_Page):
         only, who = self.get_argument("only", ""), self.settings["grader"]
         seen = dict(zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False))
         members = [(place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))]
+        if not members:
+            raise web.HTTPError(400, "no such student")
         rubric = [line.strip() for line in self.get_arguments("rubric") if line.strip()]
         why = self.get_argument("why", "")[:LONGEST_COMMENT].strip()
         comment = self.get_argument("comment", "")[:LONGEST_COMMENT].strip()
