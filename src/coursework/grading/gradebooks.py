@@ -333,13 +333,13 @@ def _is_number(there):
 def _with_damaged(store, names):
     """Of those without a record: who handed in only what was refused, and who nothing."""
     refused = store.json_in(store.folder / REFUSED) if (store.folder / REFUSED).exists() else []
-    known = {_letters(student) for _, student, _ in refused if student}
-    damaged = [name for name in names if _letters(name) in known or _letters(_turned(name)) in known]
+    known = {_signs(student) for _, student, _ in refused if student}
+    damaged = [name for name in names if _signs(name) in known or _signs(_turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
 
 
-def _letters(name):
-    return "".join(sign for sign in name.casefold() if sign.isalpha())
+def _signs(name):
+    return "".join(sign for sign in name.casefold() if sign.isalnum())
 
 
 def _turned(name):
