@@ -14,7 +14,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark clean
+.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark anywhere clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -29,6 +29,7 @@ help:
 	@echo "make times      the same, and write down what each part costs in tests/TIMES.md"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"
+	@echo "make anywhere   compare all numbers with those of other processors, and with WebAssembly"
 	@echo "make renew-pins newest versions of all that is installed"
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
@@ -118,6 +119,10 @@ notebooks: setup
 release: $(VENV)/ready-release setup
 	@$(RUN) -m coursework release $(ONLY)
 	@$(RUN) -m coursework selftest $(ONLY)
+
+# Cells, releases and doctests, as other processors have their numbers (ONLY=unit-quaternions: those of one notebook); no browser.
+anywhere: $(VENV)/ready-test setup
+	@$(RUN) -m website.anywhere $(ONLY)
 
 renew-pins: setup
 	@$(RUN) -m website.pins

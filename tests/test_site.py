@@ -226,7 +226,9 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
     page.route("**/_static/page-*.js*", lambda route: route.abort())
     page.goto(site + name)
     assert set(asked(page)) == named
-    assert page.evaluate("[...document.fonts].filter(({ status }) => status === 'loaded').length") == len(named)
+    # What stands until they come is a typeface of the machine, if it has such a one: it is not counted.
+    loaded = "[...document.fonts].filter((face) => face.status === 'loaded' && !face.family.includes(' for now'))"
+    assert page.evaluate(f"{loaded}.length") == len(named)
     page.close()
     with Visit(browser, site, name, "light", WIDE) as visit:
         fetched = asked(visit.page)

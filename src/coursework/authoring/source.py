@@ -127,7 +127,7 @@ def too_heavy(question, declared):
     )
 
 
-def read_source(path, variant=0, edition="", only=None):
+def read_source(path, variant=0, edition="", only=None, pictures=None):
     """Run a notebook with solutions and give its questions.
 
     Parameters
@@ -138,7 +138,9 @@ def read_source(path, variant=0, edition="", only=None):
     edition : str
         Of a course: each edition draws afresh.
     only : collection of str, optional
-        The questions that are wanted, without their pictures: cells that these do not need are not run.
+        The questions that are wanted: cells that these do not need are not run.
+    pictures : bool, optional
+        Whether the pictures of variants are drawn; if nothing is said, where all questions are wanted.
 
     Raises
     ------
@@ -189,7 +191,7 @@ def read_source(path, variant=0, edition="", only=None):
                 "shown": {key: text for key, text in written(given[name]).items() if f"{{{{{key}}}}}" in texts[name]},
                 "given": {key: value for key, value in given[name].items() if _is_given(value)},
             } | ({"edition": edition} if edition else {})
-            if rules[name].picture and only is None:
+            if rules[name].picture and (only is None if pictures is None else pictures):
                 drawing = rules[name].picture(given[name])
                 about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
             questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
@@ -291,6 +293,19 @@ def _texts_of_variants(notebook):
             if after is None or after.cell_type != "markdown":
                 raise author.AuthorError(f"{found[1]}: the text of the question comes next after what may vary in it.")
             texts[found[1]] = after.source
+    return texts
+
+
+def texts_of_questions(notebook):
+    """The text of each question as it stands in the source: the Markdown between the check before it and its own."""
+    texts, above = {}, []
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            above.append(cell.source)
+        elif cell.cell_type == "code":
+            found = checked_names(type(notebook)(cells=[cell]))
+            texts |= dict.fromkeys(found, "\n\n".join(above))
+            above = [] if found else above
     return texts
 
 
