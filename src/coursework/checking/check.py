@@ -143,7 +143,9 @@ def _offer_sibling(reply, question, help_had):
     asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.get("variants", 1))
     if not help_had:
-        reply.messages += [f"Solved without help, so it counts for `{asked}` in full."] if order else []
+        reply.messages += (
+            [f"Solved without help: with a right answer to `{asked}` itself, it counts in full."] if order else []
+        )
     elif siblings:
         said = f"You had help: {HELP.get(help_had, 'it was shown')}."
         if order == len(siblings):
@@ -180,7 +182,7 @@ def _show_next_hint(question, reply, entry):
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
     if len(steps) > earned:
         # In words, and not as a call of `hint`, which few notebooks import.
-        reply.messages.append("Each further answer, if it is another one, earns a hint." if earned == 0 else "")
+        reply.messages.append("Each new answer earns you a hint." if earned == 0 else "")
     reply.messages = [line for line in reply.messages if line]
 
 
