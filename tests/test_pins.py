@@ -9,11 +9,11 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import REPOSITORY
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from places import REPOSITORY
 
-from website import pins
+from notebook_pages import pins
 
 CONSTRAINTS = pins.pins(pins.CONSTRAINTS.read_text("utf8"))
 

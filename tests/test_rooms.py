@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from coursework.checking import plugins, questions
-from website.paths import PACKAGES
+from notebook_pages.paths import PACKAGES
 
 SOURCES = Path(__file__).resolve().parent.parent / "src"
 #: What the modules of a room may import of this repository's packages, the room itself not named.
