@@ -101,7 +101,7 @@ anything else
 def build(folder, chapters):
     """Build a book of ``chapters``, cells by file name, with the real settings; return the exit code and the words."""
     settings = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
-    settings["sphinx"]["local_extensions"] = {"website": str(REPOSITORY / "src")}
+    settings["sphinx"]["local_extensions"] = {"notebook_pages": str(REPOSITORY / "notebook-pages" / "src")}
     settings["html"].pop("favicon")
     settings.pop("bibtex_bibfiles")
     for key in list(settings["sphinx"]["config"]):

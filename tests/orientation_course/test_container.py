@@ -21,7 +21,7 @@ from coursework.grading.execution.isolation import readable_paths
 from coursework.grading.grade import grade
 from coursework.grading.store import Store
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 MANUAL = (ROOT / "appendix" / "instructors.md").read_text("utf8")
 PROBE = """
 import json, os, socket

@@ -1,6 +1,7 @@
 """From the notebooks with solutions to what students receive: nothing more, and always the same."""
 
 import base64
+import hashlib
 import json
 import os
 import random
@@ -217,8 +218,10 @@ def test_the_archive_is_the_same_each_time_and_installs_what_it_says(tmp_path):
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as box:
         names = {Path(name).name for name in box.namelist()}
-        wheel = next(name for name in names if name.endswith(".whl"))
-        assert f"./{wheel}" in box.read("exercises/requirements.txt").decode().splitlines()
+        listed = dict(re.findall(r"^\./(\S+)  # sha256=(\w+)$", box.read("exercises/requirements.txt").decode(), re.M))
+        packages = [name for name in names if name.endswith(".whl")]
+        assert len(packages) == 3
+        assert listed == {name: hashlib.sha256(box.read(f"exercises/{name}")).hexdigest() for name in packages}
     assert {path.name for path in COURSE.exercises.glob("*.ipynb")} < names
 
 
@@ -308,9 +311,9 @@ def test_a_version_follows_from_the_sources(tmp_path):
         name = ["-c", "user.name=An author", "-c", "user.email=author@example.org"]
         subprocess.run(["git", *name, *arguments], cwd=book, env=about, check=True, capture_output=True)
 
-    def version():
-        packing.version.cache_clear()
-        return packing.version(book).partition(".post")[2]
+    def version(book=tmp_path / "book"):
+        project = packing.Project("maths", ["src/orientation", "src/tools"], ["src/tools/grading"], repository=book)
+        return project.version().partition(".post")[2]
 
     def touch(name, text, moment):
         path = book / name
@@ -322,8 +325,9 @@ def test_a_version_follows_from_the_sources(tmp_path):
         return datetime(*moment, tzinfo=UTC).timestamp()
 
     book = tmp_path / "book"
-    for name in (*packing.ABOUT, "src/orientation/a.py", "coursework/src/coursework/grading/grade.py"):
+    for name in ("maths/README.md", "src/orientation/a.py", "src/tools/grading/grade.py"):
         touch(name, "", at(2026, 11, 1))
+    touch("maths/pyproject.toml", "[project]\nname = 'maths'\ndynamic = ['version']\n", at(2026, 11, 1))
     touch("src/orientation/__init__.py", '__version__ = "1.1.0"\n', at(2026, 11, 1))
     assert version() == "20261101000000"  # no repository: when the newest file was written
     git("init", "--quiet")
@@ -331,7 +335,7 @@ def test_a_version_follows_from_the_sources(tmp_path):
     git("commit", "-m", "first")
     assert version() == "20261122093000"
     touch("chapters/a.ipynb", "{}", at(2026, 12, 1))
-    touch("coursework/src/coursework/grading/grade.py", "# mended", at(2026, 12, 1))
+    touch("src/tools/grading/grade.py", "# mended", at(2026, 12, 1))
     git("add", ".")
     git("commit", "-m", "what students do not get", when="2026-12-01T00:00:00Z")
     assert version() == "20261122093000"
@@ -340,9 +344,7 @@ def test_a_version_follows_from_the_sources(tmp_path):
     git("commit", "-am", "mended", when="2026-12-02T11:00:00Z")
     assert version() == "20261202110000"
     git("clone", "--quiet", "--no-local", "--depth=1", f"file://{book}", str(tmp_path / "shallow"))
-    packing.version.cache_clear()
-    assert packing.version(tmp_path / "shallow").endswith("20261202110000")
+    assert version(tmp_path / "shallow") == "20261202110000"
     os.remove(book / "src/orientation/a.py")
     os.utime(book / "src/orientation", (at(2026, 12, 3), at(2026, 12, 3)))
     assert version() == "20261203000000"
-    packing.version.cache_clear()

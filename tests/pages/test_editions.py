@@ -161,7 +161,7 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
     assert len(wanted) > 80
     there = with_solutions(HTML / "appendix", wanted)
     assert set(there) >= {"solutions.html", "solutions-going-further.html"}, "the passages are found where they are"
-    for name in ("chapters", "exercises", "appendix", "src"):
+    for name in ("chapters", "exercises", "appendix", "src", "coursework", "notebook-pages"):
         shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("index.ipynb", "_config.yml", "_toc.yml", "references.bib", "CITATION.cff", "course.toml"):
         shutil.copy(REPOSITORY / name, tmp_path / name)

@@ -48,7 +48,9 @@ def packages(tmp_path, monkeypatch):
     for name, text in {**PACKAGE, "constraints.txt": "sympy==1.14.0\n"}.items():
         write(name, text)
     monkeypatch.setattr(used, "REPOSITORY", tmp_path)
-    monkeypatch.setattr(used, "SOURCES", sources)
+    monkeypatch.setattr(
+        used, "PACKAGES", {name.partition("/")[0]: sources / name.partition("/")[0] for name in PACKAGE}
+    )
     monkeypatch.setattr(used, "SEALED", sources / "orientation_course" / "sealed")
     monkeypatch.setattr(used, "PINS", tmp_path / "constraints.txt")
     yield write

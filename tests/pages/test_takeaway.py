@@ -38,6 +38,12 @@ def built():
         pytest.fail("the book is not built: run `make book`")
 
 
+def wheels():
+    found = sorted(FOLDER.glob("*.whl"))
+    assert len(found) == 3
+    return found
+
+
 @cache
 def notebook(name):
     return nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
@@ -81,17 +87,19 @@ def requirements(wheel):
 
 @pytest.fixture(scope="module")
 def readers_python(tmp_path_factory):
-    """Python with the wheel that lies beside the downloads, what that asks for, and Jupyter's kernel; no more.
+    """Python with the wheels that lie beside the downloads, what they ask for, and Jupyter's kernel; no more.
 
     What pip would fetch is linked from here, which takes no time. That pip itself comes to the same is what
-    ``test_everything_runs_where_pip_installed_the_wheel`` shows.
+    ``test_everything_runs_where_pip_installed_the_wheels`` shows.
     """
-    (wheel,) = FOLDER.glob("*.whl")
     folder = tmp_path_factory.mktemp("reader")
     venv.create(folder, symlinks=True)
     site = next(folder.glob("lib/python*/site-packages"))
-    zipfile.ZipFile(wheel).extractall(site)
-    for found in needed_by([*requirements(wheel), "ipykernel"]).values():
+    for wheel in wheels():
+        zipfile.ZipFile(wheel).extractall(site)
+    ours = {canonicalize_name(wheel.name.partition("-")[0]) for wheel in wheels()}
+    asked = {canonicalize_name(name) for wheel in wheels() for name in requirements(wheel)} - ours
+    for found in needed_by([*asked, "ipykernel"]).values():
         for top in {file.parts[0] for file in found.files} - {"..", "__pycache__"}:
             if not (site / top).exists():
                 (site / top).symlink_to(found.locate_file(top))
@@ -139,16 +147,25 @@ def test_every_notebook_is_offered():
         assert (FOLDER / f"{name}.ipynb").is_file() and (FOLDER / f"{name}.py").is_file()
 
 
-def test_the_wheel_holds_what_students_import_and_no_more(readers_python, readers_variables):
-    (wheel,) = FOLDER.glob("*.whl")
-    names = zipfile.ZipFile(wheel).namelist()
+def test_the_wheels_hold_what_students_import_and_no_more(readers_python, readers_variables):
+    names = [name for wheel in wheels() for name in zipfile.ZipFile(wheel).namelist()]
+    assert len(names) == len(set(names))
     rooms = {"/".join(Path(name).parts[:2]) for name in names if Path(name).parts[0] == "coursework"}
     assert "coursework/checking" in rooms and not rooms & {"coursework/authoring", "coursework/grading"}
     packages = {Path(name).parts[0] for name in names if ".dist-info" not in name}
     assert packages == set(PACKAGES)
     code = "import orientation, sys; print(orientation.__version__, orientation.__file__.startswith(sys.prefix))"
     said = subprocess.check_output([readers_python, "-c", code], env=readers_variables, text=True)
+    (wheel,) = FOLDER.glob("orientation_of_reference_frames-*.whl")
     assert said.split() == [wheel.name.split("-")[1], "True"]
+
+
+def test_the_packages_come_in_one_archive_that_says_how(tmp_path):
+    (archive,) = FOLDER.glob("orientation-book-*.zip")
+    zipfile.ZipFile(archive).extractall(tmp_path)
+    lines = (tmp_path / "packages" / "requirements.txt").read_text().splitlines()
+    assert {line.split()[0] for line in lines} == {f"./{wheel.name}" for wheel in wheels()}
+    assert all(archive.name in prose(notebook(name)) for name in SOURCES)
 
 
 def test_students_have_the_command_that_updates_and_no_other(readers_python, readers_variables, tmp_path):
@@ -176,19 +193,21 @@ def test_script_runs(name, tmp_path, readers_python, readers_variables):
 
 @pytest.fixture(scope="module")
 def installed_python(tmp_path_factory):
-    """Python with what pip installs for the wheel, from the pins, and Jupyter's kernel."""
-    (wheel,) = FOLDER.glob("*.whl")
+    """Python with what pip installs for the wheels, from the pins, and Jupyter's kernel."""
     folder = tmp_path_factory.mktemp("installed")
+    (archive,) = FOLDER.glob("orientation-book-*.zip")
+    zipfile.ZipFile(archive).extractall(folder)
     venv.create(folder, symlinks=True)
     python = folder / "bin" / "python"
     pip = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "--constraint", REPOSITORY / "constraints.txt", wheel, "ipykernel"], check=True)
+    command = [*pip, "--constraint", REPOSITORY / "constraints.txt", "-r", "requirements.txt", "ipykernel"]
+    subprocess.run(command, check=True, cwd=folder / "packages")
     return python
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", SOURCES)
-def test_everything_runs_where_pip_installed_the_wheel(name, tmp_path, installed_python, readers_variables):
+def test_everything_runs_where_pip_installed_the_wheels(name, tmp_path, installed_python, readers_variables):
     run_script(installed_python, name, tmp_path, readers_variables)
     run_notebook(installed_python, name, tmp_path, readers_variables)
 

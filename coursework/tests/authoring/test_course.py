@@ -24,7 +24,7 @@ from coursework.authoring.release import release
 from coursework.authoring.trial import trial
 from coursework.checking.update import update
 
-REPOSITORY = Path(__file__).resolve().parent.parent
+REPOSITORY = Path(__file__).resolve().parents[3]
 EXAMPLE = REPOSITORY / "coursework" / "examples" / "plane-statics"
 
 
@@ -140,11 +140,11 @@ def test_without_the_solutions_students_still_get_everything(statics, tmp_path):
 
 def test_the_students_package_has_no_grader(tmp_path):
     names = {name: set(zipfile.ZipFile(wheel(name, tmp_path)).namelist()) for name in DISTRIBUTIONS}
-    assert not any("grading" in name or "authoring" in name for name in names["coursework"])
-    assert "coursework/checking/check.py" in names["coursework"]
-    assert "coursework/grading/sandbox.py" in names["coursework-tools"]
+    assert not any("grading" in name or "authoring" in name for name in names["coursework-checks"])
+    assert "coursework/checking/check.py" in names["coursework-checks"]
+    assert "coursework/grading/execution/sandbox.py" in names["coursework-tools"]
     packed = {name for found in names.values() for name in found if name.startswith("coursework/")}
-    root = REPOSITORY / "src"
+    root = REPOSITORY / "coursework" / "src"
     assert packed == {
         path.relative_to(root).as_posix()
         for path in (root / "coursework").rglob("*")
@@ -162,9 +162,9 @@ def test_what_the_packages_import_they_ask_for():
     belongs_to = metadata.packages_distributions()
     for name, (patterns, needs, _) in DISTRIBUTIONS.items():
         asked = {re.match(r"[a-z0-9-]+", need)[0] for need in needs}
-        if "coursework" in asked:
-            asked |= {re.match(r"[a-z0-9-]+", need)[0] for need in DISTRIBUTIONS["coursework"][1]} | {"mpmath"}
-        allowed = asked | ON_REQUEST | ({"mpmath"} | OF_STUDENTS_ON_REQUEST if name == "coursework" else set())
+        if "coursework-checks" in asked:
+            asked |= {re.match(r"[a-z0-9-]+", need)[0] for need in DISTRIBUTIONS["coursework-checks"][1]} | {"mpmath"}
+        allowed = asked | ON_REQUEST | ({"mpmath"} | OF_STUDENTS_ON_REQUEST if name == "coursework-checks" else set())
         root = REPOSITORY / "coursework" / "src" / "coursework"
         for path in {path for pattern in patterns for path in root.glob(pattern) if path.suffix == ".py"}:
             for node in ast.walk(ast.parse(path.read_text("utf8"))):

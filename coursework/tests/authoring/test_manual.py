@@ -14,7 +14,7 @@ from test_release import write_source
 from coursework.authoring.selftest import _judge, try_question
 from coursework.authoring.source import read_source
 
-MANUAL = (Path(__file__).parent.parent / "docs" / "coursework.md").read_text("utf8")
+MANUAL = (Path(__file__).parents[2] / "docs" / "manual.md").read_text("utf8")
 BLOCK = re.compile(r"<!-- (example|reply|the rest of it)(?:: (.*?))? -->\n```(?:python|text)\n(.*?)```", re.S)
 SETUP = "import sympy as sm\nfrom coursework import check, variant\nx, y, F_x, F_y = sm.symbols('x, y, F_x, F_y')"
 TEXT = re.search(r"```text\n(A child .*?)```", MANUAL, re.S)[1]
@@ -60,7 +60,7 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
     assert (
         "venv" in blocks[0] and "new" in blocks[1] and "try" in blocks[2] and "grade" in blocks[3] and len(blocks) == 5
     )
-    blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(Path(__file__).parent.parent)))
+    blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(Path(__file__).parents[3])))
     (rules,) = re.findall(r"```toml\n(time-zone.*?)```", MANUAL, re.S)
     (tmp_path / "solve.py").write_text(SOLVE)
     handing_in = (
@@ -71,7 +71,7 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
     (tmp_path / "rules.toml").write_text(rules)
     script = "\n".join(["set -e", *blocks[:3], handing_in, blocks[3], "cp ../rules.toml .", blocks[4]])
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    environment["PIP_CONSTRAINT"] = str(Path(__file__).parent.parent / "constraints.txt")
+    environment["PIP_CONSTRAINT"] = str(Path(__file__).parents[3] / "constraints.txt")
     done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     course = tmp_path / "first-course"

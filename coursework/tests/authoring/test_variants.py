@@ -306,7 +306,7 @@ def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recor
 
 
 def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
-    script = (Path(__file__).parents[1] / "notebook-pages/src/notebook_pages/live/js/notebooks.js").read_text("utf8")
+    script = (Path(__file__).parents[3] / "notebook-pages/src/notebook_pages/live/js/notebooks.js").read_text("utf8")
     start, stop = script.index("const HELP"), script.index("\n}\n", script.index("export function joinProgress")) + 3
     (tmp_path / "join.mjs").write_text(
         script[start:stop] + "\nconsole.log(joinProgress(...process.argv.slice(2)));", "utf8"

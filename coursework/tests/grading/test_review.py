@@ -357,7 +357,7 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
 def test_pages_are_accessible_and_fit_a_telephone(out, plotted, browser, scheme):
     from pathlib import Path
 
-    axe = (Path(__file__).parents[1] / "node_modules" / "axe-core" / "axe.min.js").read_text("utf8")
+    axe = (Path(__file__).parents[3] / "node_modules" / "axe-core" / "axe.min.js").read_text("utf8")
     with Served(out) as served, Served(plotted) as of_plots:
         # The page's own policy lets no script in; it is tested elsewhere, and set aside for this one.
         context = browser.new_context(color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True)

@@ -59,11 +59,6 @@ def pages():
     return ["index", *(page for _, chapters in parts() for page in chapters)]
 
 
-def package():
-    """What pyproject.toml says of the package: its name, version and so on."""
-    return tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
-
-
 class Edition(NamedTuple):
     """Which edition of the book this is; texts, empty where there is nothing to say."""
 

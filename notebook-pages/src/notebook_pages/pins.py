@@ -14,6 +14,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 
 from packaging.markers import default_environment
@@ -21,10 +22,11 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
 
-from .paths import NODE, REPOSITORY, package
+from .packing import PROJECTS
+from .paths import NODE, REPOSITORY, WEBSITE
 
 CONSTRAINTS = REPOSITORY / "constraints.txt"
-WHEELS = [REPOSITORY / "notebook-pages" / "src" / "notebook_pages" / place / "wheels.txt" for place in ("live", "lite")]
+WHEELS = [WEBSITE / place / "wheels.txt" for place in ("live", "lite")]
 PACKAGE, LOCK = REPOSITORY / "package.json", REPOSITORY / "package-lock.json"
 #: Packages of npm that stay as they are, and why.
 HELD = {"codemirror": "later numbers hold an older editor, published by mistake"}
@@ -48,7 +50,7 @@ def pins(text):
 
 def oldest_python():
     """The oldest Python that the book supports, such as ``(3, 11)``."""
-    stated = re.fullmatch(r">=(\d+)\.(\d+)", package()["requires-python"])
+    stated = re.fullmatch(r">=(\d+)\.(\d+)", PROJECTS[-1].about["requires-python"])
     return int(stated[1]), int(stated[2])
 
 
@@ -62,11 +64,25 @@ def resolve(*arguments):
         return json.loads(report.read_text("utf8"))["install"]
 
 
+def asked_for():
+    """What the projects of this repository ask for, each with all its extras, but for one another."""
+    folders = [*(project.folder for project in PROJECTS), WEBSITE.parents[1]]
+    stated = [
+        tomllib.loads(Path(REPOSITORY, folder, "pyproject.toml").read_text("utf8"))["project"] for folder in folders
+    ]
+    ours = {project["name"] for project in stated}
+    every = [
+        one
+        for project in stated
+        for group in (project["dependencies"], *project.get("optional-dependencies", {}).values())
+        for one in group
+    ]
+    return [one for one in dict.fromkeys(every) if Requirement(one).name not in ours]
+
+
 def constraints():
     """The new text of ``constraints.txt``."""
-    project = package()
-    wanted = [*project["dependencies"], *(one for extra in project["optional-dependencies"].values() for one in extra)]
-    found = [one["metadata"] for one in resolve(*wanted)]
+    found = [one["metadata"] for one in resolve(*asked_for())]
     lines = sorted(f"{canonicalize_name(one['name'])}=={one['version']}" for one in found)
     return "\n".join([*comments(CONSTRAINTS.read_text("utf8")), *lines]) + "\n"
 

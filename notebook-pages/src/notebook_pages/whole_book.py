@@ -15,9 +15,9 @@ from pathlib import Path
 import yaml
 
 from . import install, offline
-from .paths import BUILD, HTML, WEBSITE, fingerprint, package, pages
+from .paths import BUILD, HTML, REGISTERED, WEBSITE, fingerprint, pages
 
-NAME = package()["name"]
+NAME = REGISTERED["name"]
 FOLDER = HTML / "take-away"
 PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
 STAMPS = BUILD / "whole-book.json"  # what they were made from

@@ -2,8 +2,8 @@
 
 It is made from the records, and what is decided goes into the ledger (:mod:`coursework.grading.judging.ledger`);
 nothing is uploaded. Whoever knows the address may decide, so it holds a secret, and a request that another page or
-another name for this machine sent is refused. What a student wrote is shown as text and mathematics; a policy forbids the
-browser to run, load or send anything that is in it.
+another name for this machine sent is refused. What a student wrote is shown as text and mathematics; a policy forbids
+the browser to run, load or send anything that is in it.
 """
 
 import hashlib
