@@ -19,8 +19,8 @@ SOURCES = {
         ),
         (
             "code",
-            "check('turns/about-x', A_C_N)\n### BEGIN HIDDEN TESTS\nquestion('turns/about-x', kind='direction "
-            "cosine matrix', frames=('A', 'N'), "
+            "check('turns/about-x', A_C_N)\n### BEGIN HIDDEN TESTS\nquestion('turns/about-x', kind='rotation "
+            "matrix', frames=('A', 'N'), "
             "symbols='theta', turns=[('x', theta)], worth=2, credit={'transposed': 0.5})\n### END HIDDEN TESTS",
         ),
         ("code", "### BEGIN SOLUTION\nsine = sm.sin(alpha + beta)\n### END SOLUTION"),

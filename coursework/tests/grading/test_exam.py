@@ -15,7 +15,7 @@ from coursework.grading.grade import grade
 from coursework.grading.store import Store
 
 HIDDEN = """### BEGIN HIDDEN TESTS
-question('trial/about-x', kind='direction cosine matrix', frames=('A', 'N'), symbols='theta', turns=[('x', theta)],
+question('trial/about-x', kind='rotation matrix', frames=('A', 'N'), symbols='theta', turns=[('x', theta)],
          worth=2, credit={'transposed': 0.5}, exam=True, hints={'transposed': ['Which way round?']},
          solution='The axis is shared.')
 ### END HIDDEN TESTS"""
