@@ -1,9 +1,38 @@
 """A filter that follows an orientation: gyroscope in, directions in, orientation and its uncertainty out."""
 
+from typing import Any, NamedTuple
+
 from ._numbers_and_symbols import number_array
 from ._types import Values
 from .direction_cosines import check_dcm
 from .rotation_vector import dcm_from_rotation_vector
+
+
+class Innovation(NamedTuple):
+    r"""By how much a measured direction differs from what a filter expected, and by how much it might.
+
+    Attributes
+    ----------
+    difference : array of shape ``(..., 3)``
+        Measured less expected, :math:`\tilde{y} - \hat{y}`, along the body.
+    covariance : array of shape ``(..., 3, 3)``
+        Of the difference, as the filter claims it before it corrects itself,
+        :math:`\mathbf{S} = \mathbf{H}\mathbf{P}\mathbf{H}^T + \sigma^2\mathbf{I}`.
+    """
+
+    difference: Any
+    covariance: Any
+
+    @property
+    def normalised_square(self):
+        r"""The square :math:`(\tilde{y} - \hat{y})^T\mathbf{S}^{-1}(\tilde{y} - \hat{y})`, shape ``(...)``.
+
+        A direction differs from another in two ways, so of a true claim this is 2 on average. No truth is needed.
+        """
+        import numpy
+
+        solved = numpy.linalg.solve(self.covariance, self.difference[..., None])[..., 0]
+        return (self.difference * solved).sum(axis=-1)
 
 
 class MultiplicativeKalmanFilter:
@@ -42,7 +71,8 @@ class MultiplicativeKalmanFilter:
     >>> from orientation import MultiplicativeKalmanFilter
     >>> estimate = MultiplicativeKalmanFilter(np.eye(3), 0.01 * np.eye(6), 0.001, 0.0001)
     >>> estimate.turn((0, 0, 1.0), 0.01)
-    >>> estimate.observe((0, 0, 1.0), (0, 0, 1.0), 0.01)
+    >>> estimate.observe((0, 0, 1.0), (0, 0, 1.0), 0.01).difference.tolist()
+    [0.0, 0.0, 0.0]
     >>> bool(estimate.covariance[0, 0] < 0.0002 < estimate.covariance[2, 2])  # up says nothing of the heading
     True
 
@@ -86,7 +116,7 @@ class MultiplicativeKalmanFilter:
         noise = numpy.diag(numpy.repeat(variances, 3))
         self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + noise
 
-    def observe(self, observed: Values, reference: Values, deviation: float) -> None:
+    def observe(self, observed: Values, reference: Values, deviation: float) -> Innovation:
         r"""Correct the estimate with one direction that was measured.
 
         Parameters
@@ -97,6 +127,11 @@ class MultiplicativeKalmanFilter:
             The same direction along :math:`N`, of any length.
         deviation : float or array of shape ``(...)``
             Standard deviation across the direction, radians.
+
+        Returns
+        -------
+        Innovation
+            By how much the direction differed from what was expected, before the correction.
         """
         import numpy
 
@@ -111,11 +146,13 @@ class MultiplicativeKalmanFilter:
         slope[..., :3] = across.swapaxes(-1, -2)
         spread = self.covariance @ slope.swapaxes(-1, -2)
         variance = numpy.asarray(deviation, dtype=float)[..., None, None] ** 2
-        gain = spread @ numpy.linalg.inv(slope @ spread + variance * numpy.eye(3))
-        change = (gain @ (observed - expected)[..., None])[..., 0]
+        innovation = Innovation(observed - expected, slope @ spread + variance * numpy.eye(3))
+        gain = spread @ numpy.linalg.inv(innovation.covariance)
+        change = (gain @ innovation.difference[..., None])[..., 0]
         self.dcm = dcm_from_rotation_vector(change[..., :3]) @ self.dcm
         self.bias = self.bias + change[..., 3:]
         # Joseph's form keeps the covariance symmetric and positive in spite of rounding.
         kept = numpy.eye(6) - gain @ slope
         kept_covariance = kept @ self.covariance @ kept.swapaxes(-1, -2)
         self.covariance = kept_covariance + variance * gain @ gain.swapaxes(-1, -2)
+        return innovation

@@ -1,5 +1,6 @@
 """What this book's exercises bring to coursework: kinds of questions about orientation, and the sealed questions."""
 
+from .format_3 import FORMAT_3
 from .kinds import KINDS
 from .mistakes import DEEDS
 
@@ -9,4 +10,4 @@ PACKAGES = ("orientation", "orientation_figures", "orientation_recordings")
 #: How many numbers an answer of each kind is compared by.
 SIZES = {"direction cosine matrix": 9, "quaternion": 4, "Euler angles": 9, "axis and angle": 9}
 
-__all__ = ["DEEDS", "KINDS", "PACKAGES", "SIZES"]
+__all__ = ["DEEDS", "FORMAT_3", "KINDS", "PACKAGES", "SIZES"]

@@ -186,7 +186,7 @@ def _short_path(path):
         if letter == "M":
             start = list(here)
         if letter == "L" and steps and steps[-1][0] == "L" and any(_along(step, steps[-1][1], k) for k in (0, 1)):
-            step = [step[0] + steps.pop()[1][0], 0] if step[1] == 0 else [0, step[1] + steps.pop()[1][1]]
+            step = [sum(both) for both in zip(step, steps.pop()[1])]
         steps.append((letter, step))
     found = ""
     for (letter, step), (before, _) in zip(steps, [("", []), *steps], strict=False):

@@ -54,7 +54,7 @@ def table(name):
 
 
 def x_imu():
-    """Give sixteen seconds of an x-IMU: on a table, carried about, held still. It printed on memory card.
+    """Give sixteen seconds of an x-IMU in a hand: held, carried about, held. It printed on memory card.
 
     Returns
     -------

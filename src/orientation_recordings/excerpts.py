@@ -32,7 +32,7 @@ def excerpts(wheel):
         cells = ([cell.strip() for cell in line.split(separator)] for line in kept)
         return "".join(",".join([row[k] for k in columns] if columns else row) + "\n" for row in cells)
 
-    # The first 16 s: at rest, carried about, strapped on, at rest.
+    # The first 16 s: held in a hand, carried about, held again.
     x_imu = (115, 6355)
     leg = (37328, 37328 + 14 * 120)
     sensors = range(7)  # counter, accelerometer, gyroscope

@@ -40,6 +40,85 @@ def test_with_one_angular_velocity_the_descriptions_differ():
     assert found == pytest.approx({"matrix": 0.0143, "quaternion": 0.0036, "Euler angles": 0.101}, rel=0.05)
 
 
+def test_over_a_whole_flight_a_matrix_and_a_quaternion_are_nearly_alike_and_lock_is_not_the_cause():
+    """The steps of Euler's method, by the tangent that they are; and what a hundred throws showed."""
+    for angle in (0.02, 0.05, 0.1):
+        tangent = nearest_dcm(np.eye(3) - angle * np.cross(np.eye(3), [0, 0, 1.0])).dcm
+        assert angle_between(tangent, np.eye(3)) == pytest.approx(np.arctan(angle), rel=1e-9)
+        lost = angle - np.arctan(angle), angle - 2 * np.arctan(angle / 2)
+        assert lost[0] / lost[1] == pytest.approx(4, rel=0.01)
+    text = printed("orientation-in-motion", "spins = random.normal")
+    worst = [float(number) for number in re.findall(r"at worst +([\d.]+)", text)]
+    assert len(worst) == 2 and 1 < worst[1] < 1.15 < worst[0] < 2
+    text = printed("orientation-in-motion", "for sequence in ('zxy', 'yzx')")
+    quaternion, zxy, yzx = (float(number) for number in re.findall(r"([\d.]+) \(nine in ten", text))
+    away = float(re.search(r"farther than 30 degrees from lock: ([\d.]+)", text)[1])
+    assert away > 3 * quaternion and zxy > 3 * yzx
+
+
+def test_coning_of_reports_is_what_the_chapter_says_and_pairs_of_reports_mend_it():
+    text = printed("orientation-in-motion", "def in_pairs(totals):")
+    found = [float(number) for number in re.findall(r"each ([\d.]+) degrees", text)]
+    assert found == pytest.approx([0.996, 0.177, 0.045], abs=5e-4)
+    [remedied] = [cell.source for cell in cells("orientation-in-motion") if "def in_pairs(totals):" in cell.source]
+    names = {"np": np}
+    exec(re.search(r"def in_pairs.*?\n\n\n", remedied, re.DOTALL)[0], names)
+    # For an angular velocity that runs along a straight line, against many small turns.
+    random = np.random.default_rng(9)
+    for first, slope in random.normal(size=(10, 2, 3)):
+        wrong = {"sum": [], "pair": []}
+        for h in (0.1, 0.05):
+            times = np.linspace(0, 2 * h, 2001)
+            rates = first + slope * (times[:-1, None] + times[1] / 2)
+            truth = Rotation.identity()
+            for turn in Rotation.from_rotvec(rates * times[1]):
+                truth = truth * turn
+            ends = np.array([0, h, 2 * h])[:, None]
+            totals = np.diff(first * ends + slope * ends**2 / 2, axis=0)
+            for name, turn in (("sum", totals.sum(axis=0)), ("pair", names["in_pairs"](totals)[0])):
+                wrong[name].append((truth.inv() * Rotation.from_rotvec(turn)).magnitude())
+        assert np.log2(wrong["sum"][0] / wrong["sum"][1]) == pytest.approx(3, abs=0.3)
+        assert np.log2(wrong["pair"][0] / wrong["pair"][1]) > 3.7
+
+
+def test_a_second_camera_gains_what_the_prediction_keys():
+    """The directions' information, added up: sum of (I - s s^T) over the variances."""
+    from orientation_recordings import bright_stars
+
+    names, directions, magnitudes = bright_stars()
+    rows = [names.index(name) for name in "Betelgeuse Rigel Bellatrix Alnilam Alnitak Mintaka Saiph".split()]
+    stars, weights = directions[rows], 10 ** (-0.4 * magnitudes[rows])
+    sight = stars.sum(axis=0) / np.linalg.norm(stars.sum(axis=0))
+    across = np.cross([0, 0, 1], sight) / np.linalg.norm(np.cross([0, 0, 1], sight))
+
+    def information(stars):
+        return sum(weight * (np.eye(3) - np.outer(star, star)) for star, weight in zip(stars, weights))
+
+    turned = Rotation.from_rotvec(np.pi / 2 * across).apply(stars)
+    alone, both = (np.linalg.inv(known) for known in (information(stars), information(stars) + information(turned)))
+    gain = np.sqrt((sight @ alone @ sight) / (sight @ both @ sight))
+    assert 6.5 < gain < 7.7
+    assert (
+        ":answer: C\n"
+        in (text := "".join(cell.source for cell in cells("cases-from-practice"))).split("predict-second-camera")[1][
+            :20
+        ]
+    )
+    assert "About seven times" in text
+
+
+def test_one_turn_is_not_always_the_cheapest():
+    """Of a slew too small to reach the greatest rate, by the work of its wheels."""
+    moments, torque, angles = np.array([120.0, 90.0, 60.0]), 0.04, np.radians([2.463, -3.903, -1.829])
+    turn = (Rotation.from_euler("YZX", angles)).as_rotvec()
+    angle = np.linalg.norm(turn)
+    axis = turn / angle
+    one = torque * angle * (moments * axis**2).sum() / max(moments * abs(axis)) / 2
+    three = torque * abs(angles).sum() / 2
+    told = [float(number) for number in re.findall(r"([\d.]+) J", printed("cases-from-practice", "nearby = dcm"))]
+    assert three < one and told == pytest.approx([one, three], abs=1e-6)
+
+
 def test_restoring_is_shown_to_leave_the_error_as_it_is():
     text = printed("orientation-in-motion", "('left alone', lambda state: state)")
     alone, restored = (float(number) for number in re.findall(r"wrong by ([\d.e-]+) rad", text))

@@ -610,9 +610,9 @@ def test_a_lock_opens_with_its_key_only_and_notices_a_change():
 
 def test_a_locker_opens_with_its_key_only_and_notices_a_change():
     keys = [sealing.slow_key("00", str(number)) for number in range(3)]
-    lockers = sealing.pack([sealing.locker(keys[0], 0, [7]), sealing.locker(keys[1], 1, [], 4, b"12345678")])
-    assert sealing.open_locker(lockers, keys[0]) == (0, [7], None, None)
-    assert sealing.open_locker(lockers, keys[1]) == (1, [], 4, b"12345678")
+    lockers = sealing.pack([sealing.locker(keys[0], 0, [b"name"]), sealing.locker(keys[1], 1, [], 4, b"12345678")])
+    assert sealing.open_locker(lockers, keys[0]) == (0, None, b"name\0\0\0\0")
+    assert sealing.open_locker(lockers, keys[1]) == (1, 4, b"12345678")
     assert sealing.open_locker(lockers, keys[2]) is None
     data = base64.b85decode(lockers)
     for place in range(len(data)):

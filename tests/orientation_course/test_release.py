@@ -1,7 +1,6 @@
 """From the notebooks with solutions to what students receive: nothing more, and always the same."""
 
 import base64
-import hashlib
 import json
 import os
 import random
@@ -22,9 +21,9 @@ from seed import SEED
 from coursework.authoring import release
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import Course, find_course
-from coursework.authoring.packing import archive
+from coursework.authoring.packing import archive, write_zip
 from coursework.authoring.selftest import leaks, released_texts, secrets_of
-from coursework.checking.update import OlderArchive, update
+from coursework.checking.update import MANIFEST, ArchiveRefused, manifest, update
 from notebook_pages import packing
 
 COURSE = find_course(Path(__file__).parent)
@@ -218,32 +217,84 @@ def test_the_archive_is_the_same_each_time_and_installs_what_it_says(tmp_path):
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as box:
         names = {Path(name).name for name in box.namelist()}
-        listed = dict(re.findall(r"^\./(\S+)  # sha256=(\w+)$", box.read("exercises/requirements.txt").decode(), re.M))
-        packages = [name for name in names if name.endswith(".whl")]
-        assert len(packages) == 3
-        assert listed == {name: hashlib.sha256(box.read(f"exercises/{name}")).hexdigest() for name in packages}
+        packages = {f"./{name}" for name in names if name.endswith(".whl")}
+        assert len(packages) == 3 and packages < set(box.read("exercises/requirements.txt").decode().splitlines())
     assert {path.name for path in COURSE.exercises.glob("*.ipynb")} < names
 
 
-def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
-    def pack(name, **files):
-        with zipfile.ZipFile(tmp_path / name, "w") as box:
-            for file, text in files.items():
-                box.writestr(f"exercises/{file}.ipynb", text)
-        return tmp_path / name
+def handed_out(target, **notebooks):
+    """An archive of notebooks, each with one cell of code, as the release makes it."""
+    files = {"README.txt": b"Begin here."}
+    for name, text in notebooks.items():
+        cell = nbformat.v4.new_code_cell(text, id="one")
+        files[f"{name}.ipynb"] = nbformat.writes(nbformat.v4.new_notebook(cells=[cell])).encode()
+    files[MANIFEST] = manifest(files).encode()
+    return write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
 
-    work = tmp_path / "work"
-    work.mkdir()
-    update(pack("one.zip", a="a", b="b"), work)
-    (work / "a.ipynb").write_text("my answer")
-    for _ in range(2):
-        update(pack("two.zip", a="a, mended", b="b", c="c"), work)
-    assert {path.name: path.read_text() for path in work.iterdir()} == {
-        "a.ipynb": "my answer",
-        "a-new-1.ipynb": "a, mended",
-        "b.ipynb": "b",
-        "c.ipynb": "c",
-    }
+
+def unpacked(archive_file, folder):
+    with zipfile.ZipFile(archive_file) as box:
+        box.extractall(folder)
+    return folder / "exercises"
+
+
+def code_in(folder):
+    paths = sorted(folder.glob("*.ipynb"))
+    return {path.stem: nbformat.read(path, as_version=4).cells[0].source for path in paths}
+
+
+def changed(path, code, outputs=()):
+    """A notebook as somebody leaves it: with other code, or only run."""
+    notebook = nbformat.read(path, as_version=4)
+    notebook.cells[0].source = code
+    notebook.cells[0].outputs = list(outputs)
+    notebook.cells[0].execution_count = 7
+    nbformat.write(notebook, path)
+
+
+def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
+    """Nor does it ask anybody to look at what nobody has changed."""
+    work = unpacked(handed_out(tmp_path / "one.zip", a="a", b="b", c="c", d="d"), tmp_path)
+    changed(work / "a.ipynb", "my answer")
+    changed(work / "b.ipynb", "b", [nbformat.v4.new_output("stream", text="Not attempted")])
+    changed(work / "d.ipynb", "my answer")
+    two = handed_out(tmp_path / "two.zip", a="a, mended", b="b, mended", c="c, mended", d="d", e="e")
+    said = "\n".join(update(two, work))
+    there = {
+        "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended", "d": "my answer", "e": "e",
+    }  # fmt: skip
+    assert code_in(work) == there
+    assert "kept yours  a.ipynb; the new one is a-new-1.ipynb" in said and "replaced    c.ipynb" in said
+    update(two, work)
+    assert code_in(work) == there
+    # What was put beside is replaced, too, as long as nobody has written into it.
+    update(handed_out(tmp_path / "three.zip", a="a, mended twice", b="b", c="c", d="d", e="e"), work)
+    assert code_in(work) == there | {"a-new-1": "a, mended twice", "b": "b", "c": "c"}
+    changed(work / "a-new-1.ipynb", "my second answer")
+    update(handed_out(tmp_path / "four.zip", a="a, mended thrice"), work)
+    assert code_in(work) == there | {
+        "a-new-1": "my second answer", "a-new-2": "a, mended thrice", "b": "b", "c": "c",
+    }  # fmt: skip
+
+
+def test_without_a_manifest_everything_is_the_student_s(tmp_path):
+    """As in a folder that was unpacked before there were manifests, or where somebody has spoilt it."""
+    for number, spoilt in enumerate((None, "", "[]", "{}", '{"format": 1, "files": 3}')):
+        work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path / str(number))
+        (work / MANIFEST).unlink() if spoilt is None else (work / MANIFEST).write_text(spoilt)
+        update(handed_out(tmp_path / "two.zip", a="a, mended"), work)
+        assert code_in(work) == {"a": "a", "a-new-1": "a, mended"}
+        update(handed_out(tmp_path / "three.zip", a="a, mended twice"), work)
+        assert code_in(work) == {"a": "a", "a-new-1": "a, mended twice"}
+
+
+def test_a_manifest_of_a_newer_format_is_refused_in_words(tmp_path):
+    work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path)
+    (work / MANIFEST).write_text('{"format": 2, "files": {}}')
+    before = {path: path.read_bytes() for path in work.iterdir()}
+    with pytest.raises(ArchiveRefused, match="of format 2.*reads 1.*Nothing was changed"):
+        update(handed_out(tmp_path / "two.zip", a="a, mended"), work)
+    assert {path: path.read_bytes() for path in work.iterdir()} == before
 
 
 def fake_wheel(folder, version, digest):
@@ -290,6 +341,7 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     assert install(said) == "sealed in 1.1.0.post20261201080000\n"
     assert {path.name for path in work.iterdir()} == {
         "sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb", "a-new-1.ipynb",
+        MANIFEST,
     }  # fmt: skip
     assert (work / "a.ipynb").read_text() == "my answer"
     assert (work / "requirements.txt").read_text().splitlines() == [
@@ -300,7 +352,7 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     monkeypatch.setattr("coursework.checking.update.version", lambda name: "1.1.0.post20261201080000")
     assert not any("pip install" in line for line in update(new, work))
     before = {path: path.read_bytes() for path in work.iterdir()}
-    with pytest.raises(OlderArchive, match="post20261122093000.*post20261201080000"):
+    with pytest.raises(ArchiveRefused, match="post20261122093000.*post20261201080000"):
         update(old, work)
     assert {path: path.read_bytes() for path in work.iterdir()} == before
 
@@ -313,7 +365,7 @@ def test_a_version_follows_from_the_sources(tmp_path):
 
     def version(book=tmp_path / "book"):
         project = packing.Project("maths", ["src/orientation", "src/tools"], ["src/tools/grading"], repository=book)
-        return project.version().partition(".post")[2]
+        return project.version()
 
     def touch(name, text, moment):
         path = book / name
@@ -329,22 +381,33 @@ def test_a_version_follows_from_the_sources(tmp_path):
         touch(name, "", at(2026, 11, 1))
     touch("maths/pyproject.toml", "[project]\nname = 'maths'\ndynamic = ['version']\n", at(2026, 11, 1))
     touch("src/orientation/__init__.py", '__version__ = "1.1.0"\n', at(2026, 11, 1))
-    assert version() == "20261101000000"  # no repository: when the newest file was written
+    assert version() == "1.1.0.post20261101000000"  # no repository: when the newest file was written
     git("init", "--quiet")
     git("add", ".")
     git("commit", "-m", "first")
-    assert version() == "20261122093000"
+    assert version() == "1.1.0.post20261122093000"
     touch("chapters/a.ipynb", "{}", at(2026, 12, 1))
     touch("src/tools/grading/grade.py", "# mended", at(2026, 12, 1))
     git("add", ".")
     git("commit", "-m", "what students do not get", when="2026-12-01T00:00:00Z")
-    assert version() == "20261122093000"
+    assert version() == "1.1.0.post20261122093000"
     touch("src/orientation/a.py", "# mended", at(2026, 12, 2, 10))
-    assert version() == "20261202100000"  # not committed yet
+    assert version() == "1.1.0.post20261202100000"  # not committed yet
     git("commit", "-am", "mended", when="2026-12-02T11:00:00Z")
-    assert version() == "20261202110000"
+    assert version() == "1.1.0.post20261202110000"
     git("clone", "--quiet", "--no-local", "--depth=1", f"file://{book}", str(tmp_path / "shallow"))
-    assert version(tmp_path / "shallow") == "20261202110000"
+    assert version(tmp_path / "shallow") == "1.1.0.post20261202110000"
     os.remove(book / "src/orientation/a.py")
     os.utime(book / "src/orientation", (at(2026, 12, 3), at(2026, 12, 3)))
-    assert version() == "20261203000000"
+    assert version() == "1.1.0.post20261203000000"
+    # Released, it is plain: as long as the sources are those of its tag, whatever else the repository gets.
+    git("checkout", ".")
+    git("tag", "maths-1.1.0")
+    touch("chapters/a.ipynb", "{ }", at(2026, 12, 4))
+    assert version() == "1.1.0"
+    for undo in (
+        lambda: touch("src/orientation/b.py", "", at(2026, 12, 5)),
+        lambda: (os.remove(book / "src/orientation/b.py"), touch("src/orientation/a.py", "# again", at(2026, 12, 5))),
+    ):
+        undo()
+        assert version() == "1.1.0.post20261205000000"

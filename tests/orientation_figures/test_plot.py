@@ -94,6 +94,8 @@ def test_short_paths_lead_along_the_same_points():
 
 def test_steps_along_one_axis_become_one_and_turning_back_does_not():
     assert _short_path("M 1 1 \nL 2 1 \nL 4 1 \nL 3 1 \nL 3 5 \nL 3 9 \n") == "M1 1l3 0-1 0 0 8"
+    # A point twice, as at the ends of a band: the step up to it had been lost, and every band was drawn too low.
+    assert _short_path("M 1 1 \nL 1 6 \nL 1 6 \nL 4 4 \nL 1 1 \nz\n") == "M1 1l0 5 3-2-3-3z"
 
 
 def test_nothing_is_kept_that_nothing_needs():

@@ -30,11 +30,11 @@ def main(arguments=None):
 
 
 def _update(archive, folder):
-    from .checking.update import OlderArchive, update
+    from .checking.update import ArchiveRefused, update
 
     try:
         print(*update(archive, folder), sep="\n")
-    except (OlderArchive, OSError) as error:
+    except (ArchiveRefused, OSError) as error:
         sys.exit(f"coursework update: {error}")
 
 

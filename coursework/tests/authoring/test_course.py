@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 from test_release import CELLS, made_in, write_source
 
+import coursework
 from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
@@ -176,11 +177,63 @@ def test_what_the_packages_import_they_ask_for():
                     assert module == "coursework" or brought_by & allowed, (name, path.name, module)
 
 
+def test_a_mended_package_has_another_version(tmp_path):
+    """What students hold is replaced by what is named otherwise: only what is released has the plain version."""
+    shutil.copytree(
+        Path(coursework.__file__).parent, tmp_path / "coursework", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    stated = coursework.__version__
+
+    def git(*arguments):
+        about = {"GIT_COMMITTER_DATE": "2026-12-01T08:00:00Z", "HOME": str(tmp_path), "PATH": os.environ["PATH"]}
+        name = ["-c", "user.name=An author", "-c", "user.email=author@example.org"]
+        subprocess.run(["git", *name, *arguments], cwd=tmp_path, env=about, check=True, capture_output=True)
+
+    def built(place, code="import sys; from coursework.__main__ import main; main(['wheels', sys.argv[1]])"):
+        environment = {**os.environ, "PYTHONPATH": str(place)}
+        command = [sys.executable, "-c", code, str(tmp_path / "wheels")]
+        subprocess.run(command, env=environment, check=True, capture_output=True, cwd=tmp_path)
+        found = {path.name.split("-")[0]: path for path in (tmp_path / "wheels").iterdir()}
+        versions = {path.name.split("-")[1] for path in found.values()}
+        with zipfile.ZipFile(found["coursework_tools"]) as box:
+            (about,) = (name for name in box.namelist() if name.endswith("METADATA"))
+            assert [
+                f"Requires-Dist: coursework-checks=={version}" in box.read(about).decode() for version in versions
+            ] == [True]
+        kept = tmp_path / "kept" / found["coursework_checks"].name
+        kept.parent.mkdir(exist_ok=True)
+        shutil.copy(found["coursework_checks"], kept)
+        shutil.rmtree(tmp_path / "wheels")
+        return *versions, kept
+
+    git("init", "--quiet")
+    git("add", "coursework")
+    git("commit", "-m", "first")
+    assert built(tmp_path)[0] == f"{stated}.post20261201080000"
+    git("tag", f"coursework-checks-{stated}")
+    assert built(tmp_path)[0] == stated
+    (tmp_path / "coursework" / "grading" / "new.py").write_text("")
+    os.utime(tmp_path / "coursework" / "grading" / "new.py", (1796202000, 1796202000))
+    version, wheel_file = built(tmp_path)
+    assert version == f"{stated}.post20261202090000"
+    # Whoever has installed it, and makes a course with it, hands out just that.
+    with zipfile.ZipFile(wheel_file) as box:
+        box.extractall(tmp_path / "installed")
+    said = subprocess.check_output(
+        [sys.executable, "-c", "import coursework; print(coursework.__version__)"],
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "installed")},
+        cwd=tmp_path / "installed",
+        text=True,
+    )
+    assert said.strip() == version
+
+
 def test_an_update_brings_new_sealed_questions(statics, tmp_path):
     with zipfile.ZipFile(find_course(statics).archive) as box:
         box.extractall(tmp_path)
     work = tmp_path / "exercises"
     (work / "first-steps.ipynb").write_text("mine")
+    (work / "manifest.json").unlink()  # as it was unpacked before there were manifests
     (work / "sealed" / "first-steps.json").write_text("older")
     said = update(find_course(statics).archive, work)
     assert "replaced    sealed/first-steps.json" in said

@@ -15,7 +15,7 @@ from datetime import UTC, datetime
 from functools import cache, cached_property
 from pathlib import Path
 
-from coursework.authoring.packing import TIME
+from coursework.authoring.packing import TIME, dated
 
 from .paths import REGISTERED, REPOSITORY
 
@@ -64,42 +64,16 @@ class Project:
 
     @cache  # noqa: B019  (there are as many as the book names, and they last)
     def version(self):
-        """The version of the wheel, such as ``1.1.0.post20261122093000``.
-
-        To the version that the project states it adds when the sources were last changed, in UTC: when they were
-        last committed or, where something is not committed or there is no repository, when those files were written.
-        """
+        """The version of the wheel, such as ``1.1.0.post20261122093000``."""
         paths = [*(str(self.folder / name) for name in ABOUT), *self.packages]
         paths += [f":(exclude){place}" for place in self.left_out]
-        committed = self._git("log", "-1", "--format=%ct", "--", *paths)
-        changed = self.sources()
-        if committed:
-            changed = [
-                Path(self.repository, name)
-                for command in (
-                    ("diff", "--name-only", "--relative", "HEAD"),
-                    ("ls-files", "--others", "--exclude-standard"),
-                )
-                for name in self._git(*command, "-z", "--", *paths).split("\0")
-                if name
-            ]
-        # Of a file that is gone, the folder that it stood in tells when.
-        written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
-        moment = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
         stated = STATED.search(self._stating(self.repository).read_text("utf8"))["version"]
-        return f"{stated}.post{moment:%Y%m%d%H%M%S}"
+        return dated(stated, f"{self.name}-{stated}", self.repository, paths, self.sources())
 
     def _stating(self, repository):
         """The file that states the version."""
         file = "pyproject.toml" if "version" in self.about else None
         return Path(repository, self.folder, file) if file else Path(repository, self.packages[0], "__init__.py")
-
-    def _git(self, *arguments):
-        """What git says, or nothing where there is no git, or no repository that it would read."""
-        if not shutil.which("git"):
-            return ""
-        done = subprocess.run(["git", "-C", self.repository, *arguments], capture_output=True, text=True)
-        return done.stdout.strip() if done.returncode == 0 else ""
 
     def wheel_name(self):
         """The name of the wheel's file."""

@@ -14,7 +14,7 @@ import nbformat
 
 from coursework.authoring.course import find_course
 from coursework.authoring.packing import archive as pack
-from coursework.authoring.packing import requirements, write_zip
+from coursework.authoring.packing import write_zip
 
 from .markdown import MarkdownWriter
 from .packing import PROJECTS
@@ -174,7 +174,7 @@ def build_wheels(app, exception):
             project.build_wheel(folder)
     if not archive.exists():
         files = {f"packages/{wheel.name}": wheel.read_bytes() for wheel in wheels}
-        files["packages/requirements.txt"] = requirements(files).encode()
+        files["packages/requirements.txt"] = "".join(f"./{wheel.name}\n" for wheel in wheels).encode()
         write_zip(archive, files)
 
 

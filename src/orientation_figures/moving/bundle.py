@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
-SHARED = ("mathematics", "glyphs", "model", "shared")
+SHARED = ("mathematics", "glyphs", "model", "address", "shared")
 IMPORT = re.compile(r"^import \{([^}]*)\} from .*;\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
 COMMENT = re.compile(r"^\s*//.*\n|^ +", re.MULTILINE)

@@ -40,7 +40,7 @@ from ..checking.kinds import (
     sign_limit,
     within,
 )
-from ..checking.mistakes import GENERAL, Mistake, numbered
+from ..checking.mistakes import GENERAL, Mistake, by_short_name, short_name
 from ..checking.mistakes import mistakes as catalogued_mistakes
 from ..checking.plain import NotPlain, to_plain
 from ..checking.plugins import kind_of_values, kinds
@@ -336,20 +336,21 @@ class Question:
         pages = self.pages = Pages(
             sealing.slow_key(self.public["salt"], f"pages {self.fingerprint_of(self.plain)}"), first
         )
-        numbers = {json.dumps(found): place for place, found in enumerate(numbered(self.public))}
+        catalogue = by_short_name(self.public)
         solution = pages.add_solution(to_page(self.solution), self.public.get("variants")) if self.solution else None
         wanted = []
         for text, entry in self.entries.items():
-            notes = [numbers.get(json.dumps(found)) for found in entry.notes[:2]]
-            plain = len(entry.cases) == 1 and set(entry.cases[0]) == {"outcome", "notes"} and None not in notes
+            names = [short_name(*found) for found in entry.notes[:2]]
+            known = all(name in catalogue for name in names)  # what the author says of a mistake is not
+            plain = len(entry.cases) == 1 and set(entry.cases[0]) == {"outcome", "notes"} and known
             about = {"cases": [{**case, "notes": case["notes"][:2]} for case in entry.cases]}
             if entry.outcome == "correct":
                 plain = plain and not solution and not self.after
                 about |= {"after": self.after} if self.after else {}
-            wanted.append((text, entry.outcome, notes if plain else [], None if plain else about))
+            wanted.append((text, entry.outcome, names if plain else [], None if plain else about))
         chosen = [
-            (text, outcome, notes, about and pages.add(about, solution if outcome == "correct" else None))
-            for text, outcome, notes, about in wanted
+            (text, outcome, names, about and pages.add(about, solution if outcome == "correct" else None))
+            for text, outcome, names, about in wanted
         ]
         chosen += [(text, "mistake", [], None) for text in self.near]
         if solution and code:
@@ -359,10 +360,10 @@ class Question:
         if pages.sealed:
             sealed["pages"] = pages.sealed
         lockers = []
-        for text, outcome, notes, page in chosen:
+        for text, outcome, names, page in chosen:
             place = (places[page], page) if page else ()
             key = sealing.slow_key(self.public["salt"], text)
-            lockers.append(sealing.locker(key, OUTCOMES.index(outcome), notes, *place))
+            lockers.append(sealing.locker(key, OUTCOMES.index(outcome), names, *place))
         sealed["lockers"] = sealing.pack(lockers)
         sealed["worth"] = self.worth
         if self.ladder:

@@ -8,11 +8,14 @@ The messages are no secret; which of them a question knows, and for what answers
 """
 
 import functools
+import hashlib
 import inspect
 import itertools
+import json
 from typing import NamedTuple
 
 from .plugins import kind_of_values, kinds
+from .sealing import MISTAKE
 
 #: Factors that are forgotten or put in twice, as they are said.
 FACTORS = (("2", "2"), ("one half", "1/2"), ("3", "3"), ("one third", "1/3"), ("4", "4"), ("one quarter", "1/4"))
@@ -77,17 +80,34 @@ OF_ORDERS = {
 }
 
 
-def numbered(question):
-    """Every mistake that the messages can name for a question, with its details, in a fixed order.
+def short_name(note, details):
+    """The name that a mistake has in a locker: it follows from its note and details, and from nothing else.
 
-    A locker holds places in this list, which is the same for all questions of a kind, and so tells nothing.
+    So files that were sealed before keep their meaning, whatever is added to the catalogue.
+
+    >>> short_name("sign of a symbol", {"symbol": "beta"}).hex()
+    '72eac791'
+    """
+    text = json.dumps([note, details], ensure_ascii=False, sort_keys=True)
+    return hashlib.sha256(text.encode("utf8")).digest()[:MISTAKE]
+
+
+def by_short_name(question):
+    """Every mistake that the messages can name for a question, with its details, by its short name.
+
+    It is the same for all questions of a kind, and so tells nothing.
+
+    Raises
+    ------
+    RuntimeError
+        Two mistakes have the same short name: one of them needs another note.
     """
     values = question["result"] if question["kind"] == "function" else question["kind"]
-    return list(_numbered(values, tuple(sorted(question.get("symbols", ())))))
+    return _by_short_name(values, tuple(sorted(question.get("symbols", ()))))
 
 
 @functools.lru_cache(64)
-def _numbered(kind, symbols):
+def _by_short_name(kind, symbols):
     kind = kinds()[kind]
     details = {
         "symbol": symbols,
@@ -96,13 +116,16 @@ def _numbered(kind, symbols):
         "factor": [name for name, _ in FACTORS],
         "number": range(len(NUMBERS)),
     }
-    found = []
+    found = {}
     for messages, own in ((MESSAGES, {}), (kind.messages, kind.details)):
         for note, words in messages.items():
             needed = list(inspect.signature(words).parameters)[1:]
             if note != "authored":
                 choices = ((own or details).get(name, ()) for name in needed)
-                found += [[note, dict(zip(needed, values))] for values in itertools.product(*choices)]
+                for values in itertools.product(*choices):
+                    one = [note, dict(zip(needed, values, strict=True))]
+                    if found.setdefault(short_name(*one), one) != one:
+                        raise RuntimeError(f"{one} and {found[short_name(*one)]} have one short name: rename a note.")
     return found
 
 

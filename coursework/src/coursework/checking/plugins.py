@@ -15,10 +15,15 @@ Its folder ``sealed``, if it has one, holds sealed questions. These names in it 
     What the class did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave the conjugate"``.
 ``PACKAGES``
     Names of the packages that the course's notebooks import, so that grading has them at hand.
+``FORMAT_3``
+    Of a course that handed out sealed files of format 3 and has kinds of its own: by the name of the kind, the
+    notes of its mistakes of that time in their order, each with what its details could be. Without it, the order
+    of today counts.
 """
 
 import functools
 import importlib.util
+import inspect
 from collections.abc import Callable
 from importlib import metadata, resources
 from typing import NamedTuple
@@ -126,6 +131,18 @@ def kinds():
                 raise RuntimeError(f"{plugin.__name__} brings a kind of question {name!r}; there is one already.")
             found[name] = kind
     return found
+
+
+def catalogue_of_format_3(kind):
+    """The mistakes that a plug-in's kind had in sealed files of format 3, in their order, with their details."""
+    for plugin in plugins():
+        if kind in getattr(plugin, "FORMAT_3", {}):
+            return plugin.FORMAT_3[kind]
+    messages, details = kinds()[kind].messages, kinds()[kind].details
+    return [
+        (note, {name: details.get(name, ()) for name in list(inspect.signature(words).parameters)[1:]})
+        for note, words in messages.items()
+    ]
 
 
 def kind_of_values(question):

@@ -14,22 +14,27 @@ from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 
-from . import sealing
+from . import format_3, sealing
 from .evaluate import MP
 from .kinds import Blank, Fault, Reading, Undecidable, canonical, distance, fault, fingerprint, read
-from .mistakes import message, numbered
+from .mistakes import by_short_name, message
 from .plugins import kind_of_values, kinds, sealed_folders
 from .points import spellings
 from .reply import Reply
 from .variants import own_variant, siblings_of, without_sibling
 
-FORMAT = 3
+#: Of the files with sealed questions. Format 3, which called a mistake by its place in a catalogue, is read, too.
+FORMAT = 4
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
 #: Letters and digits of a code that opens worked solutions: none that looks like another.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 #: The outcomes that a locker may hold, by their number in it.
 OUTCOMES = ("correct", "mistake")
+NOT_IN_THIS_CATALOGUE = (
+    "This is a mistake that others have made, too, and this version of coursework has no words for it: install the "
+    "package that came with the notebook."
+)
 #: Faults of the form that no right value makes good.
 ALWAYS_WRONG = ("not unit length",)
 #: Up to so many tolerances from the right answer, one is told that it is close.
@@ -62,11 +67,16 @@ def notebook_questions(notebook, variant=0):
     if text is None:
         return {}
     data = json.loads(text)
-    if data["format"] != FORMAT:
+    if data["format"] not in (3, FORMAT):
+        from .. import __version__
+
         raise RuntimeError(
-            f"The questions of {notebook} need another version of coursework: install the one "
-            "that came with the notebook."
+            f"The sealed questions of {notebook} are of format {data['format']}, and this is coursework {__version__}, "
+            f"which reads formats 3 and {FORMAT}. Install the package that came with the notebook: "
+            "`python -m coursework update exercises.zip` says how."
         )
+    if data["format"] == 3:
+        return {name: {**about, "format": 3} for name, about in data["questions"].items()}
     return data["questions"]
 
 
@@ -187,11 +197,15 @@ def opened(question, text):
     found = sealing.open_locker(question["lockers"], key)
     if found is None:
         return None
-    outcome, numbers, page, page_key = found
+    outcome, page, inside = found
     if page is not None:
-        return {**open_page(question, page, page_key), "page": [page, page_key.hex()]}
-    known = numbered(question)
-    return {"cases": [{"outcome": OUTCOMES[outcome], "notes": [known[number] for number in numbers]}]}
+        return {**open_page(question, page, inside), "page": [page, inside.hex()]}
+    if question.get("format") == 3:
+        notes = format_3.mistakes_in(inside, question)
+    else:
+        known, unknown = by_short_name(question), ["authored", {"text": NOT_IN_THIS_CATALOGUE}]
+        notes = [known.get(name, unknown) for name in sealing.mistakes_in(inside)]
+    return {"cases": [{"outcome": OUTCOMES[outcome], "notes": notes}]}
 
 
 def open_page(question, page, key):

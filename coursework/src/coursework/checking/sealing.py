@@ -1,7 +1,7 @@
 """Locks that only an answer opens.
 
 The fingerprint of an answer is stretched by a slow hash into a key. The key gives the name of a locker, which
-can be looked up, and it opens what lies inside: the numbers of the mistakes in the catalogue, and the key of a
+can be looked up, and it opens what lies inside: the short names of the mistakes in the catalogue, or the key of a
 page where there is more to say. Lockers are all of one size, whether they hold the right answer, a mistake or
 the cell beside one, so the data that a student receives tells neither the answer, nor which mistakes are known.
 
@@ -24,8 +24,10 @@ BLOCK = 48
 #: Bytes of the name of a locker, of what lies in it, of its tag, of the key of a page and of the tag of one.
 NAME, INSIDE, TAG, PAGE_KEY, PAGE_TAG = 4, 10, 2, 8, 8
 LOCKER = NAME + INSIDE + TAG
-#: In place of the number of a mistake, and of a page: there is none.
-NO_MISTAKE, NO_PAGE = 0xFFFF, 0xFF
+#: Bytes of the short name of a mistake.
+MISTAKE = 4
+#: In place of the number of a page: there is none.
+NO_PAGE = 0xFF
 
 
 def slow_key(salt, fingerprint):
@@ -73,10 +75,8 @@ else:
 
 
 def locker(key, outcome, mistakes=(), page=NO_PAGE, page_key=b""):
-    """Make a locker: one of two outcomes, and up to two numbers of mistakes, or a page with its key."""
-    if page == NO_PAGE:
-        page_key = b"".join(number.to_bytes(2, "big") for number in [*mistakes, *[NO_MISTAKE] * 4][:4])
-    inside = bytes([outcome, page]) + page_key
+    """Make a locker: one of two outcomes, and up to two short names of mistakes, or a page with its key."""
+    inside = bytes([outcome, page]) + (b"".join(mistakes).ljust(PAGE_KEY, b"\0") if page == NO_PAGE else page_key)
     hidden = _mask(inside, key, "locker")
     return _name(key) + hidden + _tag(hidden, key, "locker")[:TAG]
 
@@ -106,9 +106,10 @@ def filled_up(lockers, count, secret):
 
 
 def open_locker(lockers, key):
-    """Open the locker of a key: its outcome, its mistakes, its page and the key of that; or give ``None``.
+    """Open the locker of a key: its outcome, its page, and the key of that; or give ``None``.
 
-    A page tells the mistakes itself: then the locker names none, and without a page there is no key of one.
+    A page tells the mistakes itself. Where there is none, it is ``None``, and what stands in place of its key says
+    which mistakes they are: :func:`mistakes_in` reads it.
 
     Raises
     ------
@@ -122,11 +123,18 @@ def open_locker(lockers, key):
             if not hmac.compare_digest(tag, _tag(hidden, key, "locker")[:TAG]):
                 raise ValueError("The sealed data was changed.")
             inside = _mask(hidden, key, "locker")
-            if inside[1] != NO_PAGE:
-                return inside[0], [], inside[1], inside[2:]
-            mistakes = [int.from_bytes(inside[place : place + 2], "big") for place in (2, 4)]
-            return inside[0], [number for number in mistakes if number != NO_MISTAKE], None, None
+            return inside[0], None if inside[1] == NO_PAGE else inside[1], inside[2:]
     return None
+
+
+def mistakes_in(inside):
+    """The short names of the mistakes in a locker without a page.
+
+    >>> mistakes_in(b"abcd" + bytes(4)), mistakes_in(bytes(8))
+    ([b'abcd'], [])
+    """
+    names = [inside[start : start + MISTAKE] for start in range(0, len(inside), MISTAKE)]
+    return [name for name in names if any(name)]
 
 
 def _name(key):

@@ -1,5 +1,11 @@
-"""A newer archive of exercises beside a student's work, which stays as it is."""
+"""A newer archive of exercises beside a student's work, which stays as it is.
 
+An archive holds a manifest: what was handed out, by name, each file with a digest. So what nobody has changed since
+is known, and a newer one takes its place.
+"""
+
+import hashlib
+import json
 import re
 import sys
 import zipfile
@@ -13,15 +19,44 @@ REQUIREMENTS = "requirements.txt"
 SEALED = "sealed/"
 
 
-class OlderArchive(ValueError):
-    """The archive holds an older package than the folder; the message names both."""
+MANIFEST = "manifest.json"
+#: Of manifests.
+FORMAT = 1
+
+
+class ArchiveRefused(ValueError):
+    """The archive is older than the folder, or the folder is of a newer coursework; the message says which."""
+
+
+def manifest(files):
+    """The manifest of files by name, as text.
+
+    >>> json.loads(manifest({"README.txt": b"Answer in place of the dots."}))
+    {'files': {'README.txt': '57c8e4f1c8ae41625a63c305e9a221a4'}, 'format': 1}
+    """
+    return _as_text({name: digest_of(name, data) for name, data in files.items()})
+
+
+def _as_text(digests):
+    return json.dumps({"format": FORMAT, "files": digests}, indent=0, sort_keys=True) + "\n"
+
+
+def digest_of(name, data):
+    """A digest of what stands in a file; of a notebook, of what its cells say: to run it is not to change it."""
+    if name.endswith(".ipynb"):
+        try:
+            cells = json.loads(data)["cells"]
+            data = json.dumps([[cell["cell_type"], "".join(cell["source"])] for cell in cells]).encode()
+        except (ValueError, KeyError, TypeError):
+            pass  # no notebook: its bytes count
+    return hashlib.sha256(data).hexdigest()[:32]
 
 
 def update(archive_file, folder="."):
     """Unpack a newer archive of exercises beside a student's work.
 
-    Notebooks that differ from those of the archive are left as they are, and the new ones are put beside them
-    under a new name. The package takes the place of the older one.
+    What nobody has changed since it was handed out is replaced. What somebody has changed is left as it is, and what
+    is new is put beside it under a new name. The package takes the place of the older one.
 
     Parameters
     ----------
@@ -34,13 +69,16 @@ def update(archive_file, folder="."):
 
     Raises
     ------
-    OlderArchive
+    ArchiveRefused
         Nothing was changed.
     """
     folder = Path(folder)
     with zipfile.ZipFile(archive_file) as box:
         entries = [entry for entry in sorted(box.namelist()) if not entry.endswith("/")]
         files = {_place(entry): box.read(entry) for entry in entries}
+    files.pop(MANIFEST, None)
+    before = _handed_out(folder)
+    now = {name: digest_of(name, data) for name, data in files.items()}
     older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
     to_install = [str(folder / name) for name in older if not _is_installed(name)]
     said = []
@@ -62,11 +100,19 @@ def update(archive_file, folder="."):
         elif not place.exists():
             place.write_bytes(data)
             said.append(f"added       {name}")
+        elif before.get(name) == digest_of(name, place.read_bytes()):
+            place.write_bytes(data)
+            said.append(f"replaced    {name}, which you had not changed")
         elif name == REQUIREMENTS:
-            place.write_text(_with_new_packages(place.read_text("utf8"), older, data.decode()), "utf8")
+            place.write_text(_with_new_packages(place.read_text("utf8"), older), "utf8")
             said.append(f"changed     {name}")
+        elif before.get(name) == now[name]:
+            said.append(f"kept yours  {name}; nothing in it is new")
         else:
-            said.append(_put_beside(place, data))
+            beside = _put_beside(place, data, before)
+            now[beside] = now[name]
+            said.append(f"kept yours  {name}; the new one is {beside}")
+    (folder / MANIFEST).write_text(_as_text({**before, **now}), "utf8")
     if to_install:
         command = ["python" if sys.platform == "win32" else sys.executable, "-m", "pip", "install", *to_install]
         line = " ".join(f'"{word}"' if " " in word else word for word in command)
@@ -103,7 +149,7 @@ def _older(folder, name):
         present = WHEEL.fullmatch(path.name)
         if present and present["name"] == new["name"] and path.name != name:
             if _order(present["version"]) > _order(new["version"]):
-                raise OlderArchive(
+                raise ArchiveRefused(
                     f"The archive is older than this folder: it has version {new['version']} of the package, "
                     f"and here is {present['version']}. Nothing was changed."
                 )
@@ -111,22 +157,38 @@ def _older(folder, name):
     return found
 
 
-def _with_new_packages(text, wheels, new):
-    """A list of requirements that names the new files as ``new`` does; other lines are the student's and stay."""
+def _with_new_packages(text, wheels):
+    """A list of requirements that names the new files; other lines are the student's and stay."""
     for name in wheels:
         package = re.escape(WHEEL.fullmatch(name)["name"])
-        line = next((line for line in new.splitlines() if line.startswith(f"./{name}")), f"./{name}")
-        text, count = re.subn(rf"^(\./)?{package}-[^-]+-\S+\.whl.*$", line, text, flags=re.M)
+        text, count = re.subn(rf"^(\./)?{package}-[^-]+-\S+\.whl", f"./{name}", text, flags=re.M)
         if not count:
-            text = f"{line}\n{text}"
+            text = f"./{name}\n{text}"
     return text
 
 
-def _put_beside(place, data):
+def _put_beside(place, data, before):
+    """Write a new file beside the one that a student has changed, and give its name."""
     number = 1
     while (beside := place.with_name(f"{place.stem}-new-{number}{place.suffix}")).exists():
-        if beside.read_bytes() == data:
+        there = beside.read_bytes()
+        if there == data or before.get(beside.name) == digest_of(beside.name, there):
             break
         number += 1
     beside.write_bytes(data)
-    return f"kept yours  {place.name}; the new one is {beside.name}"
+    return beside.name
+
+
+def _handed_out(folder):
+    """What was handed out into a folder, by name: the digest of each file. Nothing, if that was before manifests."""
+    try:
+        found = json.loads((folder / MANIFEST).read_text("utf8"))
+        number, files = found["format"], dict(found["files"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}  # what is not known to be as it was handed out is the student's
+    if number != FORMAT:
+        raise ArchiveRefused(
+            f"{MANIFEST} in this folder is of format {number}, and the coursework that is installed reads {FORMAT}: "
+            "install the package that lies in this folder, and run this again. Nothing was changed."
+        )
+    return files

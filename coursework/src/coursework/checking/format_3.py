@@ -1,0 +1,55 @@
+"""Sealed files of format 3, as they were made until November 2026: read for ever, and never made again.
+
+A locker held the place of a mistake in the catalogue of that time. That order is kept here, and for the kinds of a
+plug-in in its ``FORMAT_3``; what is added to the catalogue is not added here.
+"""
+
+import itertools
+
+from .plugins import catalogue_of_format_3
+
+#: Stands for the symbols of a question, in alphabetical order.
+SYMBOLS = "the symbols of the question"
+FACTORS = ("2", "one half", "3", "one third", "4", "one quarter")
+#: Each note, and what its details could be.
+CATALOGUE = (
+    ("transposed", {}),
+    ("in degrees", {}),
+    ("in radians", {}),
+    ("sign of a symbol", {"symbol": SYMBOLS}),
+    ("symbols interchanged", {"first": SYMBOLS, "second": SYMBOLS}),
+    ("opposite", {}),
+    ("reciprocal", {}),
+    ("factor", {"factor": FACTORS}),
+    ("one wrong", {"number": tuple(range(21))}),
+    ("half", {}),
+    ("double", {}),
+    ("supplement", {}),
+    ("complement", {}),
+    ("not turned", {}),
+    ("turned the wrong way", {}),
+)
+#: What followed for some kinds that no course owns.
+OF_KINDS = {
+    "measurement": (("power of ten", {"power": (3, -3, 6, -6, 2, -2)}),),
+    "order": (("turned round", {}), ("two interchanged", {})),
+}
+NONE = 0xFFFF
+
+
+def mistakes_in(inside, question):
+    """The mistakes, each with its details, whose places stand in a locker without a page."""
+    places = [int.from_bytes(inside[start : start + 2], "big") for start in (0, 2)]
+    known = numbered(question)
+    return [known[place] for place in places if place != NONE]
+
+
+def numbered(question):
+    """Every mistake of the catalogue of that time for a question, with its details, in its order."""
+    kind = question["result"] if question["kind"] == "function" else question["kind"]
+    symbols = sorted(question.get("symbols", ()))
+    found = []
+    for note, details in (*CATALOGUE, *(OF_KINDS.get(kind) or catalogue_of_format_3(kind))):
+        choices = (symbols if values == SYMBOLS else values for values in details.values())
+        found += [[note, dict(zip(details, chosen, strict=True))] for chosen in itertools.product(*choices)]
+    return found
