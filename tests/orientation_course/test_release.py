@@ -17,10 +17,11 @@ from pathlib import Path
 import nbformat
 import pytest
 from seed import SEED
+from trial_course import SETUP, SOLUTION, made_in, write_source
 
 from coursework.authoring import release
 from coursework.authoring.author import AuthorError
-from coursework.authoring.course import Course, find_course
+from coursework.authoring.course import find_course
 from coursework.authoring.packing import archive, write_zip
 from coursework.authoring.selftest import leaks, released_texts, secrets_of
 from coursework.checking.update import MANIFEST, ArchiveRefused, manifest, update
@@ -29,22 +30,6 @@ from notebook_pages import packing
 COURSE = find_course(Path(__file__).parent)
 
 
-def made_in(folder, sources=None, exercises=None, sealed=None):
-    """A course in a folder, or with some of its folders elsewhere."""
-    places = {"sources": sources, "exercises": exercises, "sealed": sealed}
-    return Course(
-        folder,
-        "Trial",
-        archive=folder / "exercises.zip",
-        **{name: given or folder / name for name, given in places.items()},
-    )
-
-
-SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("theta")'
-SOLUTION = (
-    "### BEGIN SOLUTION\nworking = sm.sin(theta)\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), working], "
-    "[0, -working, sm.cos(theta)]])\n### END SOLUTION"
-)
 HIDDEN = (
     "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='direction cosine matrix', frames=('A', 'N'), "
     "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not "
@@ -64,18 +49,6 @@ FIGURE = (
     'd = Drawing("A triad whose three arrows are named, long enough to stand for the picture")\n'
     'd.triad("N", np.eye(3))\nd'
 )
-
-
-def write_source(folder, *cells, name="trial"):
-    notebook = nbformat.v4.new_notebook()
-    for number, (kind, text, *tags) in enumerate(cells):
-        cell = nbformat.v4.new_code_cell(text) if kind == "code" else nbformat.v4.new_markdown_cell(text)
-        cell["id"] = f"cell-{number}"
-        cell.metadata["tags"] = list(tags)
-        notebook.cells.append(cell)
-    folder.mkdir(exist_ok=True)
-    nbformat.write(notebook, folder / f"{name}.ipynb")
-    return folder / f"{name}.ipynb"
 
 
 CELLS = [

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from test_release import made_in, write_source
+from trial_course import made_in, write_source
 
 from coursework.authoring.author import AuthorError
 from coursework.authoring.release import release

@@ -14,7 +14,7 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from test_release import CELLS, made_in, write_source
+from trial_course import CELLS, made_in, write_source
 
 import coursework
 from coursework.__main__ import main

@@ -7,7 +7,7 @@ import pytest
 import sympy as sm
 from seed import SEED
 from sympy.physics import units
-from test_release import made_in, write_source
+from trial_course import made_in, write_source
 
 from coursework.authoring import author
 from coursework.authoring.attack import attack

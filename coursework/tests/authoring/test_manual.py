@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from test_course import SOLVE
-from test_release import write_source
+from trial_course import write_source
 
 from coursework.authoring.selftest import _judge, try_question
 from coursework.authoring.source import read_source

@@ -18,7 +18,8 @@ import nbformat
 import pytest
 import sympy
 from seed import SEED
-from test_release import COURSE, made_in, needs_solutions, write_source
+from test_release import COURSE, needs_solutions
+from trial_course import made_in, write_source
 
 import coursework
 from coursework.authoring.author import AuthorError, solution_code

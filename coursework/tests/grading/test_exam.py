@@ -6,7 +6,7 @@ import json
 import pytest
 import sympy as sm
 from grading_class import notebook, put
-from test_release import SETUP, SOLUTION, made_in, write_source
+from trial_course import SETUP, SOLUTION, made_in, write_source
 
 from coursework.authoring import release, selftest
 from coursework.checking import check as checks
