@@ -17,6 +17,7 @@ MAY_IMPORT = {
     "orientation": (),
     "orientation_figures": ("orientation",),
     "orientation_recordings": (),
+    "orientation_workbench": ("orientation",),
     "coursework.checking": (),
     "coursework.authoring": ("coursework.checking",),
     "coursework.grading": ("coursework.checking", "coursework.authoring"),

@@ -98,8 +98,11 @@ anything else
 """
 
 
-def build(folder, chapters):
-    """Build a book of ``chapters``, cells by file name, with the real settings; return the exit code and the words."""
+def build(folder, chapters, **changed):
+    """Build a book of ``chapters``, cells by file name, with the real settings but for some that are ``changed``.
+
+    Returns the exit code and the words.
+    """
     settings = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
     settings["sphinx"]["local_extensions"] = {"notebook_pages": str(REPOSITORY / "notebook-pages" / "src")}
     settings["html"].pop("favicon")
@@ -107,6 +110,7 @@ def build(folder, chapters):
     for key in list(settings["sphinx"]["config"]):
         if key.startswith("bibtex"):
             settings["sphinx"]["config"].pop(key)
+    settings["sphinx"]["config"] |= {"moved": {}, **changed}
     (folder / "_config.yml").write_text(json.dumps(settings))
     contents = {
         "format": "jb-book",

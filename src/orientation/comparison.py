@@ -171,8 +171,8 @@ def diagnose(
     names = unknowns(given + expected + (angles or []))
     points = points_for(names)
     answers, truths = ([put_in(entries, names, point) for point in points] for entries in (given, expected))
-    turned, sequence = _turns(expected, truths, names, points, angles, sequence)
     match = functools.partial(_match, tolerance=tolerance)
+    turned, sequence = _turns(expected, truths, names, points, angles, sequence, match)
     if all(map(match, answers, truths)):
         return Diagnosis(True, ())
     mixups = itertools.chain(
@@ -183,20 +183,21 @@ def diagnose(
     causes = [cause for cause, values in mixups if all(map(match, answers, values))]
     # A matrix that is no orientation comes from no turn: then its fault is told. Symbols that obey a condition, as
     # a quaternion's four do, miss it at random values: then nothing can be told.
-    fault = None if causes else _fault(answers)
-    if fault and not _fault(truths):
+    # Entries that are off by the tolerance make lengths and products that are off by up to some four times as much.
+    fault = None if causes else _fault(answers, 4 * tolerance)
+    if fault and not _fault(truths, 4 * tolerance):
         causes = [fault]
     return Diagnosis(False, tuple(dict.fromkeys(causes)))
 
 
-def _fault(values):
+def _fault(values, tolerance):
     """What is wrong with numbers that should be an orientation at every point; None if nothing is."""
     for entries in values:
         try:
             if len(entries) == 9:
-                demand_dcm(entries, name="it")
+                demand_dcm(entries, name="it", tolerance=tolerance)
             else:
-                demand_unit_length(entries, name="it")
+                demand_unit_length(entries, name="it", tolerance=tolerance)
         except ValueError as error:
             return str(error)
     return None
@@ -235,12 +236,12 @@ def _substitutions(expected, names, points):
         )
 
 
-def _turns(expected, truths, names, points, angles, sequence):
+def _turns(expected, truths, names, points, angles, sequence, match):
     """Values of the three angles at each point, and the sequence: as given, or else recognised."""
     if angles is None:
-        return _recognise(truths, list(unknowns(expected)), points) if len(expected) == 9 else (None, None)
+        return _recognise(truths, list(unknowns(expected)), points, match) if len(expected) == 9 else (None, None)
     values = [[entry.real for entry in put_in(angles, names, point)] for point in points]
-    if not all(_match(truth, entries) for truth, entries in zip(truths, _body_fixed(values, sequence))):
+    if not all(map(match, truths, _body_fixed(values, sequence))):
         raise ValueError(f"expected is not the body fixed orientation {sequence} of these angles")
     return values, sequence
 
@@ -278,7 +279,7 @@ def _sequence_mixups(values, sequence, given, symbols):
         )
 
 
-def _recognise(truths, names, points):
+def _recognise(truths, names, points, match):
     """Find the sequence and the signed angles that make the expected matrix out of its symbols."""
     if not 1 < len(names) <= 3:
         return None, None
@@ -287,7 +288,7 @@ def _recognise(truths, names, points):
         for order in itertools.permutations(range(3)):
             for signs in itertools.product((1, -1), repeat=3):
                 values = [[sign * row[place] for sign, place in zip(signs, order)] for row in table]
-                if all(map(_match, truths, _body_fixed(values, sequence))):
+                if all(map(match, truths, _body_fixed(values, sequence))):
                     return values, sequence
     return None, None
 

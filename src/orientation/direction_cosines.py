@@ -113,13 +113,13 @@ def check_dcm(dcm: Values) -> None:
         evaluate(lambda f, *entries: entries, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
-def demand_dcm(entries, where="", name="dcm"):
+def demand_dcm(entries, where="", name="dcm", tolerance=TOLERANCE):
     """Raise the error of :func:`check_dcm` for nine numbers, with the caller's words for them."""
     imaginary = max(abs(entry.imag) for entry in entries)
-    if imaginary > TOLERANCE:
+    if imaginary > tolerance:
         raise ValueError(f"{name}{where} is not real: an entry has an imaginary part of {imaginary:.3g}")
     entries = [entry.real for entry in entries]
-    if not _excess(NUMBERS, *entries) <= TOLERANCE:
+    if not _excess(NUMBERS, *entries) <= tolerance:
         _explain(entries, where, name)
 
 

@@ -30,10 +30,10 @@ def _explain_length(components, where, name="quaternion"):
     raise ValueError(f"{name}{where} has length {length:.12g}, not 1: {cause}")
 
 
-def demand_unit_length(entries, name="quaternion"):
+def demand_unit_length(entries, name="quaternion", tolerance=TOLERANCE):
     """Raise the error of a quaternion that is not of unit length, for four numbers."""
     entries = [entry.real for entry in entries]
-    if not _length_excess(NUMBERS, *entries) <= TOLERANCE:
+    if not _length_excess(NUMBERS, *entries) <= tolerance:
         _explain_length(entries, "", name)
 
 

@@ -480,3 +480,14 @@ def test_numbers_from_a_file_are_diagnosed_with_the_tolerance_of_their_digits():
     )
     assert diagnose(expected + 5e-7, expected, tolerance=1e-6).same
     assert not diagnose(expected + 5e-7, expected).same
+
+
+def test_a_tolerance_holds_for_everything_that_is_asked():
+    """Four digits from a file: rounding is not blamed for a mix-up, and angles make what they make to four digits."""
+    right, other = composed(NUMBERS, "zxy"), composed(NUMBERS[::-1], "yxz")
+    right, other = (np.round(np.array(dcm, dtype=float), 4) for dcm in (right, other))
+    found = diagnose(other, right, angles=NUMBERS, sequence="zxy", tolerance=2e-3)
+    assert found.causes == diagnose(composed(NUMBERS[::-1], "yxz"), composed(NUMBERS, "zxy"), NUMBERS, "zxy").causes
+    unrelated = np.round(random_dcms(1, seed=4)[0], 4)
+    assert diagnose(unrelated, right, tolerance=2e-3).causes == ()
+    assert diagnose(right * 1.1, right, tolerance=2e-3).causes[0].startswith("it")

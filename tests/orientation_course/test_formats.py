@@ -7,9 +7,13 @@ from pathlib import Path
 
 import pytest
 import sympy as sm
+from test_release import HIDDEN, SETUP, SOLUTION, write_source
 
+import coursework
 import orientation_course
-from coursework.authoring.author import Question
+from coursework.authoring.author import AuthorError, Question
+from coursework.authoring.course import find_course
+from coursework.authoring.release import release
 from coursework.checking import format_3, mistakes, plugins, questions, sealing
 from coursework.checking.mistakes import by_short_name, short_name
 from coursework.checking.plain import to_plain
@@ -119,6 +123,41 @@ def test_a_format_that_is_not_known_is_refused_in_words(beside, number):
     file.write_text(json.dumps({**json.loads(file.read_text("utf8")), "format": number}), "utf8")
     with pytest.raises(RuntimeError, match=f"of chapters are of format {number}.*reads formats 3 and 4.*update"):
         questions.find_question("chapters/about-x")
+
+
+def test_a_question_that_has_another_name_says_so(beside):
+    about = {"format": questions.FORMAT, "moved": {"chapters/around-x": "chapters/about-x"}, "questions": {}}
+    (beside / questions.MOVED).write_text(json.dumps(about), "utf8")
+    with pytest.raises(questions.NoSuchQuestion, match="'chapters/around-x' is called 'chapters/about-x'"):
+        questions.find_question("chapters/around-x")
+    with pytest.raises(questions.NoSuchQuestion, match="Did you mean"):
+        questions.find_question("chapters/abut-x")
+
+
+def test_a_release_tells_the_names_that_questions_had(tmp_path):
+    cells = [("code", SETUP), ("code", SOLUTION), ("code", f"check('trial/about-x', A_C_N)\n{HIDDEN}")]
+    write_source(tmp_path / "sources", *cells)
+    (tmp_path / "course.toml").write_text('sources = "sources"\n[moved]\n"trial/x" = "trial/about-x"\n')
+    for _ in range(2):  # what was made is no stranger's file
+        release(find_course(tmp_path), run=False)
+    kept = json.loads((tmp_path / "exercises" / "sealed" / questions.MOVED).read_text("utf8"))
+    assert kept["moved"] == {"trial/x": "trial/about-x"}
+    (tmp_path / "course.toml").write_text("[moved]\none = 2\n")
+    with pytest.raises(AuthorError, match="old and new names"):
+        find_course(tmp_path)
+
+
+def test_a_record_of_the_second_edition_is_read(tmp_path, monkeypatch):
+    """Also where it names hints that stand elsewhere by now."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".coursework").mkdir()
+    shutil.copy(SECOND / "progress.json", tmp_path / ".coursework")
+    record = json.loads((SECOND / "progress.json").read_text("utf8"))
+    right = [name for name, entry in record.items() if entry["outcome"] == "correct"]
+    said = coursework.progress().messages[0]
+    assert said == f"{len(right)} of the {len(record)} questions that you have tried are right."
+    for name in record:
+        assert coursework.hint(name).outcome == "hints"
 
 
 def test_two_mistakes_never_have_one_short_name(monkeypatch):

@@ -88,6 +88,15 @@ def test_a_notebook_depends_on_what_it_uses_and_on_nothing_else(packages, name, 
     assert [old != new for old, new in zip(before, after, strict=True)] == [figures, checks]
 
 
+def test_a_new_version_by_itself_runs_nothing(packages):
+    packages("orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.1.0"\n')
+    before = used.fingerprint_of_used(FIGURES)
+    packages("orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.2.0"\n')
+    assert used.fingerprint_of_used(FIGURES) == before
+    packages("orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.2.0"\nanswer = 1\n')
+    assert used.fingerprint_of_used(FIGURES) != before
+
+
 def test_the_real_packages_are_followed():
     files = {str(path.relative_to(REPOSITORY)) for path in used.files_used("from orientation_figures.moving import *")}
     assert "src/orientation_figures/moving/js/triad.js" in files and "src/orientation/frames.py" in files

@@ -17,6 +17,7 @@ from . import (
     lite,
     live,
     mathematics,
+    moved,
     moving,
     page,
     pictures,
@@ -30,6 +31,20 @@ from . import (
 
 def setup(app):
     pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress, subject_index)
-    for module in (exam, *pages, first_view, take_away, page, publish, pictures, moving, live, lite, install, finish):
+    for module in (
+        exam,
+        *pages,
+        first_view,
+        take_away,
+        page,
+        publish,
+        pictures,
+        moved,
+        moving,
+        live,
+        lite,
+        install,
+        finish,
+    ):
         module.setup(app)
     return {"version": "1.0", "parallel_read_safe": True, "parallel_write_safe": True}

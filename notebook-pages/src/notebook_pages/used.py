@@ -98,9 +98,13 @@ def package_of(path):
     return next(folder for folder in path.parents if (folder / "__init__.py").is_file())
 
 
+#: A new version by itself changes nothing of what a cell gives.
+VERSION = re.compile(rb"^__version__ = .*$", re.MULTILINE)
+
+
 @cache
 def _digest(path):
-    return hashlib.sha256(Path(path).read_bytes()).digest()
+    return hashlib.sha256(VERSION.sub(b"", Path(path).read_bytes())).digest()
 
 
 def fingerprint_of_used(notebook):

@@ -2,6 +2,8 @@
 
 import math
 
+import traitlets
+
 from orientation._numbers_and_symbols import NUMBERS
 from orientation.direction_cosines import check_dcm
 from orientation.euler_angles import body_fixed_from_dcm, dcm_from_body_fixed, lock_margin_formula
@@ -22,6 +24,8 @@ class GimbalFigure(MovingFigure):
         :math:`(\psi, \theta, \varphi)` in radians, each from :math:`-\pi` to :math:`\pi`.
     sequence : str
         One of the twelve sequences.
+    more : bool
+        Whether gimbal lock, and the choice of the sequence, are shown.
     dcm : array_like, shape (3, 3)
         The matrix of the camera; setting it sets the angles, for the sequence that there is.
 
@@ -40,9 +44,14 @@ class GimbalFigure(MovingFigure):
 
     kind = "gimbal"
     sheet = (-180, -185, 200, 185)
-    room = (436, 784)
     angles = Numbers(tuple(map(math.radians, (15, -25, -30))), (3,), math.pi).tag(sync=True, state=True)
     sequence = Sequence("zxy").tag(sync=True, state=True)
+    more = traitlets.Bool(True).tag(sync=True, told=True)
+
+    @property
+    def room(self):
+        """Height of the figure in pixels with its controls beside and below it."""
+        return (436, 784) if self.more else (440, 690)
 
     @property
     def dcm(self):

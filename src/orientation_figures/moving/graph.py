@@ -62,8 +62,8 @@ class GraphFigure(MovingFigure):
     """
 
     kind = "graph"
-    sheet = (-180, -110, 180, 110)
-    room = (425, 610)
+    sheet = (-180, -130, 180, 130)
+    room = (465, 650)
     edges = Edges(
         (
             ("A", "N", "z", math.radians(35)),

@@ -31,6 +31,8 @@ class QuaternionFigure(MovingFigure):
     Attributes
     ----------
     view : {'double', 'way'}
+    more : bool
+        Whether :math:`-q` is shown beside :math:`q`, and the views can be exchanged.
     axis : tuple of three floats
         Direction of :math:`\hat{e}`, kept at unit length.
     angle : float
@@ -59,6 +61,7 @@ class QuaternionFigure(MovingFigure):
     second = Numbers(tuple(map(math.radians, (90, 80, -120))), (3,), largest=math.pi).tag(sync=True, state=True)
     unit_vector = traitlets.Enum(("x", "y", "z"), "y").tag(sync=True, state=True)
     share = Numbers(0.3, largest=1.0).tag(sync=True, state=True)
+    more = traitlets.Bool(True).tag(sync=True, told=True)
 
     @traitlets.validate("angle", "share")
     def _not_negative(self, proposal):
@@ -77,6 +80,8 @@ class QuaternionFigure(MovingFigure):
     @property
     def room(self):
         """Height of the figure in pixels with its controls beside and below it."""
+        if not self.more:
+            return (565, 660)
         return (614, 842) if self.view == "double" else (691, 888)
 
     @property

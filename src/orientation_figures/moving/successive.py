@@ -35,6 +35,8 @@ class SuccessiveFigure(MovingFigure):
         Whether each turn is about a unit vector of the frame before it, or about one of :math:`N`.
     compare : str
         What the second chain is: one of :data:`COMPARISONS`.
+    more : bool
+        Whether turns about the axes of :math:`N` and the other second chains can be chosen.
     share : float
         How much of the chain has been gone through, from 0 to 1.
 
@@ -48,13 +50,18 @@ class SuccessiveFigure(MovingFigure):
 
     kind = "successive"
     sheet = (-180, -142, 180, 222)
-    room = (685, 1001)
     turns = Turns((("z", math.radians(30)), ("x", math.radians(50)), ("y", math.radians(40)))).tag(
         sync=True, state=True
     )
     fixed = traitlets.Enum(("body", "space"), "body").tag(sync=True, state=True)
     compare = traitlets.Enum(COMPARISONS, "nothing").tag(sync=True, state=True)
     share = Numbers(1.0, largest=1.0).tag(sync=True, state=True)
+    more = traitlets.Bool(True).tag(sync=True, told=True)
+
+    @property
+    def room(self):
+        """Height of the figure in pixels with its controls beside and below it."""
+        return (685, 1001) if self.more else (605, 845)
 
     @traitlets.validate("share")
     def _not_negative(self, proposal):

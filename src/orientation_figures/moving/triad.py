@@ -2,6 +2,8 @@
 
 import math
 
+import traitlets
+
 from orientation.axis_angle import axis_angle_from_dcm, dcm_from_axis_angle, quaternion_from_axis_angle
 from orientation.direction_cosines import check_dcm
 from orientation.euler_angles import body_fixed_from_dcm
@@ -26,6 +28,8 @@ class TriadFigure(MovingFigure):
         Radians, from :math:`-\pi` to :math:`\pi`.
     sequence : str
         Which of the twelve sequences the Euler angles belong to.
+    more : bool
+        Whether the descriptions other than the matrix are shown.
     dcm, quaternion
         The same orientation in other words; setting one sets ``axis`` and ``angle``.
 
@@ -51,10 +55,15 @@ class TriadFigure(MovingFigure):
 
     kind = "triad"
     sheet = (-180, -172, 180, 172)
-    room = (512, 884)
     axis = Direction((1, 2, 2)).tag(sync=True, state=True)
     angle = Numbers(math.radians(50), largest=math.pi).tag(sync=True, state=True)
     sequence = Sequence("zxy").tag(sync=True, state=True)
+    more = traitlets.Bool(True).tag(sync=True, told=True)
+
+    @property
+    def room(self):
+        """Height of the figure in pixels with its controls beside and below it."""
+        return (512, 884) if self.more else (512, 655)
 
     @property
     def dcm(self):

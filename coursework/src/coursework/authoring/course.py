@@ -30,6 +30,8 @@ class Course(NamedTuple):
     chapter, solution : str
         Addresses that the graders' feedback leads to, with ``{notebook}`` and ``{question}`` in them: where one reads
         on, and the worked solution, named here once it is released.
+    moved : dict
+        Names that questions had in an earlier edition, and those that they have now.
     """
 
     root: Path
@@ -42,10 +44,12 @@ class Course(NamedTuple):
     edition: str = ""
     chapter: str = ""
     solution: str = ""
+    moved: dict = {}
 
 
 #: What a course may say that is no path.
 TEXTS = ("package", "edition", "chapter", "solution")
+MOVED = "moved"
 DEFAULTS = {
     "sources": "solutions",
     "exercises": "exercises",
@@ -94,10 +98,14 @@ def _read(path):
         said = tomllib.loads(path.read_text("utf8"))
     except ValueError as error:
         raise AuthorError(f"{path}: {error}") from None
+    moved = said.pop(MOVED, {})
+    if not isinstance(moved, dict) or not all(isinstance(name, str) for name in moved.values()):
+        raise AuthorError(f'{path}: [{MOVED}] holds old and new names of questions: "levers/arm" = "levers/moment"')
     unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, and nothing else"
+            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, a table [{MOVED}], and "
+            + "nothing else"
             + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
@@ -107,4 +115,4 @@ def _read(path):
             raise AuthorError(
                 f"{path}: `{name}` is an address with {{notebook}} or {{question}} in it, and {others[name]!r} is none."
             )
-    return Course(path.parent, said.get("title", path.parent.name), **places, **others)
+    return Course(path.parent, said.get("title", path.parent.name), **places, **others, moved=moved)

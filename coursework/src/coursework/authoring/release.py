@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 from ..checking import sealing
-from ..checking.questions import FORMAT, beside
+from ..checking.questions import FORMAT, MOVED, beside
 from ..checking.variants import image
 from .author import AuthorError, solution_code
 from .selftest import try_question
@@ -286,6 +286,9 @@ def release(course, only=(), run=True, variants=None):
         paths = [path for path in paths if path.stem in only]
     for folder in (course.exercises, course.sealed):
         folder.mkdir(parents=True, exist_ok=True)
+    if course.moved:
+        moved = {"format": FORMAT, "moved": course.moved, "questions": {}}
+        (course.sealed / MOVED).write_text(_as_text(moved), "utf8")
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
         names = [name for name, *_ in made]
@@ -317,7 +320,7 @@ def _demand_sources(course, known):
         path
         for folder, suffix in ((course.exercises, ".ipynb"), (course.sealed, ".json"))
         for path in sorted(folder.glob(f"*{suffix}"))
-        if path.stem not in known
+        if path.stem not in known and path.name != MOVED
     ]
     if others:
         raise AuthorError(

@@ -4,6 +4,7 @@ import json
 import os
 import random
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from .kinds import calls_for
@@ -97,7 +98,8 @@ def hint(name: str) -> Reply:
         _note_help(name, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
     for other, page, key in entry.get("after", []):
-        lines += [f"Hint: {step}" for step in open_page(find_question(other), page, key)["after"].get(name, [])]
+        with suppress(ValueError, LookupError, TypeError):  # of an earlier release of that question
+            lines += [f"Hint: {step}" for step in open_page(find_question(other), page, key)["after"].get(name, [])]
     left = len(steps) - min(earned, len(steps))
     if not lines:
         lines = ["There is no hint yet."]

@@ -27,6 +27,8 @@ from .variants import own_variant, siblings_of, without_sibling
 FORMAT = 4
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
+#: In a folder of sealed questions: the names that questions had in earlier editions.
+MOVED = "moved.json"
 #: Letters and digits of a code that opens worked solutions: none that looks like another.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 #: The outcomes that a locker may hold, by their number in it.
@@ -132,12 +134,22 @@ def find_question(name):
             "not "
             f"beside it (in {Path.cwd()}), and no package with sealed questions is installed."
         )
-    notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json"))
+    if now := _moved().get(asked):
+        raise NoSuchQuestion(f"'{asked}' is called '{now}' in this edition: write that name into `check(...)`.")
+    notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json") and file != MOVED)
     if name in notebooks:
         raise NoSuchQuestion(f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}.")
     named = questions or notebook_questions(notebook.lower())
     near = difflib.get_close_matches(name.lower(), [*named, *notebooks], 1, 0.5)
     raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
+
+
+def _moved():
+    """The names that questions have now, by those that they had in earlier editions."""
+    files = (folder / MOVED for folder in places())
+    return {
+        old: new for file in files if file.is_file() for old, new in json.loads(file.read_text("utf8"))["moved"].items()
+    }
 
 
 def own_number(name):

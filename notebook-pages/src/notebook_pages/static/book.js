@@ -79,6 +79,11 @@ if (menu) {
   });
 }
 
+// Numbers that stand below each other stay so: on a narrow screen their lines scroll. As in live/js/output.js.
+for (const text of document.querySelectorAll("div.cell_output .output pre")) {
+  text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|\S {2,}\S/m.test(text.textContent));
+}
+
 document.querySelector("button.print-page")?.addEventListener("click", () => print());
 
 // A page opened from disk may not read other pages: the search then shows titles alone.

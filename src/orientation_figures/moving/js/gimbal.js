@@ -76,11 +76,12 @@ export function render({ model, el }) {
     'aria-valuemax': '90' }, element('span'));
   const margin = element('span', { class: 'value' });
   const text = liveText();
-  open(el, stage(sheet, text), element('div', { class: 'readouts' }, sequence.element,
+  const more = model.get('more');
+  open(el, stage(sheet, text), element('div', { class: 'readouts' }, ...(more ? [sequence.element] : []),
     element('div', { class: 'controls' }, ...sliders.map((one) => one.element),
-      group('Move the gimbal', 'row-of-controls', ...buttons)),
+      group('Move the gimbal', 'row-of-controls', ...(more ? buttons : buttons.slice(0, 1)))),
     readout(['Direction cosine matrix ${}^D\\mathbf{C}^A$'], matrix.element),
-    readout(['Margin to gimbal lock', margin], bar)));
+    ...(more ? [readout(['Margin to gimbal lock', margin], bar)] : [])));
 
   function draw() {
     const [angles, order] = state(), gimbal = device(angles, order), close = gimbal.margin < CLOSE;
@@ -96,7 +97,7 @@ export function render({ model, el }) {
     put(bar, 'aria-valuenow', apart);
     put(bar, 'aria-valuetext', `${apart} degrees`);
     sheet.draw(() => picture(sheet, gimbal, close, lit));
-    text.say(lit ? inWords(gimbal.D, ...lit) : situation(gimbal, apart));
+    text.say(lit ? inWords(gimbal.D, ...lit) : more ? situation(gimbal, apart) : 'Drag a ring or the camera. Touch a number to see what it measures.');
   }
 
   draw();

@@ -1,8 +1,9 @@
-import { AXES, IDENTITY, multiply, simpleDcm, times, transpose } from './mathematics.js';
+import { AXES, IDENTITY, add, multiply, scale, simpleDcm, times, transpose } from './mathematics.js';
 import { Sheet, button, change, choice, element, fixed, follow, group, liveText, numberTable, onceAFrame, open, radians,
   readout, slider, stage, write, writeWords } from './shared.js';
 
-const SIZE = 96, REACH = 0.36, ACROSS = 92, DOWN = 62, LEFT = -140;   // as in graph.py
+const SIZE = 96, REACH = 0.5, ACROSS = 100, DOWN = 100, LEFT = -130;   // as in graph.py
+const SHORT = 14, CORNERS = [[-19, 18], [-19, -18], [19, 18], [19, -18]];   // pixels
 const LETTERS = 'NABCDE';
 const dcmName = (target, source) => `\${}^${target}\\mathbf{C}^${source}$`;
 
@@ -26,6 +27,13 @@ function places(edges) {
   return Object.fromEntries(Object.keys(depth).map((name) => [name, [LEFT + across * depth[name], down * (line[name] - (used - 1) / 2)]]));
 }
 
+// The arrows grow shorter where many frames crowd.
+const reachOf = (spots) => {
+  const all = Object.values(spots);
+  const near = all.flatMap((one, k) => all.slice(k + 1).map((other) => Math.hypot(one[0] - other[0], one[1] - other[1])));
+  return Math.min(REACH, 0.44 * Math.min(...near) / SIZE);
+};
+
 // The frames from target to source: up from both to where they meet.
 function pathOf(edges, target, source) {
   const parent = Object.fromEntries(edges.map(([frame, reference]) => [frame, reference]));
@@ -43,7 +51,7 @@ export function render({ model, el }) {
   const edges = () => model.get('edges');
   const now = () => (edges().some(([frame]) => frame === chosen) ? chosen : edges().at(-1)[0]);
   const turnTo = (values) => change(model, { edges: edges().map((edge) => (edge[0] === now() ? edge.map((old, k) => values[k] ?? old) : edge)) });
-  const sheet = new Sheet({ bounds: [-180, -110, 180, 110], size: SIZE, changed: () => redraw(), name: 'A tree of frames.' });
+  const sheet = new Sheet({ bounds: [-180, -130, 180, 130], size: SIZE, changed: () => redraw(), name: 'A tree of frames.' });
   const redraw = onceAFrame(draw);
 
   const angle = slider({ symbol: '', name: 'Angle of the frame', change: (value) => turnTo({ 3: value }), more: () => '' });
@@ -95,10 +103,17 @@ export function render({ model, el }) {
       const back = transpose(sheet.view), spots = places(all), at = ([x, y]) => times(back, [x / SIZE, -y / SIZE, 0]);
       for (const edge of all) sheet.line([at(spots[edge[1]]), at(spots[edge[0]])], ...(made.includes(edge) ? ['accent', 'thick'] : ['muted', 'guide']));
       sheet.layer = 1;
+      const reach = reachOf(spots);
       for (const name of names) {
         const place = at(spots[name]);
-        sheet.triad(name, dcms[name], { origin: place, reach: REACH, labels: false });
-        sheet.label(place, `$${name}$`, name, [-19, 18]);
+        sheet.triad(name, dcms[name], { origin: place, reach, labels: false });
+        const tips = dcms[name].map((row) => sheet.onSheet(scale(reach, row)));
+        // An arrow that points at the reader or away has no room for its letter.
+        dcms[name].forEach((row, k) => {
+          if (Math.hypot(...tips[k]) > SHORT) sheet.label(add(place, scale(reach + 0.1, row)), `$${AXES[k]}$`, name, [0, 0], 14);
+        });
+        const free = (corner) => Math.min(...tips.map((tip) => Math.hypot(tip[0] - corner[0], tip[1] - corner[1])));
+        sheet.label(place, `$${name}$`, name, CORNERS.reduce((best, corner) => (free(corner) > free(best) + 1e-6 ? corner : best)));
       }
     });
     text.say(sentence(to, from, path, made));

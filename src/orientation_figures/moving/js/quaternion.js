@@ -15,8 +15,9 @@ export function render({ model, el }) {
   const double = doubleView(model), way = wayView(model);
   const views = { double, way };
   const switches = [['double', '$q$ and $-q$'], ['way', 'From $A$ to $B$']].map(([name, text]) => button(text, () => change(model, { view: name })));
-  const root = open(el, element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches)), ...double.parts, ...way.parts);
-  root.classList.add('two-views');
+  const across = model.get('more') ? [element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches))] : [];
+  const root = open(el, ...across, ...double.parts, ...(model.get('more') ? way.parts : []));
+  root.classList.toggle('two-views', model.get('more'));
 
   function draw() {
     const shown = model.get('view');
@@ -35,7 +36,7 @@ export function render({ model, el }) {
 // ---- q and -q ------------------------------------------------------------------------------------------
 
 function doubleView(model) {
-  const self = { redraw() {} };
+  const self = { redraw() {} }, more = model.get('more');
   let lit = null, typed = [0, 0, 0], stop = () => {};
   const turnTo = (angle) => {
     stop();
@@ -43,7 +44,7 @@ function doubleView(model) {
   };
   const pointTo = (axis) => change(model, { axis });
   const sheet = new Sheet({ bounds: [-118, -142, 242, 222], size: SIZE, changed: () => self.redraw(),
-    name: 'A frame A that turns in N about the unit vector e, and beside it the circle of half the angle with q and minus q.',
+    name: `A frame A that turns in N about the unit vector e, and beside it the circle of half the angle with q${more ? ' and minus q' : ''}.`,
     grab(part, at) {
       const axis = model.get('axis'), angle = model.get('angle');
       if (part === 'axis') {
@@ -82,8 +83,8 @@ function doubleView(model) {
     lit = i === undefined ? null : [i, j];
     self.redraw();
   };
-  const quaternions = numberTable({ name: 'q and minus q, scalar first', rows: ['$q$', '$-q$'], columns: ['$q_0$', '$q_i$', '$q_j$', '$q_k$'],
-    names: ['q', 'minus q'].map((name) => ['0', 'i', 'j', 'k'].map((part) => `${name}, component ${part}`)), light });
+  const quaternions = numberTable({ name: more ? 'q and minus q, scalar first' : 'q, scalar first', rows: ['$q$', '$-q$'].slice(0, more ? 2 : 1), columns: ['$q_0$', '$q_i$', '$q_j$', '$q_k$'],
+    names: ['q', 'minus q'].slice(0, more ? 2 : 1).map((name) => ['0', 'i', 'j', 'k'].map((part) => `${name}, component ${part}`)), light });
   const matrix = numberTable({ name: 'Direction cosine matrix of A with respect to N', kind: 'bracket',
     rows: AXES.map((axis) => `$\\hat{a}_${axis}$`), columns: AXES.map((axis) => `$\\hat{n}_${axis}$`),
     names: AXES.map((i) => AXES.map((j) => `a ${i} dot n ${j}`)), light: () => {} });
@@ -92,25 +93,26 @@ function doubleView(model) {
     element('div', { class: 'controls' }, angle.element, element('div', { class: 'row-of-controls' }, once, back),
       group('Axis', 'row-of-controls', element('span', { class: 'symbol', 'aria-hidden': 'true' }, '$\\hat{e}$'),
         ...fields.map((field) => field.element), ...presets)),
-    element('div', { class: 'readouts' }, readout(['Two quaternions of one orientation'], quaternions.element),
-      readout(['${}^A\\mathbf{C}^N$, from either of them'], matrix.element))];
+    element('div', { class: 'readouts' }, readout([more ? 'Two quaternions of one orientation' : 'The quaternion of the turn'], quaternions.element),
+      ...(more ? [readout(['${}^A\\mathbf{C}^N$, from either of them'], matrix.element)] : []))];
 
   self.draw = () => {
     const axis = model.get('axis'), theta = model.get('angle'), q = quaternionFromAxisAngle(axis, theta), dcm = dcmFromQuaternion(q);
     if (length(subtract(unit(typed), axis)) > 1e-9) typed = [...axis];
     fields.forEach((field, k) => field.show(typed[k]));
     angle.show(theta);
-    quaternions.show([q, scale(-1, q)].map((one) => one.map((entry) => fixed(entry))));
+    quaternions.show([q, scale(-1, q)].slice(0, more ? 2 : 1).map((one) => one.map((entry) => fixed(entry))));
     matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
-    sheet.draw(() => doublePicture(sheet, axis, theta, dcm, lit));
-    text.say(lit ? componentText(q, axis, theta, lit) : doubleText(theta));
+    sheet.draw(() => doublePicture(sheet, axis, theta, dcm, lit, more));
+    text.say(lit ? componentText(q, axis, theta, lit) : doubleText(theta, more));
   };
   return self;
 }
 
-function doubleText(theta) {
+function doubleText(theta, more) {
   const turns = theta / (2 * Math.PI), whole = Math.round(turns);
   const half = `$\\theta$ = ${plain(degrees(theta), 1)}°, half of it ${plain(degrees(theta / 2), 1)}°.`;
+  if (Math.abs(turns - whole) > 1e-9 && !more) return half;
   if (Math.abs(turns - whole) > 1e-9) return `${half} $q$ and $-q$ are opposite points of the circle, and one and the same orientation.`;
   return [`${half} $A$ is where $N$ is, and $q$ is 1.`,
     `${half} After one full turn $A$ is back, but $q$ has come only half round: it is −1.`,
@@ -127,7 +129,7 @@ function componentText(q, axis, theta, [i, j]) {
 // A point of N that is seen at a place of the sheet.
 const placed = (sheet, [x, y]) => times(transpose(sheet.view), [x / sheet.size, -y / sheet.size, 0]);
 
-function doublePicture(sheet, axis, theta, dcm, lit) {
+function doublePicture(sheet, axis, theta, dcm, lit, more) {
   const knob = scale(KNOB, axis), far = axis.map(Math.abs), k = far.indexOf(Math.min(...far));
   const arm = subtract(IDENTITY[k], scale(dot(IDENTITY[k], axis), axis));
   sheet.line([scale(-0.6, axis), knob], 'accent', 'guide');
@@ -142,10 +144,10 @@ function doublePicture(sheet, axis, theta, dcm, lit) {
   if (theta > 0) sheet.turn(axis, rest > 1e-9 ? rest : theta, arm, { radius: rest > 1e-9 ? 0.6 : 0.5, label: '$\\theta$', colour: 'accent', kind: 'thick' });
   sheet.grip(knob, 'axis');
   dcm.forEach((row, n) => sheet.grip(row, String(n)));
-  circle(sheet, theta / 2, lit);
+  circle(sheet, theta / 2, lit, more);
 }
 
-function circle(sheet, half, lit) {
+function circle(sheet, half, lit, more) {
   const at = (radius, angle) => placed(sheet, [MIDDLE[0] + radius * Math.cos(angle), MIDDLE[1] - radius * Math.sin(angle)]);
   const middle = at(0, 0), round = (radius, to) => Array.from({ length: 49 }, (_, k) => at(radius, k / 48 * to));
   sheet.layer = 1;
@@ -168,8 +170,9 @@ function circle(sheet, half, lit) {
     sheet.line([middle, foot], 'ink', 'shadow');
   }
   sheet.arrow(q, { start: middle, colour: 'accent', label: '$q$' });
-  sheet.arrow(opposite, { start: middle, colour: 'muted', label: '$-q$' });
   sheet.grip(q, 'q');
+  if (!more) return;
+  sheet.arrow(opposite, { start: middle, colour: 'muted', label: '$-q$' });
   sheet.grip(opposite, '-q');
 }
 

@@ -1,10 +1,11 @@
-import { AXES, IDENTITY, scale, simpleDcm } from './mathematics.js';
+import { AXES, IDENTITY, add, scale, simpleDcm } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, group, hats, liveText, numberTable,
   onceAFrame, open, plain, radians, readout, slider, stage, wrapped } from './shared.js';
 
 const REACH = 1.25, SIZE = 112, FLAT = 84;   // REACH and SIZE as in simple.py
 const [N, A] = ['n', 'a'].map(hats);
 const STEP = radians(5);
+const VANE = [[-0.72, 0.5], [-0.5, 0.36], [0.4, 0.36], [0.4, 0.46], [0.68, 0.3], [0.4, 0.14], [0.4, 0.24], [-0.5, 0.24], [-0.72, 0.1], [-0.62, 0.3]];
 const number = (value) => fixed(value).trim();
 
 // One turn about a unit vector that two frames share: in space, down that vector, and as a matrix.
@@ -64,8 +65,10 @@ export function render({ model, el }) {
 }
 
 function picture(sheet, { k, theta, dcm }, lit) {
-  const axis = IDENTITY[k], [i, j] = lit ?? [];
+  const axis = IDENTITY[k], [i, j] = lit ?? [], pointer = dcm[(k + 1) % 3];
   sheet.faded = Boolean(lit);
+  // The vane, upright on the shared unit vector; looking down that, it is seen edge on.
+  sheet.area(VANE.map(([along, up]) => add(scale(along, pointer), scale(up, axis))), 'A', 26);
   sheet.triad('N', IDENTITY, { reach: REACH });
   dcm.forEach((row, m) => { if (m !== k) sheet.arrow(row, { colour: 'A', label: A[m] }); });
   sheet.arrow(axis, { colour: 'A' });

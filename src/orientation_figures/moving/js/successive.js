@@ -91,7 +91,7 @@ export function render({ model, el }) {
   const text = liveText();
   open(el, stage(sheet, text),
     element('div', { class: 'controls chain' }, chain.element,
-      element('div', { class: 'row-of-controls' }, about.element, compare.element), ...rows.map((row) => row.element),
+      ...(model.get('more') ? [element('div', { class: 'row-of-controls' }, about.element, compare.element)] : []), ...rows.map((row) => row.element),
       element('div', { class: 'row-of-controls' }, more, fewer)),
     element('div', { class: 'readouts' },
       readout([title], product), readout(['Multiplied out'], result.element)));
@@ -120,7 +120,7 @@ export function render({ model, el }) {
     heads.forEach((head, k) => writeWords(head, hat(end, AXES[k])));
     result.show(dcm.map((row) => row.map((entry) => fixed(entry))));
     sheet.draw(() => picture(sheet, { turns, kind, share, other, lit }));
-    text.say(sentence(end, kind, dcm, comparison, otherDcm, lit));
+    text.say(sentence(end, kind, dcm, comparison, otherDcm, lit, model.get('more')));
   }
 
   draw();
@@ -149,7 +149,7 @@ function factor(letter, k) {
   } };
 }
 
-function sentence(end, kind, dcm, compare, otherDcm, lit) {
+function sentence(end, kind, dcm, compare, otherDcm, lit, more) {
   if (lit) {
     const [i, j] = lit;
     return `Row ${AXES[i]}, column ${AXES[j]}: ${hat(end, AXES[i])} · ${hat('n', AXES[j])} = ${fixed(dcm[i][j]).trim()}, the shadow of `
@@ -157,7 +157,7 @@ function sentence(end, kind, dcm, compare, otherDcm, lit) {
   }
   const { axis, angle } = axisAngleFromDcm(dcm);
   if (!otherDcm) {
-    return (kind === 'body' ? 'Each turn is about an axis of the frame before it (body fixed). '
+    return (kind === 'body' ? `Each turn is about an axis of the frame before it${more ? ' (body fixed)' : ''}. `
       : 'Each turn is about an axis of $N$ (space fixed). ')
       + (angle < 1e-9 ? end === 'N' ? 'No turn has been made yet: press Play.' : `Together the turns so far bring $${end}$ to where $N$ is.` : `From $N$ to $${end}$ they are one turn of ${angleText(angle)} about (${
         axis.map((entry) => fixed(entry, 2).trim()).join(', ')}).`);

@@ -57,8 +57,8 @@ export function render({ model, el }) {
         ...fields.map((field) => field.element), ...presets)),
     element('div', { class: 'readouts' },
       readout(['Direction cosine matrix ${}^A\\mathbf{C}^N$'], matrix.element),
-      readout(['Euler angles', sequence.element], euler.element),
-      readout(['Axis and angle'], axisAngle.element), readout(['Quaternion'], quaternion.element)));
+      ...(model.get('more') ? [readout(['Euler angles', sequence.element], euler.element),
+        readout(['Axis and angle'], axisAngle.element), readout(['Quaternion'], quaternion.element)] : [])));
 
   function draw() {
     const now = { axis: model.get('axis'), angle: model.get('angle'), sequence: model.get('sequence') };

@@ -1,13 +1,15 @@
 """The still of a graph of frames."""
 
 import math
+from itertools import combinations
 
 import numpy as np
 
 from ...drawing import Drawing
 
-SIZE, REACH = 96, 0.36  # as in js/graph.js
-ACROSS, DOWN, LEFT = 92, 62, -140
+SIZE, REACH = 96, 0.5  # as in js/graph.js
+ACROSS, DOWN, LEFT = 100, 100, -130
+SHORT, CORNERS = 14, ((-19, 18), (-19, -18), (19, 18), (19, -18))
 
 
 def places(edges):
@@ -48,8 +50,15 @@ def drawing(figure):
     for frame, reference, *_ in figure.edges:
         on = {frame, reference} <= set(path)
         drawing.line([at[reference], at[frame]], "accent" if on else "muted", "thick" if on else "guide")
+    near = [math.dist(one, other) for one, other in combinations(spots.values(), 2)]
+    reach = min(REACH, 0.44 * min(near) / SIZE)
     for name, place in at.items():
-        colour = name if name in "NABCD" else "E"
-        drawing.triad(colour, frames.dcm(name, "N"), place, REACH, labels=("", "", ""))
-        drawing.label(place, f"${name}$", colour, (-19, 18), 20)
+        colour, dcm = name if name in "NABCD" else "E", frames.dcm(name, "N")
+        drawing.triad(colour, dcm, place, reach, labels=("", "", ""))
+        tips = drawing.on_sheet(reach * dcm)
+        for axis, row, tip in zip("xyz", dcm, tips):
+            if math.hypot(*tip) > SHORT:  # an arrow that points at the reader or away has no room for its letter
+                drawing.label(place + (reach + 0.1) * row, f"${axis}$", colour, size=14)
+        corner = max(CORNERS, key=lambda corner: round(min(math.dist(tip, corner) for tip in tips), 6))
+        drawing.label(place, f"${name}$", colour, corner, 20)
     return drawing

@@ -27,8 +27,8 @@ def _double(figure):
         f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e with the components "
         f"({', '.join(f'{entry:.2f}' for entry in axis)}). Beside it a circle of radius 1 with the scalar part of a "
         f"quaternion to the right and its part along e upwards. The point q stands at half the angle, "
-        f"{math.degrees(half):.0f} degrees, and minus q opposite to it. q is ({q}), scalar first; minus q is the "
-        f"same orientation.",
+        f"{math.degrees(half):.0f} degrees{', and minus q opposite to it' if figure.more else ''}. q is ({q}), scalar "
+        f"first{'; minus q is the same orientation' if figure.more else ''}.",
         scale=SIZE,
     )
     drawing.line([-0.6 * axis, KNOB * axis], "accent", "guide")
@@ -66,6 +66,8 @@ def _double(figure):
         drawing.line(round_to(RADIUS, half), "accent", "thick").line(round_to(22, half), "accent")
         drawing.label(at(40, half / 2), r"$\theta/2$", "accent", size=16)
     drawing.arrow(at(RADIUS, half), at(0, 0), "accent", "$q$")
+    if not figure.more:
+        return drawing
     return drawing.arrow(at(-RADIUS, half), at(0, 0), "muted", "$-q$")
 
 

@@ -19,9 +19,12 @@ const watchLong = new ResizeObserver((entries) => {
   }
 });
 
+// Numbers that stand below each other: their lines scroll on a narrow screen, those of sentences go on in the next.
+const COLUMNS = /^ *\[|\S {2,}\S/m;
+
 function preformatted(kind, text) {
   const box = element("div", `output ${kind} highlight-myst-ansi notranslate`);
-  const words = element("pre", "", text);
+  const words = element("pre", kind === "text_plain" || COLUMNS.test(text) ? "columns" : "", text);
   box.append(element("div", "highlight", words));
   watchLong.observe(words);
   return box;

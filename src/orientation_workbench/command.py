@@ -1,0 +1,118 @@
+"""The command ``orientation``: ``orientation explain FIRST SECOND``."""
+
+import argparse
+import json
+import math
+import sys
+from pathlib import Path
+
+from .mismatch import mend
+from .mismatch.explanation import explain, sentences
+from .mismatch.table import COUNTS, KINDS
+
+#: What ``orientation explain`` ends with.
+EXIT_CODES = {"same": 0, "named": 1, "undecided": 2, "unrelated": 2}
+BAD_INPUT = 3
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(
+        prog="orientation", description="Where the world's numbers meet the book Orientation of Reference Frames."
+    )
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    _add_explain(commands)
+    chosen = parser.parse_args(arguments)
+    sys.exit(chosen.run(chosen))
+
+
+def _add_explain(commands):
+    parser = commands.add_parser(
+        "explain",
+        help="name the mix-up between two programs that disagree",
+        description="Name the mix-up between two programs from what they give for the same poses.",
+        epilog="Exit code: 0 both give the same, 1 a mix-up is named, 2 none fits or the numbers cannot tell, "
+        "3 the input cannot be read.",
+    )
+    parser.add_argument("first", help="a file, or the numbers themselves: one pose a line")
+    parser.add_argument("second", help="the same poses by the other program")
+    parser.add_argument("--json", action="store_true", help="the answer as JSON, with a format number")
+    parser.add_argument("--all", action="store_true", help="every other reading that fits, too")
+    parser.add_argument("--noise", type=float, default=0.0, metavar="DEGREES", help="what the two may differ by anyway")
+    for side in ("first", "second"):
+        parser.add_argument(
+            f"--{side}-is", action="append", default=[], metavar="WHAT",
+            help=f"what is known of the {side} numbers: a kind ({', '.join(COUNTS)}) or a choice such as "
+            f"'zyx', 'space fixed', 'degrees', 'xyzw'",
+        )  # fmt: skip
+    parser.set_defaults(run=_explain)
+
+
+def _given(argument):
+    try:
+        path = Path(argument)
+        if path.is_file():
+            return path.read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        pass  # too long for the name of a file: the numbers themselves
+    return argument.replace("\\n", "\n")
+
+
+def _declared(words):
+    """Choices by the words for them; each word names one choice of one group."""
+    declared = {}
+    choices = {
+        choice["value"]: group["group"] for groups in KINDS.values() for group in groups for choice in group["choices"]
+    }
+    for word in words:
+        if word in COUNTS:
+            declared["kind"] = word
+        elif word in choices:
+            declared[choices[word]] = word
+        else:
+            raise ValueError(f"{word!r} is neither a kind of numbers ({', '.join(COUNTS)}) nor a choice of one")
+    return declared
+
+
+def _explain(chosen):
+    try:
+        texts = [_given(chosen.first), _given(chosen.second)]
+        declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
+        found = explain(
+            *texts,
+            first_declared=declared[0],
+            second_declared=declared[1],
+            noise=math.radians(chosen.noise),
+        )
+    except (ValueError, UnicodeDecodeError) as error:
+        if chosen.json:
+            print(json.dumps({"format": 1, "verdict": "bad input", "message": str(error)}, indent=2))
+        else:
+            print(f"orientation: {error}", file=sys.stderr)
+        return BAD_INPUT
+    if chosen.json:
+        print(json.dumps(as_data(found), indent=2))
+    else:
+        for sentence in sentences(found):
+            print(sentence)
+        if found.verdict == "named":
+            print("It is mended by (NumPy and SciPy; `second` is one pose)")
+            print(f"    {mend.python_line(found.chains[0])}")
+        if chosen.all:
+            for chain in found.chains[1:]:
+                print("or: " + "; ".join(chain.words() or ["both mean the same"]))
+    return EXIT_CODES[found.verdict]
+
+
+def as_data(explanation):
+    """An explanation as plain data: what ``--json`` prints, in format 1."""
+    return {
+        "format": 1,
+        "verdict": explanation.verdict,
+        "poses": explanation.poses,
+        "faults": list(explanation.faults),
+        "residual in degrees": explanation.residual,
+        "readings left": len(explanation.chains),
+        "others": [chain.words() for chain in explanation.chains[1:]],
+        "further pose": explanation.further_pose,
+        "mended by": mend.python_line(explanation.chains[0]) if explanation.verdict == "named" else "",
+    }

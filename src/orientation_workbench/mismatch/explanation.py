@@ -1,0 +1,250 @@
+"""The answer: what two programs mean differently by the numbers that they give for the same poses."""
+
+import functools
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from orientation import dcm_from_axis_angle, nearest_dcm, random_orientations
+
+from . import search, table
+from .meaning import dcms_from_numbers, numbers_from_dcms
+from .mounting import mountings
+from .text import Poses, read_poses
+
+#: Turns that a reader can make with a thing in the hand: each the words, and the turns about the body's own axes.
+FURTHER_POSES = (
+    ("turn it by about 40 degrees about its x axis", (("x", 40),)),
+    ("turn it by about 30 degrees about its y axis", (("y", 30),)),
+    ("turn it by about 50 degrees about its z axis", (("z", 50),)),
+    ("turn it by about 40 degrees about its x axis, then by about 25 about its own y axis", (("x", 40), ("y", 25))),
+    (
+        "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, "
+        "then by about 20 about its own x axis",
+        (("z", 50), ("y", 30), ("x", 20)),
+    ),
+)
+
+#: Of so many readings it is seen whether a further pose tells them apart; more are told apart by a pose of three turns.
+LOOKED_AT = 300
+
+
+class Explanation(NamedTuple):
+    """What :func:`explain` found.
+
+    ``verdict`` is ``'same'``, ``'named'``, ``'undecided'`` or ``'unrelated'``. ``chains`` holds one chain for
+    each reading of the numbers that is left, simplest first, and ``faults`` the words of the first.
+    ``further_pose`` says which pose would decide between them, and is empty where nothing is open.
+    ``residual`` is what is left by the first chain, in degrees.
+    """
+
+    verdict: str
+    faults: tuple[str, ...]
+    residual: float | None
+    chains: tuple
+    further_pose: str
+    poses: int
+
+    def __str__(self) -> str:
+        return "\n".join(sentences(self))
+
+
+def explain(
+    first,
+    second,
+    *,
+    first_declared: dict | None = None,
+    second_declared: dict | None = None,
+    noise: float = 0.0,
+) -> Explanation:
+    """Name the mix-up between two programs from the numbers that they give for the same poses.
+
+    Parameters
+    ----------
+    first, second : str, or array of shape ``(count,)``, ``(3, 3)`` or ``(poses, ...)``
+        What each program gives. Text is read by its digits: what the last one leaves open counts as rounding.
+        Numbers as such are taken to be exact to single precision.
+    first_declared, second_declared : dict, optional
+        What is known of a program, such as ``{'kind': 'Euler angles', 'sequence': 'zyx'}``: the groups
+        and choices of :data:`orientation_workbench.mismatch.table.KINDS`.
+    noise : float
+        Radians by which the two may differ besides rounding.
+
+    Returns
+    -------
+    Explanation
+
+    Raises
+    ------
+    ValueError
+        If numbers cannot be read as orientations, or the two sides hold different numbers of poses.
+
+    Examples
+    --------
+    >>> from orientation_workbench import explain
+    >>> explain('0.7304 0.3604 0.2402 0.5284', '0.3604 0.2402 0.5284 0.7304').faults
+    ('in the second numbers the scalar part stands last (x, y, z, w)',)
+    """
+    sides = []
+    for name, given, declared in (("first", first, first_declared), ("second", second, second_declared)):
+        poses = given if isinstance(given, Poses) else read_poses(given, name, (declared or {}).get("kind"), noise)
+        sides.append((poses, declared or {}))
+    counts = [len(poses.numbers) for poses, _ in sides]
+    if sorted(counts) == [1, 3]:  # three rows that are no matrix were taken for three triples of angles
+        side = counts.index(3)
+        given = (first, second)[side]
+        sides[side] = (read_poses(given, ("first", "second")[side], "matrix", noise), sides[side][1])
+        counts[side] = 1
+    if counts[0] != counts[1]:
+        raise ValueError(
+            f"the first side holds {counts[0]} poses and the second {counts[1]}: they must be the same poses, in order"
+        )
+    one, other = (
+        search.side(poses.kinds, poses.numbers, poses.half, poses.declared | declared) for poses, declared in sides
+    )
+    chains, tried = search.chains(one, other, noise)
+    classes = _classes(chains, sides) or mountings(one, other, noise)[:1]
+    return _verdict(classes, one, other, sides, tried, noise)
+
+
+def _verdict(classes, one, other, sides, tried, noise):
+    poses = len(sides[0][0].numbers)
+    if not classes:
+        return Explanation("unrelated", (), None, (), "", poses)
+    best = classes[0]
+    tolerance = max(one.doubts[0] + other.doubts[0], search.SINGLE_PRECISION) + noise
+    expected = tried * min(1.0, (1.5 * tolerance) ** 3 / (6 * math.pi)) ** poses
+    decided = len(classes) == 1 and (best.faults == 0 or expected < search.BY_CHANCE)
+    verdict = "same" if best.faults == 0 else "named" if decided else "undecided"
+    further = "" if decided else _further_pose(classes, sides)
+    residual = math.degrees(2 * math.asin(min(1.0, best.residual / 2)))
+    return Explanation(verdict, tuple(best.words()), residual, tuple(classes), further, poses)
+
+
+# --- which chains say the same ---------------------------------------------------------------------------
+
+
+def _classes(chains, sides):
+    """Of chains that do the same to whatever is pasted, the simplest; simplest first."""
+    found = {}
+    samples = {kind: _samples(kind, sides[0][0]) for kind in {chain.first["kind"] for chain in chains}}
+    for chain, key in zip(chains, _predictions(chains, samples, 5)):
+        found.setdefault(key, chain)
+    return list(found.values())
+
+
+def _predictions(chains, samples, decimals):
+    """What each chain predicts that the second side gives where the first gives these numbers, as keys.
+
+    Two chains with one key are mathematically the same, if the numbers are not special. What the second side would
+    write is read by one plain reading, whichever reading the chain has: that makes the keys comparable.
+    """
+    dcms, members = {}, {}
+    for which, chain in enumerate(chains):
+        if (reading := id(chain.first)) not in dcms:
+            dcms[reading] = dcms_from_numbers(chain.first, samples[chain.first["kind"]])
+        members.setdefault(id(chain.second), []).append(which)
+    keys = [None] * len(chains)
+    for those in members.values():
+        second = chains[those[0]].second
+        predicted = np.concatenate([_related(chains[which].relation, dcms[id(chains[which].first)]) for which in those])
+        written = numbers_from_dcms(second, predicted)
+        plain = [
+            dcms_from_numbers(_plain_reading(second["kind"]), numbers).reshape(len(those), -1) for numbers in written
+        ]
+        rounded = [np.round(entries, decimals) + 0.0 for entries in plain]
+        for place, which in enumerate(those):
+            key = tuple(sorted(tuple(entries[place].tolist()) for entries in rounded))
+            keys[which] = (chains[which].first["kind"], second["kind"], key)
+    return keys
+
+
+def _related(relation, dcms):
+    """The second side's orientations, by signed axes, of the first side's."""
+    left, right = np.array(table.axes_matrix(relation["body"])), np.transpose(table.axes_matrix(relation["world"]))
+    return left @ (np.swapaxes(dcms, -1, -2) if relation["inverse"] else dcms) @ right
+
+
+def _plain_reading(kind):
+    groups = {group["group"] for group in table.KINDS[kind]}
+    choices = table.BOOK | {"sequence": "zyx"}
+    return {"kind": kind, "choices": {name: choices[name] for name in groups}}
+
+
+def _samples(kind, poses):
+    """Numbers of one kind for two orientations, neither of them special."""
+    dcms, plain = _generic_dcms(), _plain_reading(kind)
+    if kind == "matrix" and np.linalg.det(poses.numbers[0].reshape(3, 3)) < 0:
+        dcms = -dcms
+    if poses.large and "unit" in plain["choices"]:
+        plain["choices"]["unit"] = "degrees"
+    return numbers_from_dcms(plain, dcms)[0]
+
+
+@functools.cache
+def _generic_dcms():
+    return random_orientations(2, np.random.default_rng(20))
+
+
+# --- the pose that decides --------------------------------------------------------------------------------
+
+
+def _further_pose(chains, sides):
+    """Words for a pose, from the last one pasted, at which the chains that are left would disagree.
+
+    Whichever chain is true, the thing is turned as the words say; what the first program then gives depends on
+    how its numbers are to be read. So the pose must decide by each reading of the first side that is left.
+    """
+    chains = chains[:LOOKED_AT]
+    readings = {id(chain.first): chain.first for chain in chains}.values()
+    for words, turns in FURTHER_POSES:
+        if all(_tells_apart(chains, _turned(reading, sides[0][0].numbers[-1:], turns)) for reading in readings):
+            return words
+    return FURTHER_POSES[-1][0]
+
+
+def _turned(reading, numbers, turns):
+    """What the first program gives after some turns about the body's own axes, by one reading of its numbers."""
+    dcm = dcms_from_numbers(reading, numbers)[0]
+    hand = 1.0 if np.linalg.det(dcm) > 0 else -1.0
+    dcm = nearest_dcm(hand * dcm).dcm
+    for axis, angle in turns:
+        dcm = dcm_from_axis_angle([float(axis == name) for name in "xyz"], math.radians(angle)) @ dcm
+    return {reading["kind"]: numbers_from_dcms(reading, hand * dcm[None])[0]}
+
+
+def _tells_apart(chains, samples):
+    keys = _predictions([chain for chain in chains if chain.first["kind"] in samples], samples, 2)
+    return len(set(keys)) == len(keys)
+
+
+# --- in words -----------------------------------------------------------------------------------------------
+
+
+def sentences(explanation):
+    """The answer as a reader is told it, a sentence a line."""
+    several = f"these {explanation.poses} poses" if explanation.poses > 1 else "this pose"
+    left = len(explanation.chains)
+    more = f"{left - 1} other reading{'s' * (left != 2)}"
+    if explanation.verdict == "unrelated":
+        yield f"These are not the same motion: no mix-up of up to {table.MOST_FAULTS} faults explains {several}."
+        return
+    if explanation.verdict == "same":
+        yield "Both sides give the same orientation" + (f" in {several}." if left > 1 else ".")
+    elif explanation.verdict == "named":
+        yield "The two sides differ by " + _count(explanation.faults) + ":"
+    else:
+        yield f"The numbers cannot decide. The simplest reading of {several} is " + _count(explanation.faults) + ":"
+    for fault in explanation.faults:
+        yield f"- {fault}"
+    if explanation.verdict != "same" or explanation.residual > 1e-3:
+        yield f"What is left then is {explanation.residual:.2g} degrees."
+    if explanation.further_pose:
+        if left > 1:
+            yield f"{more[0].upper()}{more[1:]} fit{'s' * (left == 2)} as well."
+        yield f"To decide, {explanation.further_pose}, and paste that pose as well."
+
+
+def _count(faults):
+    return "one mix-up" if len(faults) == 1 else f"{len(faults)} mix-ups"

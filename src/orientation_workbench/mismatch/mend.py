@@ -1,0 +1,203 @@
+"""The one line that mends a mix-up: in NumPy with SciPy, in C++ with Eigen, and as a formula.
+
+Each line makes of ``second``, what the second program gives, what the first program gives for the same pose. Before
+one is shown, the Python line is run on the numbers that were pasted.
+"""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from . import table
+from .meaning import dcms_from_numbers
+
+_ORDINARY = "wxyz"
+
+
+def _index(order, wanted):
+    return [order.index(part) for part in wanted]
+
+
+def _is_identity(names):
+    return names == table.SAME_AXES
+
+
+def _python_matrix(names):
+    return "np.array(" + str([list(row) for row in table.axes_matrix(names)]) + ")"
+
+
+def _turn(matrix):
+    return "np.array(" + str(np.round(matrix, 6).tolist()) + ")"
+
+
+def _signs(choices, name):
+    if choices["signs"] == "+++":
+        return name
+    return f"({name} * np.array({[-1 if sign == '-' else 1 for sign in choices['signs']]}))"
+
+
+def _letters(choices):
+    return choices["sequence"] if choices["axes of the turns"] == "space fixed" else choices["sequence"].upper()
+
+
+def _degrees(choices):
+    return ", degrees=True" if choices["unit"] == "degrees" else ""
+
+
+def _pick(name, places):
+    return name if places == sorted(places) else f"{name}[{places}]"
+
+
+def _read_in_python(reading, name):
+    """Code for the matrix of this book, A_C_N, of what a program gives. SciPy's is its transpose."""
+    kind, choices = reading["kind"], reading["choices"]
+    if kind == "matrix":
+        return name
+    if kind == "quaternion":
+        return f"Rotation.from_quat({_pick(name, _index(choices['order'], 'xyzw'))}).as_matrix().T"
+    if kind == "Euler angles":
+        angles = _signs(choices, _pick(name, [choices["places"].index(which) for which in "123"]))
+        return f"Rotation.from_euler({_letters(choices)!r}, {angles}{_degrees(choices)}).as_matrix().T"
+    if kind == "rotation vector":
+        return f"Rotation.from_rotvec({name}{_degrees(choices)}).as_matrix().T"
+    last = choices["place of the angle"] == "last"
+    vector = f"{name}[3] * {name}[:3]" if last else f"{name}[0] * {name}[1:]"
+    return f"Rotation.from_rotvec({vector}{_degrees(choices)}).as_matrix().T"
+
+
+def _write_in_python(reading, matrix):
+    """Code that writes a matrix of this book as a program does."""
+    kind, choices = reading["kind"], reading["choices"]
+    if kind == "matrix":
+        return matrix
+    # The transpose of a transpose is not written.
+    there = matrix[:-2] if matrix.endswith(".T") and matrix.count("@") == 0 else f"({matrix}).T"
+    if kind == "quaternion":
+        return f"Rotation.from_matrix({there}).as_quat()" + _subscript(_index("xyzw", choices["order"]))
+    if kind == "Euler angles":
+        angles = f"Rotation.from_matrix({there}).as_euler({_letters(choices)!r}{_degrees(choices)})"
+        return _signs(choices, angles) + _subscript([int(which) - 1 for which in choices["places"]])
+    if kind == "rotation vector":
+        return f"Rotation.from_matrix({there}).as_rotvec({_degrees(choices)[2:]})"
+    vector = f"(v := Rotation.from_matrix({there}).as_rotvec({_degrees(choices)[2:]}))"
+    size = "np.linalg.norm(v)"
+    parts = [f"{vector} / {size}", f"[{size}]"]
+    if choices["place of the angle"] == "first":
+        parts = [f"[np.linalg.norm({vector})]", f"v / {size}"]
+    return f"np.concatenate([{', '.join(parts)}])"
+
+
+def _subscript(places):
+    return "" if places == sorted(places) else f"[{places}]"
+
+
+def _undo_in_python(relation, matrix):
+    """Code for the first side's matrix, from code for the second's."""
+    for whose in ("body", "world"):
+        turn = relation.get(f"{whose} turn")
+        if turn is not None:
+            matrix = f"{_turn(turn.T)} @ {matrix}" if whose == "body" else f"{matrix} @ {_turn(turn.T)}"
+    if not _is_identity(relation["body"]):
+        matrix = f"{_python_matrix(relation['body'])}.T @ {matrix}"
+    if not _is_identity(relation["world"]):
+        matrix = f"{matrix} @ {_python_matrix(relation['world'])}"
+    if relation["inverse"]:
+        matrix = f"({matrix}).T" if "@" in matrix else f"{matrix}.T"
+    return matrix.removesuffix(".T.T")
+
+
+def python_line(chain):
+    """One line of Python that gives what the first program gives, from ``second``."""
+    relation, first, second = chain.relation, chain.first, chain.second
+    plain = _is_identity(relation["body"]) and _is_identity(relation["world"]) and "body turn" not in relation
+    if plain and first["kind"] == second["kind"] == "quaternion":
+        places = _index(second["choices"]["order"], first["choices"]["order"])
+        line = _pick("second", places)
+        if relation["inverse"]:
+            line += f" * np.array({[1 if part == 'w' else -1 for part in first['choices']['order']]})"
+        return line
+    return _write_in_python(first, _undo_in_python(relation, _read_in_python(second, "second")))
+
+
+def tried(chain, first, second, tolerance):
+    """Whether the line gives the first side's orientation at every pose.
+
+    Only lines that this module wrote are run, and only on numbers.
+    """
+    code = compile(python_line(chain), "the mending line", "eval")
+
+    def shaped(numbers, kind):
+        return numbers.reshape(3, 3) if kind == "matrix" else numbers
+
+    mended = []
+    for numbers in second:
+        names = {"np": np, "Rotation": Rotation, "second": shaped(numbers, chain.second["kind"])}
+        mended.append(np.ravel(eval(code, names)))  # noqa: S307
+    gap = np.abs(dcms_from_numbers(chain.first, np.array(mended)) - dcms_from_numbers(chain.first, first)).max()
+    return bool(gap <= tolerance)
+
+
+def formula(chain):
+    """The relation in the book's notation, with the signed permutations written out."""
+    relation = chain.relation
+    middle = r"\mathbf{M}_1^T" if relation["inverse"] else r"\mathbf{M}_1"
+    left = "" if _is_identity(relation["body"]) else _tex(table.axes_matrix(relation["body"]))
+    right = "" if _is_identity(relation["world"]) else _tex(np.transpose(table.axes_matrix(relation["world"])).tolist())
+    if relation.get("body turn") is not None:
+        left = _tex(np.round(relation["body turn"], 4).tolist())
+    if relation.get("world turn") is not None:
+        right = _tex(np.round(relation["world turn"], 4).tolist())
+    return rf"\mathbf{{M}}_2 = {left}\,{middle}\,{right}".replace(r"= \,", "= ").removesuffix(r"\,")
+
+
+def _tex(rows):
+    return (
+        r"\begin{bmatrix}" + r" \\ ".join(" & ".join(f"{entry:g}" for entry in row) for row in rows) + r"\end{bmatrix}"
+    )
+
+
+def cpp_line(chain):
+    """The same in C++ with Eigen, for matrices ``first`` and ``second`` of type ``Eigen::Matrix3d``."""
+    relation = chain.relation
+    code = "second"
+    if chain.second["kind"] == "quaternion":
+        order = chain.second["choices"]["order"]
+        parts = ", ".join(f"second[{order.index(part)}]" for part in _ORDINARY)
+        code = f"Eigen::Quaterniond({parts}).toRotationMatrix().transpose()"
+    elif chain.second["kind"] == "Euler angles":
+        code = _eigen_angles(chain.second["choices"])
+    elif chain.second["kind"] == "rotation vector":
+        scale = " * EIGEN_PI / 180" if chain.second["choices"]["unit"] == "degrees" else ""
+        code = f"Eigen::AngleAxisd(second.norm(){scale}, second.normalized()).toRotationMatrix().transpose()"
+    elif chain.second["kind"] == "axis and angle":
+        scale = " * EIGEN_PI / 180" if chain.second["choices"]["unit"] == "degrees" else ""
+        last = chain.second["choices"]["place of the angle"] == "last"
+        angle, axis = ("second[3]", "second.head<3>()") if last else ("second[0]", "second.tail<3>()")
+        code = f"Eigen::AngleAxisd({angle}{scale}, {axis}.normalized()).toRotationMatrix().transpose()"
+    for whose in ("body", "world"):
+        turn = relation.get(f"{whose} turn")
+        if turn is not None:
+            constant = _eigen_matrix(turn.T)
+            code = f"{constant} * {code}" if whose == "body" else f"{code} * {constant}"
+    if not _is_identity(relation["body"]):
+        code = f"{_eigen_matrix(np.transpose(table.axes_matrix(relation['body'])))} * {code}"
+    if not _is_identity(relation["world"]):
+        code = f"{code} * {_eigen_matrix(table.axes_matrix(relation['world']))}"
+    if relation["inverse"]:
+        code = f"({code}).transpose()" if "*" in code else f"{code}.transpose()"
+    return f"Eigen::Matrix3d first = {code.replace('.transpose().transpose()', '')};"
+
+
+def _eigen_matrix(rows):
+    entries = ", ".join(f"{entry:.6g}" for row in np.asarray(rows, float) for entry in row)
+    return f"(Eigen::Matrix3d() << {entries}).finished()"
+
+
+def _eigen_angles(choices):
+    scale = " * EIGEN_PI / 180" if choices["unit"] == "degrees" else ""
+    turns = []
+    for which, letter, sign in zip("123", choices["sequence"], choices["signs"]):
+        angle = f"{'-' if sign == '-' else ''}second[{choices['places'].index(which)}]{scale}"
+        turns.append(f"Eigen::AngleAxisd({angle}, Eigen::Vector3d::Unit{letter.upper()}())")
+    if choices["axes of the turns"] == "space fixed":
+        turns.reverse()
+    return f"({' * '.join(turns)}).toRotationMatrix().transpose()"

@@ -1,0 +1,62 @@
+"""A constant turn before or after (a mounting, a hand and an eye): what only several poses tell."""
+
+import numpy as np
+
+from orientation import dcm_from_two_directions, nearest_dcm, rotation_vector_from_dcm
+
+from .search import SINGLE_PRECISION, Chain
+from .table import MOST_FAULTS, SAME_AXES
+
+#: So many poses leave something over to check by, once a constant turn has been found from them.
+ON_ONE_SIDE, ON_BOTH_SIDES = 3, 4
+
+
+def mountings(first, second, noise):
+    """All chains with a constant turn on one side or on both that fit every pose, simplest first.
+
+    From :math:`\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}` at three poses or more follow the constant
+    turns :math:`\\mathbf{L}` and :math:`\\mathbf{R}`. What is found from some poses must hold at all of them.
+    """
+    if first.dcms.shape[1] < ON_ONE_SIDE:
+        return []
+    found = []
+    for i, reading in enumerate(first.readings):
+        for j, other in enumerate(second.readings):
+            for inverse in (False, True):
+                faults = reading["faults"] + other["faults"] + inverse
+                if faults >= MOST_FAULTS:
+                    continue
+                start = np.swapaxes(first.dcms[i], -1, -2) if inverse else first.dcms[i]
+                tolerance = 3 * (max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise)
+                for body, world in _constant_turns(start, second.dcms[j]):
+                    both = faults + (body is not None) + (world is not None)
+                    gap = np.abs((np.eye(3) if body is None else body) @ start
+                                 @ (np.eye(3) if world is None else world) - second.dcms[j]).max()  # fmt: skip
+                    if gap <= tolerance and both <= MOST_FAULTS:
+                        relation = {"inverse": inverse, "hand": False, "body": SAME_AXES, "world": SAME_AXES,
+                                    "body turn": body, "world turn": world}  # fmt: skip
+                        rarity = reading["rarity"] + other["rarity"]
+                        found.append(Chain(reading, other, relation, both, rarity, float(gap)))
+                        break
+    return sorted(found, key=lambda chain: (chain.faults, chain.rarity))
+
+
+def _constant_turns(start, end):
+    """Candidates for the two constant turns: on the body's side, on the world's, on both."""
+    across = np.swapaxes(start, -1, -2)
+    yield (end @ across)[0], None
+    yield None, (across @ end)[0]
+    if len(start) < ON_BOTH_SIDES:
+        return
+    # Turns since the first pose have the same angle on both sides; their axes differ by the constant turn.
+    moved = [rotation_vector_from_dcm(nearest_dcm(dcms[1:] @ dcms[0].T).dcm) for dcms in (start, end)]
+    largest = int(np.argmax(np.linalg.norm(moved[0], axis=1)))
+    apart = np.linalg.norm(np.cross(moved[0], moved[0][largest]), axis=1)
+    second = int(np.argmax(apart))
+    if apart[second] < 1e-3:
+        return  # all poses turn about one axis: the constant turn about it is free
+    before, after = ([vectors[largest], vectors[second]] for vectors in moved)
+    if min(np.linalg.norm(np.cross(*pair)) for pair in (before, after)) < 1e-6:
+        return
+    body = dcm_from_two_directions(after, before)
+    yield body, (body @ start[0]).T @ end[0]

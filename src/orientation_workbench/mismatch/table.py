@@ -1,0 +1,311 @@
+"""Every way in which two programs can mean different things by their numbers: one table.
+
+A *reading* says what the numbers of one side mean: it is one choice from each group of its kind. A
+*relation* says how the orientation of the second side follows from that of the first:
+
+.. math::
+
+   \\mathbf{M}_2 = \\mathbf{P}\\,\\mathbf{M}_1\\,\\mathbf{Q}
+   \\quad\\text{or}\\quad
+   \\mathbf{M}_2 = \\mathbf{P}\\,\\mathbf{M}_1^T\\,\\mathbf{Q},
+
+with signed permutations :math:`\\mathbf{P}` (axes of the body, which are the rows) and
+:math:`\\mathbf{Q}` (axes of the world, the columns). Each departure from what was to be expected is a
+*fault*. A chain with fewer faults comes first; among as many, ``rarity`` decides: what many programs do
+comes before what none is known to do. Page, command and Python read this table; nothing of it is said twice.
+"""
+
+import functools
+import itertools
+
+from orientation import PROPER_EULER, SEQUENCES
+
+#: The most faults that one chain may have.
+MOST_FAULTS = 3
+
+COUNTS = {"matrix": 9, "quaternion": 4, "Euler angles": 3, "rotation vector": 3, "axis and angle": 4}
+
+
+def choice(value, words, rarity, faults=1):
+    return {"value": value, "words": words, "faults": faults, "rarity": rarity}
+
+
+def _orders():
+    known = {"wxyz": 0.0, "xyzw": 0.0, "wzyx": 0.4, "zyxw": 0.4, "xywz": 0.5}
+    words = {
+        "wxyz": "the scalar part stands first (w, x, y, z)",
+        "xyzw": "the scalar part stands last (x, y, z, w)",
+    }
+    for letters in itertools.permutations("wxyz"):
+        order = "".join(letters)
+        yield choice(
+            order, words.get(order, f"the four numbers are stored as {', '.join(order)}"), known.get(order, 0.7)
+        )
+
+
+def _sequences():
+    common = {"zyx": 0.1, "xyz": 0.15, "zxy": 0.2, "yxz": 0.25, "zxz": 0.3, "zyz": 0.3}
+    for sequence in SEQUENCES:
+        rarity = common.get(sequence, 0.6 if sequence in PROPER_EULER else 0.4)
+        yield choice(sequence, f"the turns are about {'-'.join(sequence)}", rarity)
+
+
+def _places():
+    words = {
+        "123": "the angles are printed in the order of the turns",
+        "321": "the angles are printed in reverse, the last turn first",
+    }
+    ordinal = {"1": "first", "2": "second", "3": "third"}
+    for digits in itertools.permutations("123"):
+        places = "".join(digits)
+        order = ", ".join(ordinal[digit] for digit in places)
+        yield choice(places, words.get(places, f"the angles are printed in another order: {order} turn"),
+                     {"123": 0.0, "321": 0.1}.get(places, 0.5))  # fmt: skip
+
+
+def _signs():
+    ordinal = ("first", "second", "third")
+    for signs in itertools.product("+-", repeat=3):
+        negative = [ordinal[k] for k in range(3) if signs[k] == "-"]
+        which = " and the ".join(negative)
+        words = f"the sign of the {which} angle is reversed" if negative else "the signs are as they should be"
+        yield choice("".join(signs), words, 0.2, len(negative))
+
+
+_UNIT = {
+    "group": "unit",
+    "choices": [
+        choice("radians", "the angles are in radians", 0.0),
+        choice("degrees", "the angles are in degrees", 0.0),
+    ],
+}
+
+#: What the numbers of one side may mean: for each kind its groups, for each group its choices. The first
+#: choice that a side declares, or this book's, is no fault.
+KINDS = {
+    "matrix": [],
+    "quaternion": [{"group": "order", "choices": list(_orders())}],
+    "Euler angles": [
+        {"group": "sequence", "choices": list(_sequences())},
+        {
+            "group": "axes of the turns",
+            "choices": [
+                choice("body fixed", "each turn is about an axis of the turned frame (body fixed)", 0.0),
+                choice("space fixed", "each turn is about an axis that stays (space fixed)", 0.0),
+            ],
+        },
+        {"group": "places", "choices": list(_places())},
+        {"group": "signs", "choices": list(_signs())},
+        _UNIT,
+    ],
+    "rotation vector": [_UNIT],
+    "axis and angle": [
+        {
+            "group": "place of the angle",
+            "choices": [
+                choice("last", "the angle stands behind the axis", 0.0),
+                choice("first", "the angle stands before the axis", 0.0),
+            ],
+        },
+        _UNIT,
+    ],
+}
+
+#: This book's choice in each group. No sequence is anybody's by default: which one it is, is a finding.
+BOOK = {
+    "order": "wxyz",
+    "axes of the turns": "body fixed",
+    "places": "123",
+    "signs": "+++",
+    "unit": "radians",
+    "place of the angle": "last",
+}
+
+#: The inverse orientation, in the words of what is pasted.
+INVERSE = {
+    "matrix": "the transpose: the orientation the other way round",
+    "quaternion": "the conjugate: the orientation the other way round (so is a JPL quaternion)",
+    "Euler angles": "the inverse: the orientation the other way round",
+    "rotation vector": "the turn in the other sense",
+    "axis and angle": "the turn in the other sense",
+}
+
+
+@functools.cache
+def axes_matrix(names):
+    """Signed permutation whose rows are the axes named: ``('y', 'x', '-z')`` is NED of ENU, and ENU of NED."""
+    rows = []
+    for name in names:
+        row = [0, 0, 0]
+        row["xyz".index(name[-1])] = -1 if name.startswith("-") else 1
+        rows.append(tuple(row))
+    return tuple(rows)
+
+
+#: Names of axes that programs are known for: how the second names what the first calls x, y, z.
+BODY_AXES = {
+    ("x", "-y", "-z"): "y and z of the body reversed (FRD and FLU; OpenCV's camera and OpenGL's)",
+    ("-x", "-y", "z"): "x and y of the body reversed (OpenCV's camera and PyTorch3D's)",
+    ("-x", "y", "-z"): "x and z of the body reversed",
+    ("-y", "-z", "x"): "the body's axes forward, left, up against those of a camera, right, down, forward",
+    ("z", "-x", "-y"): "the camera's axes right, down, forward against those of a body, forward, left, up",
+    ("x", "z", "-y"): "the body's y up against z up",
+    ("x", "-z", "y"): "the body's z up against y up",
+    ("y", "z", "x"): "the body's axes moved on by one place",
+    ("z", "x", "y"): "the body's axes moved on by two places",
+    ("-y", "x", "z"): "the camera's axes down, right, back (LLFF) against right, up, back",
+}
+WORLD_AXES = {
+    ("y", "x", "-z"): "north, east, down (NED) against east, north, up (ENU)",
+    ("x", "-y", "-z"): "y and z of the world reversed (NED and NWU)",
+    ("-x", "-y", "z"): "x and y of the world reversed",
+    ("-x", "y", "-z"): "x and z of the world reversed",
+    ("x", "z", "-y"): "the world's y up against z up",
+    ("x", "-z", "y"): "the world's z up against y up",
+    ("y", "z", "x"): "the world's axes moved on by one place",
+    ("z", "x", "y"): "the world's axes moved on by two places",
+    ("y", "-x", "z"): "north, west, up (NWU) against east, north, up (ENU)",
+    ("-y", "x", "z"): "east, north, up (ENU) against north, west, up (NWU)",
+}
+
+
+def signed_axes():
+    """All 48 ways of naming three axes, as names and matrix."""
+    for letters in itertools.permutations("xyz"):
+        for signs in itertools.product(("", "-"), repeat=3):
+            names = tuple(sign + letter for sign, letter in zip(signs, letters))
+            yield names, axes_matrix(names)
+
+
+SAME_AXES = ("x", "y", "z")
+
+
+def axes_choice(names, body):
+    """What it costs, and how it is said, that one side names its axes so."""
+    if names == SAME_AXES:
+        return choice(names, "", 0.0, 0)
+    known = (BODY_AXES if body else WORLD_AXES).get(names)
+    whose = "body" if body else "world"
+    if known:
+        return choice(names, known, 0.1)
+    reversed_ones = [name[-1] for name in names if name.startswith("-")]
+    if tuple(name[-1] for name in names) == SAME_AXES:
+        those = " and ".join(reversed_ones) if len(reversed_ones) < 3 else "all axes"
+        return choice(names, f"{those} of the {whose} reversed", 0.3)
+    # Which hand the axes make does not matter to how likely a program is: nobody does either by accident.
+    return choice(names, f"the {whose}'s axes x, y, z are called {', '.join(names)} by the other program", 0.6)
+
+
+def relations(mirrored=False):
+    """All relations of two orientations by signed axes, the cheapest description of each, cheapest first.
+
+    With ``mirrored`` those in which exactly one side has a left-handed triad, so that the determinants differ.
+    """
+    best = {}
+    all_axes = [(names, axes_choice(names, True), axes_choice(names, False)) for names, _ in signed_axes()]
+    hand = {names: _is_left_handed(names) for names, *_ in all_axes}
+    for inverse in (False, True):
+        for body, body_choice, _ in all_axes:
+            for world, _, world_choice in all_axes:
+                if (hand[body] != hand[world]) != mirrored:
+                    continue
+                both_reversed = body == world and _reverses_one(body)
+                if both_reversed:
+                    faults, rarity = 1, 0.1
+                else:
+                    faults = body_choice["faults"] + world_choice["faults"]
+                    rarity = body_choice["rarity"] + world_choice["rarity"]
+                faults += inverse
+                if faults > MOST_FAULTS:
+                    continue
+                key = (inverse, *_canonical(body, world))
+                entry = (faults, rarity, inverse, body, world, both_reversed)
+                if key not in best or entry[:2] < best[key][:2]:
+                    best[key] = entry
+    return [
+        {"faults": f, "rarity": r, "inverse": inverse, "body": body, "world": world, "hand": both}
+        for f, r, inverse, body, world, both in sorted(best.values(), key=lambda entry: (entry[:2], entry[2:5]))
+    ]
+
+
+def _is_left_handed(names):
+    order = "".join(name[-1] for name in names)
+    odd = order not in ("xyz", "yzx", "zxy")
+    return odd != (sum(name.startswith("-") for name in names) % 2 == 1)
+
+
+def _reverses_one(names):
+    return tuple(name[-1] for name in names) == SAME_AXES and sum(name.startswith("-") for name in names) == 1
+
+
+def _canonical(body, world):
+    """Of a pair of axes and the same pair with all signs reversed, which do the same to a matrix, always one."""
+    if body[0].startswith("-"):
+        return tuple(map(_opposite, body)), tuple(map(_opposite, world))
+    return body, world
+
+
+def _opposite(name):
+    return name[1:] if name.startswith("-") else f"-{name}"
+
+
+def words_of(relation, kinds):
+    """The faults of a relation, each as a phrase."""
+    said = []
+    if relation["inverse"]:
+        said.append(f"one is {INVERSE[kinds[1]]}")
+    for whose in ("body", "world"):
+        if relation.get(f"{whose} turn") is not None:
+            said.append(f"a constant turn on the {whose}'s side, as of an instrument that is mounted askew")
+    if relation["hand"]:
+        axis = next(name[-1] for name in relation["body"] if name.startswith("-"))
+        return [*said, f"the other hand: {axis} is reversed in the world and on the body"]
+    for names, body in ((relation["body"], True), (relation["world"], False)):
+        if words := axes_choice(names, body)["words"]:
+            said.append(words)
+    return said
+
+
+def readings(kind, declared, degrees_likely=False):
+    """All readings of one kind of at most three faults, each with its choices, faults, rarity and words.
+
+    Parameters
+    ----------
+    kind : str
+        A key of :data:`KINDS`.
+    declared : dict
+        Groups for which it is known what the program does; others are as in :data:`BOOK`.
+    degrees_likely : bool
+        A number is larger than a whole turn in radians: then degrees are to be expected.
+    """
+    base = BOOK | ({"unit": "degrees"} if degrees_likely else {}) | declared
+    partial = [({}, 0, 0.0, ())]
+    for group in KINDS[kind]:
+        name, longer = group["group"], []
+        for chosen, faults, rarity, words in partial:
+            for option in group["choices"]:
+                usual = base.get(name) == option["value"]
+                free = name not in base
+                more = 0 if usual or free else option["faults"] or 1
+                if faults + more > MOST_FAULTS:
+                    continue
+                said = () if usual else (option["words"],)
+                longer.append(
+                    (chosen | {name: option["value"]}, faults + more, rarity + (0 if usual else option["rarity"]),
+                     words + said)
+                )  # fmt: skip
+        partial = longer
+    return [{"kind": kind, "choices": c, "faults": f, "rarity": r, "words": list(w)} for c, f, r, w in partial]
+
+
+def whole_table():
+    """The table as plain data, for the page."""
+    return {
+        "format": 1,
+        "most faults": MOST_FAULTS,
+        "kinds": KINDS,
+        "book": BOOK,
+        "inverse": INVERSE,
+        "body axes": [[list(names), words] for names, words in BODY_AXES.items()],
+        "world axes": [[list(names), words] for names, words in WORLD_AXES.items()],
+    }

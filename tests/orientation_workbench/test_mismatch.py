@@ -1,0 +1,267 @@
+"""Two programs that disagree: every mix-up is found by the numbers, none is named of unrelated ones."""
+
+import functools
+import itertools
+import json
+import random
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from orientation import SEQUENCES, body_fixed_from_dcm, quaternion_from_dcm, random_orientations, simple_dcm
+from orientation_workbench import explain
+from orientation_workbench.command import main
+from orientation_workbench.mismatch import explanation, mend, search, table
+from orientation_workbench.mismatch.meaning import dcms_from_numbers, numbers_from_dcms
+from orientation_workbench.mismatch.text import read_poses
+
+#: Every day a few of each, all of them at night.
+FEW_AND_ALL = pytest.mark.parametrize("count", [40, pytest.param(10_000, marks=pytest.mark.long)])
+FEW_AND_MANY = pytest.mark.parametrize("count", [25, pytest.param(1_000, marks=pytest.mark.long)])
+
+
+def printed(poses, decimals=5):
+    return "\n".join(" ".join(f"{number:.{decimals}f}" for number in np.ravel(pose)) for pose in poses)
+
+
+def known(generator):
+    """A kind of numbers, and the sequence of its angles as a user would say it."""
+    kind = generator.choice(list(table.COUNTS))
+    return {"kind": kind} | ({"sequence": generator.choice(SEQUENCES)} if kind == "Euler angles" else {})
+
+
+@functools.cache
+def by_faults(what):
+    """Readings of what is declared, or relations, by how many faults they have."""
+    if what == "relations":
+        listed = table.relations()
+    else:
+        declared = dict(what)
+        listed = table.readings(declared.pop("kind"), declared)
+    return {faults: [one for one in listed if one["faults"] == faults] for faults in range(4)}
+
+
+def random_chain(generator, declared, faults):
+    parts = [by_faults(tuple(sorted(one.items()))) for one in declared] + [by_faults("relations")]
+    shares = [shares for shares in itertools.product(range(4), repeat=3) if sum(shares) == faults
+              and all(part[share] for part, share in zip(parts, shares))]  # fmt: skip
+    chosen = [generator.choice(part[share]) for part, share in zip(parts, generator.choice(shares))]
+    return search.Chain(*chosen, faults, 0.0, 0.0)
+
+
+def both_sides(chain, dcms):
+    """What the two programs give for orientations of the first, by a chain."""
+    related = np.swapaxes(dcms, 1, 2) if chain.relation["inverse"] else dcms
+    left, right = (np.array(table.axes_matrix(chain.relation[whose])) for whose in ("body", "world"))
+    return numbers_from_dcms(chain.first, dcms)[0], numbers_from_dcms(chain.second, left @ related @ right.T)[0]
+
+
+def same_meaning(chains, first, kind):
+    """Which chains do the same to whatever is pasted as the first of them."""
+    keys = explanation._predictions(chains, {kind: explanation._samples(kind, read_poses(first, "first", kind))}, 5)
+    return [key == keys[0] for key in keys]
+
+
+@FEW_AND_ALL
+def test_mixtures_of_up_to_three_faults(count):
+    generator, orientations = random.Random(5), np.random.default_rng(5)
+    first_place = 0
+    for _ in range(count):
+        declared = known(generator), known(generator)
+        truth = random_chain(generator, declared, generator.randint(1, 3))
+        first, second = map(printed, both_sides(truth, random_orientations(2, orientations)))
+        found = explain(first, second, first_declared=declared[0], second_declared=declared[1])
+        same = same_meaning([truth, *found.chains], first, declared[0]["kind"])[1:]
+        assert any(same), (truth.words(), str(found))
+        first_place += same[0]
+        if not same[0]:
+            assert found.chains[0].faults <= truth.faults
+        if found.verdict == "named":
+            assert mend.tried(found.chains[0], *(read_poses(text, "one", declared[k]["kind"]).numbers
+                                                 for k, text in enumerate((first, second))), 1e-3)  # fmt: skip
+    assert first_place >= 0.95 * count
+
+
+@FEW_AND_ALL
+def test_unrelated_poses_get_no_name(count):
+    generator, orientations = random.Random(6), np.random.default_rng(6)
+    for _ in range(count):
+        declared = known(generator), known(generator)
+        texts = []
+        for one in declared:
+            (reading,) = by_faults(tuple(sorted(one.items())))[0]
+            texts.append(printed(numbers_from_dcms(reading, random_orientations(2, orientations))[0], 4))
+        found = explain(*texts, first_declared=declared[0], second_declared=declared[1])
+        assert found.verdict == "unrelated", (texts, str(found))
+
+
+@FEW_AND_MANY
+@pytest.mark.parametrize("start", ["planar", "at rest"])
+def test_the_pose_that_is_asked_for_decides(count, start):
+    generator = random.Random(7)
+    for _ in range(count):
+        axis = generator.choice("xyz")
+        angle = generator.uniform(0.2, 1.2) if start == "planar" else 0.0
+        dcm = np.array(simple_dcm(axis, angle))
+        kinds = [{"kind": generator.choice(["matrix", "quaternion"])} for _ in range(2)]
+        truth = random_chain(generator, kinds, generator.randint(1, 2))
+        texts = [printed(numbers) for numbers in both_sides(truth, dcm[None])]
+        found = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
+        assert found.further_pose, (truth.words(), str(found))
+        turns = next(turns for words, turns in explanation.FURTHER_POSES if words == found.further_pose)
+        for name, degrees in turns:
+            dcm = np.array(simple_dcm(name, np.radians(degrees + generator.uniform(-4, 4)))) @ dcm
+        more = [printed(numbers) for numbers in both_sides(truth, dcm[None])]
+        texts = ["\n".join(pair) for pair in zip(texts, more)]
+        decided = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
+        assert decided.verdict in ("named", "same"), (texts, str(decided))
+        assert same_meaning([truth, *decided.chains], texts[0], kinds[0]["kind"])[1]
+
+
+def test_what_special_poses_leave_open():
+    """Of the 2,304 relations by signed axes, a turn about one axis leaves eight and rest leaves forty-eight."""
+    turned = printed([simple_dcm("z", 0.5)])
+    back = printed([simple_dcm("z", -0.5)])
+    assert len(explain(turned, back).chains) == 8
+    assert len(explain("1 0 0\n0 1 0\n0 0 1", "1 0 0\n0 1 0\n0 0 1").chains) == 48
+
+
+def test_scipy_agrees_with_what_each_name_says():
+    """The other witness: what SciPy makes of the same numbers is found to be what SciPy's manual says."""
+    rotations = Rotation.random(2, rng=np.random.default_rng(3))
+    matrices, quaternions = printed(rotations.as_matrix()), printed(rotations.as_quat())
+    found = explain(matrices, quaternions)
+    assert found.verdict == "named" and found.chains[0].faults == 2
+    assert found.chains[0].second["choices"]["order"] == "xyzw" and found.chains[0].relation["inverse"]
+    for letters, axes in (("ZYX", "body fixed"), ("zyx", "space fixed")):
+        angles = printed(rotations.as_euler(letters))
+        found = explain(printed(rotations.inv().as_matrix()), angles, second_declared={"sequence": "zyx"})
+        (chain,) = found.chains
+        assert chain.second["choices"]["axes of the turns"] == axes and not chain.relation["inverse"]
+
+
+def test_a_mounting_is_told_by_three_poses_and_two_by_four():
+    poses, constants = (
+        random_orientations(4, np.random.default_rng(8)),
+        random_orientations(2, np.random.default_rng(9)),
+    )
+    one_side = explain(printed(poses[:3]), printed(constants[0] @ poses[:3]))
+    both = explain(printed(poses), printed(constants[0] @ poses @ constants[1]))
+    assert [one_side.verdict, both.verdict] == ["named", "named"]
+    assert np.abs(one_side.chains[0].relation["body turn"] - constants[0]).max() < 1e-3
+    assert np.abs(both.chains[0].relation["world turn"] - constants[1]).max() < 1e-3
+    assert explain(printed(poses[:2]), printed(constants[0] @ poses[:2])).verdict == "unrelated"
+
+
+def test_noise_is_said():
+    poses = random_orientations(3, np.random.default_rng(4))
+    shaken = random_orientations(3, np.random.default_rng(4))
+    shaken = np.array([np.array(simple_dcm("x", 0.02)) @ dcm for dcm in shaken])
+    assert explain(printed(poses), printed(np.swapaxes(shaken, 1, 2)), noise=0.03).faults[0].startswith("one is the tr")
+
+
+DCM = random_orientations(1, np.random.default_rng(2))[0]
+Q = quaternion_from_dcm(DCM)
+SPELLINGS = {
+    "brackets": "[[{}, {}, {}],\n [{}, {}, {}],\n [{}, {}, {}]]",
+    "one line of brackets": "[[{}, {}, {}], [{}, {}, {}], [{}, {}, {}]]",
+    "C": "double m[3][3] = {{{{{}, {}, {}}}, {{{}, {}, {}}}, {{{}, {}, {}}}}};",
+    "C floats": "const float m[9] = {{{}f, {}f, {}f, {}f, {}f, {}f, {}f, {}f, {}f}};",
+    "MATLAB": "R = [{} {} {}; {} {} {}; {} {} {}]",
+    "NumPy": "array([[{}, {}, {}],\n       [{}, {}, {}],\n       [{}, {}, {}]], dtype=float32)",
+    "with a place": "[{}, {}, {}, 4.5]\n[{}, {}, {}, -7.25]\n[{}, {}, {}, 1]\n[0, 0, 0, 1]",
+    "YAML": "rows:\n - [{}, {}, {}]\n - [{}, {}, {}]\n - [{}, {}, {}]",
+}
+
+
+@pytest.mark.parametrize("spelling", SPELLINGS)
+def test_spellings_of_a_matrix(spelling):
+    text = SPELLINGS[spelling].format(*(f"{entry:.6f}" for entry in DCM.ravel()))
+    poses = read_poses(text, "first")
+    assert poses.kinds == ("matrix",) and np.abs(poses.numbers - DCM.ravel()).max() < 1e-6
+    assert poses.half == pytest.approx(5e-7)
+
+
+QUATERNIONS = {
+    "ROS": "pose:\n  position:\n    x: 1.5\n    y: 0.2\n    z: 9.0\n"
+    "  orientation:\n    x: {x}\n    y: {y}\n    z: {z}\n    w: {w}",
+    "JSON": '{{"position": {{"x": 3, "y": 1, "z": 2}}, "orientation": {{"w": {w}, "x": {x}, "y": {y}, "z": {z}}}}}',
+    "a trajectory": "1305031102.1758 1.3405 0.6266 1.6575 {x} {y} {z} {w}",
+    "Unity": "({x}, {y}, {z}, {w})",
+    "minus signs": "({x}, {y}, {z}, {w})",
+}
+
+
+@pytest.mark.parametrize("spelling", QUATERNIONS)
+def test_spellings_of_a_quaternion(spelling):
+    text = QUATERNIONS[spelling].format(**{part: f"{entry:.6f}" for part, entry in zip("wxyz", Q)})
+    if spelling == "minus signs":
+        text = text.replace("-", "\N{MINUS SIGN}")
+    (numbers,) = read_poses(text, "first").numbers
+    wanted = Q if spelling in ("ROS", "JSON") else np.roll(Q, -1)
+    assert np.abs(numbers - wanted).max() < 1e-6
+
+
+BAD = {
+    "13 numbers": (" ".join(map(str, range(13))), "13 numbers"),
+    "no number": ("nan 0 0 1", "'nan'"),
+    "text": ("which way", "no numbers: 'which way"),
+    "nothing": ("  ", "empty"),
+    "no rotation": ("1 0 0\n0 2 0\n0 0 1", "row 2 has length 2"),
+    "not at right angles": ("1 0 0\n0.6 0.8 0\n0 0 1", "rows 1 and 2"),
+    "no length 1": ("0.5 0.5 0.5 0.9", "neither a quaternion"),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_bad_input_is_told_what_was_read(what, capsys):
+    text, words = BAD[what]
+    with pytest.raises(ValueError, match=words):
+        explain(text, "1 0 0 0")
+    with pytest.raises(SystemExit) as left:
+        main(["explain", text, "1 0 0 0"])
+    assert left.value.code == 3 and "Traceback" not in capsys.readouterr().err
+
+
+def test_the_command(tmp_path, capsys):
+    poses = random_orientations(2, np.random.default_rng(11))
+    quaternions = quaternion_from_dcm(poses)
+    files = {
+        "here": printed(quaternions),
+        "there": printed(quaternions[:, [1, 2, 3, 0]]),
+        "elsewhere": printed(quaternion_from_dcm(random_orientations(2, np.random.default_rng(12)))),
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    for second, code, verdict in (("here", 0, "same"), ("there", 1, "named"), ("elsewhere", 2, "unrelated")):
+        with pytest.raises(SystemExit) as left:
+            main(["explain", str(tmp_path / "here"), str(tmp_path / second), "--json"])
+        answer = json.loads(capsys.readouterr().out)
+        assert (left.value.code, answer["verdict"], answer["format"]) == (code, verdict, 1)
+    with pytest.raises(SystemExit):
+        main(["explain", str(tmp_path / "here"), str(tmp_path / "there")])
+    assert "second[[3, 0, 1, 2]]" in capsys.readouterr().out
+
+
+def test_the_command_is_installed():
+    done = subprocess.run([sys.executable, "-m", "orientation_workbench", "explain", "1 0 0", "0 0 0 2 1"],
+                          capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 3 and "5 numbers" in done.stderr
+
+
+def test_angles_by_name_are_put_in_order():
+    angles = body_fixed_from_dcm(DCM, "zyx")
+    text = "roll: {:.6f}\npitch: {:.6f}\nyaw: {:.6f}".format(*angles[::-1])
+    assert explain(printed([DCM], 6), text).verdict == "same"
+
+
+def test_every_reading_comes_back():
+    generator = random.Random(1)
+    for kind in table.COUNTS:
+        for reading in generator.sample(listed := table.readings(kind, {}), min(60, len(listed))):
+            dcms = random_orientations(3, np.random.default_rng(7))
+            for numbers in numbers_from_dcms(reading, dcms):
+                assert np.abs(dcms_from_numbers(reading, numbers) - dcms).max() < 1e-9
