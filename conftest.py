@@ -1,12 +1,12 @@
 """What the tests share: which of them run, the built site, a server for it, and a browser."""
 
 import os
-import random
 import threading
 from collections import defaultdict
 from importlib import metadata
 
 import nbval.kernel
+import nbval.plugin
 import pytest
 import times
 from places import BROWSER_REQUIRED, HTML, PATIENCE
@@ -15,6 +15,7 @@ from xdist.scheduler import LoadFileScheduling
 
 from notebook_pages import warm_kernels
 from notebook_pages.browser import FLAGS, MISSING, find
+from notebook_pages.moves import moves
 
 # Tests that take long, each by itself, and share nothing with the others of their file.
 APART = (
@@ -46,6 +47,30 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
+compare_strictly = nbval.plugin.IPyNbCell.compare_outputs
+format_difference = nbval.plugin.IPyNbCell.format_output_compare
+
+
+def compare_outputs(cell, test, ref, skip_compare=None):
+    """As nbval compares outputs, but for numbers that moved by as little as :mod:`notebook_pages.moves` allows."""
+    for now, stored in zip(test, ref):
+        _undo_small_moves(now.get("data", {}), stored.get("data", {}), cell.sanitize)
+        _undo_small_moves(now, stored, cell.sanitize)
+    return compare_strictly(cell, test, ref, skip_compare)
+
+
+def _undo_small_moves(now, stored, sanitize):
+    for kind in now.keys() & stored.keys():
+        if isinstance(now[kind], str) and isinstance(stored[kind], str):
+            if not any(move.too_far for move in moves(sanitize(stored[kind]), sanitize(now[kind]))):
+                now[kind] = stored[kind]
+
+
+def format_output_compare(cell, key, left, right):
+    format_difference(cell, key, left, right)
+    cell.comparison_traceback += [f"\n  {move}" for move in moves(left, right) if move.too_far][:5]
+
+
 def pytest_addoption(parser):
     parser.addoption("--write-times", action="store_true", help="write the table of tests/TIMES.md")
 
@@ -54,17 +79,19 @@ def pytest_configure(config):
     # What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata.
     if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
         raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
+    nbval.plugin.IPyNbCell.compare_outputs = compare_outputs
+    nbval.plugin.IPyNbCell.format_output_compare = format_output_compare
     nbval.kernel.KernelManager = warm_kernels.WarmKernelManager
     config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(
         "markers",
         "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of all tests of the file "
-        "that name the same thing, only so many, drawn by lot, run every time; the rest is long",
+        "that name the same thing, only so many run every time, spread evenly over all; the rest is long",
     )
 
 
 def pytest_report_header():
-    return f"drawn by lot from BOOK_TEST_SEED={SEED}, which draws the same again"
+    return f"what is drawn by lot is drawn from BOOK_TEST_SEED={SEED!r}"
 
 
 @pytest.hookimpl(tryfirst=True)  # before those that are marked as long are left out
@@ -78,11 +105,21 @@ def pytest_collection_modifyitems(items):
                     name = f"{name.partition('::')[0]} {marker.kwargs['of']}"
                 cases[name, marker.args[0]].append(item)
             break  # the closest
-    for (name, number), found in cases.items():
-        chosen = random.Random(f"{SEED} {name}").sample(found, min(number, len(found)))
+    for (_, number), found in cases.items():
+        chosen = spread(found, number)
         for item in found:
             if item not in chosen:
                 item.add_marker(pytest.mark.long)
+
+
+def spread(cases, number):
+    """So many of the cases, spread evenly from the first to the last.
+
+    >>> spread("abcdefghij", 3), spread("abcdefghij", 1), spread("ab", 5)
+    (['b', 'f', 'i'], ['f'], ['a', 'b'])
+    """
+    number = min(number, len(cases))
+    return [cases[len(cases) * (2 * k + 1) // (2 * number)] for k in range(number)]
 
 
 def pytest_unconfigure():

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -17,7 +18,7 @@ from places import REPOSITORY
 from notebook_pages import page
 from notebook_pages.alternative_text import says_something
 from notebook_pages.notebooks import all_notebooks, normalise
-from notebook_pages.paths import fingerprint
+from notebook_pages.paths import NODE, NODE_MODULES, WEBSITE, fingerprint
 from notebook_pages.serve import Handler
 from orientation_figures.plot import Plot
 
@@ -288,3 +289,21 @@ def test_letters_are_drawn_once_and_a_blank_not_at_all():
     assert len({outline for _, outline in outlines}) == len(outlines)
     links = re.findall(r'<use [^>]*href="#([^"]*)"', body)
     assert set(links) == {name for name, _ in outlines} and links.count(links[0]) >= 2
+
+
+@pytest.mark.long
+def test_python_for_browsers_finds_itself_in_any_folder(tmp_path):
+    """Left to itself it reads the trace of an error, and takes brackets for the place of a line."""
+    folder = tmp_path / "book (2)"
+    shutil.copytree(NODE_MODULES / "pyodide", folder / "pyodide")
+    (folder / "program.py").write_text("import sys; open('/wheels/made', 'w').write(sys.platform)", "utf8")
+    command = [
+        NODE,
+        WEBSITE / "live" / "compile.mjs",
+        folder / "pyodide" / "pyodide.mjs",
+        folder / "program.py",
+        folder,
+    ]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (folder / "made").read_text() == "emscripten"

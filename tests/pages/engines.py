@@ -39,6 +39,22 @@ class Engine:
         return found
 
 
+class Chromium(Engine):
+    """A page of the browser that the other tests use."""
+
+    def __init__(self, browser):
+        self.page = browser.new_context(viewport={"width": 1300, "height": 900}).new_page()
+
+    def go(self, address):
+        self.page.goto(address)
+
+    def run(self, function, *arguments):
+        return self.page.evaluate(f"(given) => ({function})(...given)", list(arguments))
+
+    def close(self):
+        self.page.context.close()
+
+
 class Firefox(Engine):
     def __init__(self):
         import websocket

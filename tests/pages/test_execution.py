@@ -1,6 +1,8 @@
 """What is run again when something has changed, and what is not."""
 
 import json
+import subprocess
+import sys
 
 import nbformat
 import pytest
@@ -103,6 +105,23 @@ def test_the_real_packages_are_followed():
     files = {str(path.relative_to(REPOSITORY)) for path in used.files_used("from coursework import check")}
     assert "coursework/src/coursework/checking/kinds.py" in files
     assert not any("grading" in name or "authoring" in name for name in files)
+
+
+@pytest.mark.long
+def test_a_run_side_by_side_says_nothing_of_its_processes(tmp_path):
+    program = (
+        "import sys\nfrom jupyter_cache import get_cache\nfrom notebook_pages.execution import Executor\n"
+        "cache = get_cache(sys.argv[1])\nrecords = [cache.add_nb_to_project(path) for path in sys.argv[2:]]\n"
+        "done = Executor(cache).run_and_cache(filter_pks=[record.pk for record in records])\n"
+        "assert len(done.succeeded) == 2, done\n"
+    )
+    paths = [tmp_path / name for name in ("one.ipynb", "two.ipynb")]
+    for path in paths:
+        about = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+        nbformat.write(new_notebook(cells=[new_code_cell("1 + 1")], metadata=about), path)
+    command = [sys.executable, "-c", program, tmp_path / "cache", *paths]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_old_runs_are_thrown_away(packages, tmp_path):

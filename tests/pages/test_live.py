@@ -735,6 +735,48 @@ def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, w
     assert "Cell 3 ran" in page.words()
 
 
+def test_tab_that_is_older_than_the_pages_says_so(context, site):
+    """Its scripts are gone from the server, where by now the same page asks for others."""
+    page = Page(context, site, QUIET)
+    page.page.route("**/runtime/scripts-*/*.js*", lambda route: route.fulfill(status=404))
+    text = re.sub(r"runtime/scripts-\w+", "runtime/scripts-0123456789ab", (HTML / QUIET).read_text("utf8"))
+    page.page.route(f"**/{QUIET}", lambda route: route.fulfill(body=text, content_type="text/html"))
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('published anew')")
+    page.page.unroute_all()
+    with page.page.expect_navigation():
+        page.page.click(".live-choices button:has-text('Reload')")
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
+
+
+def test_script_that_did_not_come_is_asked_for_again(context, site):
+    """Browsers remember a script that failed for as long as the page is open."""
+    page = Page(context, site, QUIET)
+    page.page.route("**/*", lambda route: route.abort())
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('does not answer')")
+    page.page.unroute_all()
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
+
+
+def test_python_starts_where_the_storage_is_full(context, site):
+    """All sites of one address share it: it may be full before the book is opened."""
+    page = Page(context, site, QUIET)
+    page.page.evaluate("""() => {
+      for (let size = 1 << 22; size; size >>= 1) try {
+        for (;;) localStorage.setItem(`neighbour ${localStorage.length}`, "x".repeat(size));
+      } catch {}
+      for (let size = 1 << 22; size; size >>= 1) try {
+        for (;;) sessionStorage.setItem(`neighbour ${sessionStorage.length}`, "x".repeat(size));
+      } catch {}
+    }""")
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
+    page.page.evaluate("() => { localStorage.clear(); sessionStorage.clear(); }")
+
+
 def test_jupyters_commands_get_a_hint(shared):
     for code, words in (
         ("%matplotlib inline", "Python alone"),

@@ -13,7 +13,9 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 import pytest
 from places import BROWSER_REQUIRED, HTML
+from playwright.sync_api import expect
 from test_live import ENDLESS, QUIET
+from test_site import violations
 
 from notebook_pages import finish, install
 
@@ -119,6 +121,30 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
 def test_headers_like_those_of_github_pages(page):
     with serving(LikeGitHubPages) as address:
         run_and_stop(page, address)
+
+
+@pytest.mark.parametrize("colours", ["light", "dark"])
+def test_page_of_a_wrong_address_leads_home_from_any_folder(page, tmp_path, colours):
+    (tmp_path / "courses").mkdir()
+    (tmp_path / "courses" / "book").symlink_to(HTML, target_is_directory=True)
+
+    class WithPageOfWrongAddress(Silent):
+        def send_error(self, code, *arguments):
+            content = (HTML / "404.html").read_bytes()
+            self.send_response(code)
+            self.send_header("Content-Type", "text/html")
+            self.send_header("Content-Length", str(len(content)))
+            self.end_headers()
+            self.wfile.write(content)
+
+    with serving(WithPageOfWrongAddress, tmp_path) as root:
+        page.emulate_media(color_scheme=colours)
+        page.goto(f"{root}courses/book/chapters/no/such-page.html")
+        home = f"{root}courses/book/index.html"
+        expect(page.get_by_role("link", name="front page")).to_have_attribute("href", home)
+        assert violations(page) == [] and page.get_by_role("main").get_by_role("link").count() == 2
+        page.get_by_role("link", name="front page").click()
+        page.wait_for_url(home)
 
 
 def test_list_of_what_is_kept_is_the_site():

@@ -216,7 +216,7 @@ def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course
     assert len(found[NAME]["others"]) == 5 and "others" not in found["levers/plain"]
     for number in (0, 4):
         student = student_with(number) if number else next(f"{k}" for k in range(99) if not variant(f"{k}"))
-        own = marking.of_student(found, student)
+        own, _ = marking.of_student(found, student)
         for other in range(6):
             given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public["given"]
             plain = to_plain(given["force"] * given["arm"])
@@ -359,7 +359,7 @@ def test_hints_and_the_worked_solution_are_help(recorded, course, way):
 
 def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_path):
     found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
-    own = marking.of_student(found, student_with(5))
+    own, _ = marking.of_student(found, student_with(5))
     chances = own[NAME]["second chances"]
     assert [one["public"].get("variant", 0) for one in chances.values()] == [0, 1]
     right = {
@@ -382,7 +382,8 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
         ({NAME: right[NAME], first: right[NAME]}, {"own": "hint"}, 0.8, "with help"),
         ({NAME: right[NAME], first: right[first]}, {"own": "hint", "first": "mistake"}, 0.8, "with help"),
         (right, {"own": "hint", "first": "mistake"}, 1, "by a sibling"),
-        ({NAME: missing, first: right[first]}, {"own": "solution"}, 1, "by a sibling"),
+        ({NAME: missing, first: right[first]}, {"own": "solution"}, 0, "by a sibling alone"),
+        ({NAME: right[NAME], first: right[first]}, {"own": "solution"}, 1, "by a sibling"),
         ({NAME: missing}, {"own": "solution"}, 0, "missing"),
         # The answer of one who has the numbers of the third one after one's own.
         ({NAME: right[NAME], f"{NAME}/sibling-3": right[second]}, {"own": "hint"}, 0.8, "with help"),
@@ -478,6 +479,27 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
         "levers-2.json",
         "levers-extra-5.json",
     ]
+
+
+def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
+    """Their pages follow upon those of the first variant, which another machine's numbers had made others."""
+    made = made_in(tmp_path)
+    solved = SOLVED.replace("moment =", "import os\nmoment = float(os.environ['MOVED_BY']) +")
+    write_source(made.sources, *((kind, solved if text == SOLVED else text) for kind, text in CELLS), name="levers")
+    monkeypatch.chdir(tmp_path)
+    try:
+        for moved in (0, 1e-4, 2e-4, 3e-4):
+            monkeypatch.setenv("MOVED_BY", str(moved))
+            release(made, run=False)
+            for number in range(6):
+                questions.notebook_questions.cache_clear()
+                coursework.me(student_with(number) if number else "")
+                lever = coursework.variant("levers/see-saw")
+                assert coursework.check("levers/see-saw", lever.force * lever.arm + moved).outcome == "correct"
+                assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
+    finally:
+        coursework.me("")
+        questions.notebook_questions.cache_clear()
 
 
 @pytest.mark.parametrize(

@@ -862,7 +862,8 @@ CANVAS = (
 def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, before, student, written):
     path = tmp_path / "book.csv"
     path.write_bytes(before.encode())
-    said = gradebooks.fill(path, marks, overwrite=True)
+    (marks.store.folder / gradebooks.WRITTEN).unlink(missing_ok=True)
+    said = gradebooks.fill(path, marks, overwrite={"mistaken", "broken"} & set(re.findall(r"\w+", before)))
     after = (tmp_path / "book-filled.csv").read_bytes().decode()
     assert written in after
     assert path.read_bytes() == before.encode()
@@ -891,9 +892,30 @@ def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
     after = (tmp_path / "book-filled.csv").read_text().splitlines()
     assert [line.rpartition(",")[2] for line in after[1:]] == ["EX", "5.00", "0", "6"]
     assert "right: EX, and graded 6" in said and "mistaken: 5.00, and graded 4" in said and "blank:" not in said
-    said = "\n".join(gradebooks.fill(path, marks, overwrite=True))
+    said = "\n".join(gradebooks.fill(path, marks, overwrite=["mistaken", "right"], dry_run=True))
+    assert "nothing was written" in said and (tmp_path / "book-filled.csv").read_text().splitlines() == after
+    said = "\n".join(gradebooks.fill(path, marks, overwrite=["mistaken", "right"]))
     after = (tmp_path / "book-filled.csv").read_text().splitlines()
-    assert [line.rpartition(",")[2] for line in after[1:]] == ["6", "4", "0", "6"] and "Written over" in said
+    # An excuse is none that could be written over; a mark by hand is, of whom it is said.
+    assert [line.rpartition(",")[2] for line in after[1:]] == ["EX", "4", "0", "6"]
+    assert "mistaken: 5.00 -> 4" in said.partition("written over as you said")[2]
+    with pytest.raises(gradebooks.CannotExport, match="'nobody', who is not in"):
+        gradebooks.fill(path, marks, overwrite=["nobody"])
+
+
+def test_what_was_written_from_here_is_brought_up_to_date(marks, tmp_path):
+    """After an appeal 17 stayed where 18 was due, since something stood there."""
+    path = tmp_path / "book.csv"
+    path.write_text("Student,ID,SIS User ID,SIS Login ID,Section,Essay (5)\nA,1,,right,,\nB,2,,mistaken,,\n")
+    gradebooks.fill(path, marks)
+    known = marks.store.folder / gradebooks.WRITTEN
+    # Later the same marks are others; what stands in the system is what was written from here, or is not.
+    known.write_text(known.read_text().replace('"6"', '"5.5"'))
+    path.write_text(path.read_text().replace("right,,", "right,,5.50").replace("mistaken,,", "mistaken,,3"))
+    said = "\n".join(gradebooks.fill(path, marks))
+    after = (tmp_path / "book-filled.csv").read_text().splitlines()
+    assert [line.rpartition(",")[2] for line in after[1:]] == ["6", "3"]
+    assert "right: 5.50 -> 6" in said and "mistaken: 3, and graded 4" in said
 
 
 @pytest.mark.parametrize("language", languages.LANGUAGES)

@@ -15,9 +15,12 @@ import pytest
 from grading_class import handed_in, put, write_sources
 from nbformat import writes
 
+from coursework.__main__ import main
 from coursework.grading.execution.sandbox import Limits
+from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade
 from coursework.grading.judging import term
+from coursework.grading.judging.ledger import Ledger
 from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.statistics import HIDDEN_BELOW, Correlation
 from coursework.grading.store import Store
@@ -374,3 +377,74 @@ def test_names_and_answers_stay_text(rules, tmp_path):
         content = path.read_text()
         assert "<img" not in content and "<script" not in content and "default-src 'none'" in content
     assert any("&lt;img" in path.read_text() for path in (tmp_path / "out" / "course").rglob("*.html"))
+
+
+# --- what reaches the system --------------------------------------------------------------------
+
+BOOK = "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,ann,,\nB,2,,bob,,\nC,3,,carl,,\n"
+
+
+@pytest.fixture
+def late(tmp_path):
+    """Results of three, of whom one was two days late; the rules excuse another."""
+    store = Store(tmp_path / "out")
+    for student, when, marked in (
+        ("ann", "2026-10-07T12:00:00", False), ("bob", "2026-10-05T12:00:00", False), ("carl", "", False)
+    ):  # fmt: skip
+        found = record(6, when=when, late=marked)
+        about = {"title": "the sum", "group": "", "version": "v", "details": {}, "guessable": None, "tries": None}
+        mark = {"outcome": "correct", "note": "", "points": 6, "worth": 6, "messages": [], **about}
+        store.save({**found, "student": student, "marks": {"turns/sum": mark}, "answers": {}})
+    (tmp_path / "term.toml").write_text(RULES + "[extensions.bob]\nturns = 'excused'\n")
+    (tmp_path / "book.csv").write_text(BOOK)
+    return store
+
+
+def filled(store, *more):
+    arguments = ["export", str(store.folder), "--lms", str(store.folder.parent / "book.csv"), *more]
+    assert main(arguments) in (None, 0)
+    lines = (store.folder.parent / "book-filled.csv").read_text().splitlines()[1:]
+    return [line.rpartition(",")[2] for line in lines]
+
+
+def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
+    """The term gave 68.57 % and "excused", and the gradebook was filled with 18 and 21."""
+    rules = str(tmp_path / "term.toml")
+    assert filled(late) == ["6", "6", "6"]  # there are no rules yet
+    late.folder.joinpath(gradebooks.WRITTEN).unlink()
+    assert main(["term", str(late.folder), "--rules", rules]) in (None, 0)
+    with pytest.raises(SystemExit, match="The term has rules"):
+        filled(late)
+    assert filled(late, "--as-graded") == ["6", "6", "6"]
+    late.folder.joinpath(gradebooks.WRITTEN).unlink()
+    assert filled(late, "--rules", rules) == ["4.8", "", "6"]
+    assert "Excused by the rules" in capsys.readouterr().out
+    main(["export", str(late.folder), "--nbgrader", str(tmp_path / "n.csv"), "--rules", rules])
+    assert '"6","1.2","4.8"' in (tmp_path / "n.csv").read_text()
+
+
+def test_a_decision_is_handed_on_also_before_it_is_in_the_pages(late, tmp_path):
+    found = late.read("ann", "turns")
+    Ledger(late.folder).add(found, "turns/sum", 0.5, who="Ann")
+    assert filled(late)[0] == "3"
+    with pytest.raises(SystemExit, match="Decisions on 1 records are not in the pages yet"):
+        main(["export", str(late.folder), "--feedback", str(tmp_path / "pages.zip")])
+
+
+def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
+    """Canvas marks a file as late and does not say when it came: that cost nothing."""
+    late.save({**late.read("carl", "turns"), "notebooks": [{"handed in": "", "late": True}]})
+    rules = tmp_path / "term.toml"
+    with pytest.raises(SystemExit, match="1 are marked as late.*marked = 0.1"):
+        filled(late, "--rules", str(rules))
+    assert any("1 are marked as late" in line for line in write_course(late, term.read_rules(rules)))
+    rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
+    assert filled(late, "--rules", str(rules)) == ["4.8", "", "4.5"]
+
+
+def test_who_handed_in_what_cannot_be_graded_has_not_handed_in_nothing(late, tmp_path):
+    (tmp_path / "book.csv").write_text(BOOK + '"Last, Dora",4,,dora,,\n"Other, Eve",5,,eve,,\n')
+    late.folder.joinpath("refused.json").write_text('[["d.ipynb", "Dora Last", "It is damaged."]]')
+    said = "\n".join(gradebooks.fill(tmp_path / "book.csv", gradebooks.Marks(late)))
+    assert "Dora" in said.partition("cannot be graded")[2]
+    assert "Eve" in said.partition("nothing was handed in")[2].partition("cannot be graded")[0]

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import threading
+from urllib.parse import quote
 
 import nbformat
 import pytest
@@ -106,13 +107,18 @@ class Served:
         connection.close()
         return response, text
 
-    def decide(self, cluster, body="credit=1", **headers):
+    def decide(self, cluster, body="credit=1", seen=None, **headers):
+        """Decide, upon what the page shows now, or showed when it was ``seen``."""
+        body += f"&seen={quote(self.seen(cluster) if seen is None else seen)}"
         headers = {
             "Origin": f"http://127.0.0.1:{self.port}",
             "Content_Type": "application/x-www-form-urlencoded",
             **headers,
         }
         return self.ask(f"/{self.secret}/answer/{cluster}", "POST", body, **headers)[0]
+
+    def seen(self, cluster):
+        return re.search(r'name="seen" value="([^"]*)"', self.ask(f"/{self.secret}/answer/{cluster}")[1])[1]
 
 
 def first_of(served, show="waiting"):
@@ -175,8 +181,10 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
             one for one in served_class.clusters.values() if len(one.members) == 2 and one.mark["outcome"] == "wrong"
         ]
         assert served.decide(cluster.id, "credit=0.5&comment=Half+of+it.&rubric=Copied%3F&why=appeal").status == 303
-        assert served.decide(cluster.id, "credit=1&only=copies").status == 303
-        for body, status in (("credit=9", 400), ("credit=-1", 400), ("credit=x", 400), ("credit=nan", 400), ("", 400)):
+        place = [one["student"] for one in cluster.members].index("copies")
+        assert served.decide(cluster.id, f"credit=1&only={place}").status == 303
+        for body, status in (("credit=9", 400), ("credit=-1", 400), ("credit=x", 400), ("credit=nan", 400), ("", 400),
+                             ("credit=1&only=9", 400)):  # fmt: skip
             assert served.decide(cluster.id, body).status == status
         _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
         assert "by Ann" in page and "Copied?" in page and "appeal" in page
@@ -191,7 +199,26 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
     with Served(out) as served:
         assert first_of(served, "decided") == cluster.id
         served.decide(cluster.id, "credit=back")
+        served.decide(cluster.id, "credit=back")
+        assert served.decide(cluster.id, "credit=back").status == 409
     assert {one.after for one in regrade(out, solutions=graded / "solutions")} == {5}
+
+
+def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
+    with Served(out, grader="Ann") as first, Served(out, grader="Ben") as second:
+        name = first_of(first)
+        seen = first.seen(name)
+        assert second.decide(name, "credit=0.5&comment=Half", seen).status == 303
+        headers = {"Origin": f"http://127.0.0.1:{first.port}", "Content_Type": "application/x-www-form-urlencoded"}
+        body = f"credit=1&comment=All+of+it&seen={quote(seen)}"
+        response, page = first.ask(f"/{first.secret}/answer/{name}", "POST", body, **headers)
+        assert response.status == 409 and "Ben gave 0.5" in page and "All of it" in page
+        assert {one.who for one in Ledger(out).decisions} == {"Ben"}
+        # What Ben decided is not Ann's to take back; upon it she may decide.
+        assert first.decide(name, "credit=back").status == 409
+        assert first.decide(name, "credit=1").status == 303
+        assert second.decide(name, "credit=back").status == 303
+        assert {one.who for one in Ledger(out).current().values()} == {"Ann"}
 
 
 def test_hints_are_for_a_person_and_no_marks(out):

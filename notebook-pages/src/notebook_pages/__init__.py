@@ -24,6 +24,7 @@ from . import (
     progress,
     publish,
     questions,
+    sidebar,
     subject_index,
     take_away,
 )
@@ -37,6 +38,7 @@ def setup(app):
         first_view,
         take_away,
         page,
+        sidebar,
         publish,
         pictures,
         moved,

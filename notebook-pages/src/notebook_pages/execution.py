@@ -6,6 +6,7 @@ A changed sentence runs nothing.
 """
 
 import json
+import logging
 from pathlib import Path
 
 import nbformat
@@ -72,6 +73,11 @@ class Worker(ExecutionWorkerLocalMProc):
 
 class Executor(JupyterExecutorLocalMproc):
     _EXECUTION_WORKER = Worker
+
+    def __init__(self, cache):
+        logger = logging.getLogger(__name__)
+        logger.setLevel(logging.WARNING)  # that a process begins or ends is no news
+        super().__init__(cache, logger)
 
 
 def run_side_by_side(app, env, docnames):

@@ -56,7 +56,8 @@ def write(site):
     def version(path):
         return sha256(path.read_bytes()).hexdigest()[:8] if path.is_file() else None
 
-    lock = json.loads((site / FOLDER / LOCK).read_text("utf8"))
+    (listed,) = (site / FOLDER).glob(f"lock-*/{LOCK}")
+    lock = json.loads(listed.read_text("utf8"))
     addresses = [package["file_name"] for package in lock["packages"].values()]
     elsewhere = sorted({"/".join(address.split("/")[:3]) for address in addresses if "://" in address})
     for page in pages_of(site):
@@ -68,6 +69,7 @@ def write(site):
 
         text = VERSIONED.sub(with_version, before)
         text = re.sub(r'("bytes":)\d+', rf"\g<1>{lock['bytes']}", text)
+        text = re.sub(r'("lock":")[^"]*', rf"\g<1>{listed.parent.name}/", text)
         rules = f'<meta http-equiv="Content-Security-Policy" content="{policy(text, elsewhere)}">'
         text, count = CHARSET.subn(lambda match: match[1] + rules, text)
         if count != 1:

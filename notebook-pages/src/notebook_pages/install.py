@@ -1,7 +1,9 @@
 """What lets readers keep the book in their browser, or install it as an app: by choice, and with its size told.
 
 ``manifest.webmanifest`` and two icons make the site installable; ``offline.json`` lists what there is to keep (the
-pages, and Python), each file with a fingerprint and its bytes. The rest is live/js/keep.js and service-worker.js.
+pages, and Python), each file with a fingerprint and its bytes. The rest is live/js/keep.js, editions.js and
+service-worker.js. ``lasting.json`` lists the files that are named by their content: where the next edition is published
+they stay, for the tabs that are open then (:mod:`notebook_pages.carry_over`).
 """
 
 import json
@@ -13,7 +15,13 @@ from .live.runtime import FOLDER, LOCK
 from .pictures import FOLDER as PICTURES
 
 LIST = "offline.json"
+LASTING = "lasting.json"
+WORKER = "service-worker.js"
 MANIFEST = "manifest.webmanifest"
+#: A path that names its content: in our folders, and as the makers of JupyterLite name the parts of its scripts.
+BY_CONTENT = re.compile(
+    r"runtime/(?:(?:scripts|pyodide|sealed|lock)-|wheels/)[0-9a-f]{12}/.+|lite/.+\.[0-9a-f]{8,20}\.[a-z0-9]+"
+)
 SIZES = (192, 512)
 KEPT = {".html", ".js", ".css", ".woff2", ".svg", ".png", ".webmanifest", ".ipynb", ".py"}
 
@@ -61,11 +69,11 @@ def write_list(site):
     packages = json.loads((site / FOLDER / LOCK).read_text("utf8"))["packages"].values()
     wheels = [site / FOLDER / package["file_name"] for package in packages if "://" not in package["file_name"]]
     sealed = (site / FOLDER).glob("sealed-*/*/*.json")
-    python = [site / FOLDER / LOCK, *(site / FOLDER).glob("pyodide-*/*"), *wheels, *sealed]
+    python = [*(site / FOLDER).glob(f"lock-*/{LOCK}"), *(site / FOLDER).glob("pyodide-*/*"), *wheels, *sealed]
     pages = [
         path for path in site.rglob("*")
         if path.suffix in KEPT and path.relative_to(site).parts[0] not in ("lite", PICTURES) and path not in python
-        and path.name not in ("service-worker.js", "404.html")
+        and path.name not in (WORKER, "404.html")
     ]  # fmt: skip
 
     def listed(paths):
@@ -75,6 +83,13 @@ def write_list(site):
     parts = {"book": listed(pages), "python": listed(python)}
     edition = "book-" + sha256(json.dumps(parts).encode()).hexdigest()[:12]
     (site / LIST).write_text(json.dumps({"edition": edition, **parts}), "utf8")
+    paths = sorted(path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file())
+    (site / LASTING).write_text(json.dumps([path for path in paths if BY_CONTENT.fullmatch(path)]), "utf8")
+    # The service worker of a book at the root of an address is asked for its neighbours' pages, too: it is told what
+    # belongs to the book. (The build writes the script anew each time.)
+    ours = sorted({path.partition("/")[0] for path in paths} - {"lite", WORKER})
+    script = re.sub(r"^self\.bookHolds=[^;\n]*;\n", "", (site / WORKER).read_text("utf8"))
+    (site / WORKER).write_text(f"self.bookHolds={json.dumps(ours)};\n{script}", "utf8")
 
 
 def add_to_head(app, pagename, templatename, context, doctree):

@@ -23,7 +23,9 @@ SCRIPT = WEBSITE / "katex.mjs"
 KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 
 PUNCTUATION = tuple(".,;:!?)")
-SHORT = 30  # signs of a formula that need not be broken
+SHORT = 18  # signs, as a reader sees them, of a formula that need not be broken: half a line of the narrowest page
+#: What TeX needs and nobody sees, or sees above or around another sign.
+UNSEEN = re.compile(r"\\(?:math\w+|hat|bar|dot|ddot|vec|tilde|left|right|[dt]?frac|quad)\b|\\[,;:! ]|[{}^_&\s]")
 STYLE_SHEETS = (KATEX.with_name("katex.css"), WEBSITE / "static" / "book.css")
 #: What holds letters side by side, so that a group within it, which has no style of its own, changes nothing.
 ROWS = ("katex-base", "katex-sizing")
@@ -150,13 +152,18 @@ def render(node, display):
         return f'<code class="bad-tex">{escape(tex)}</code>'
 
 
+def signs(tex):
+    """How many signs a reader sees of a formula, about."""
+    return len(re.sub(r"\\[a-zA-Z]+", "x", UNSEEN.sub("", tex)))
+
+
 def keep_punctuation(app, doctree, docname):
     """Let no line begin with the full stop or comma after a short formula."""
     for formula in list(doctree.findall(nodes.math)):
         parent = formula.parent
         place = parent.index(formula)
         after = parent[place + 1] if place + 1 < len(parent) else None
-        if isinstance(after, nodes.Text) and after[:1] in PUNCTUATION and len(formula.astext()) < SHORT:
+        if isinstance(after, nodes.Text) and after[:1] in PUNCTUATION and signs(formula.astext()) <= SHORT:
             together = nodes.inline("", "", classes=["together"])
             parent[place : place + 2] = [together, nodes.Text(after[1:])]
             together += [formula, nodes.Text(after[0])]

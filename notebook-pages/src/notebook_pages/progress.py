@@ -81,8 +81,9 @@ def visit_table(translator, node):
         number = env.toc_secnumbers[page][""][0]
         address = translator.builder.get_relative_uri(here, page)
         cells = "".join(
-            f'<td data-kind="{kind}" data-names="{escape(" ".join(names), quote=True)}">{len(names) or "–"}</td>'
-            for kind, names in ((kind, found[kind]) for kind in COLUMNS)
+            f'<td data-kind="{kind}" data-heading="{heading}" data-names="{escape(" ".join(found[kind]), quote=True)}">'
+            f"{len(found[kind]) or '–'}</td>"
+            for kind, heading in COLUMNS.items()
         )
         title = escape(env.titles[page].astext())
         companions = f' data-companion="{companion(page).with_suffix("")}"'

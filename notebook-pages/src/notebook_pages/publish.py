@@ -139,14 +139,32 @@ def in_order(env):
     return [*found, *sorted(env.found_docs - set(found))]
 
 
+#: It stands in for any address, so nothing in it is relative: where no address is set, the script looks for the book.
 NOT_FOUND = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8" /><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>No such page - {title}</title><meta name="robots" content="noindex">
 <style>:root {{ color-scheme: light dark }}
-body {{ max-width: 34rem; margin: 15vh auto; padding: 0 1rem; font: 1.1rem/1.6 Georgia, serif }}</style>
-</head><body><h1>There is no such page</h1>
+body {{ max-width: 34rem; margin: 15vh auto; padding: 0 1rem; font: 1.1rem/1.6 Georgia, serif;
+  background: #fdfcfa; color: #1f2328 }}
+a {{ color: #0a58ca }}
+@media (prefers-color-scheme: dark) {{ body {{ background: #16191d; color: #dfe2e6 }} a {{ color: #8ab8ff }} }}</style>
+</head><body><main><h1>There is no such page</h1>
 <p>It may have been moved, or the address is not whole. Everything in <i>{title}</i> is one step from its
-<a href="{front}index.html">front page</a>, and can be <a href="{front}search.html">searched</a>.</p></body></html>
+<a href="{front}index.html">front page</a>, and can be <a href="{front}search.html">searched</a>.</p></main>
+<script>
+(async () => {{
+  // The book begins at the deepest folder of this address in which it says what it is.
+  for (let folder = new URL("./", location.href); ; folder = new URL("../", folder)) {{
+    const answer = await fetch(new URL("manifest.webmanifest", folder)).catch(() => null);
+    const found = answer?.ok && await answer.json();
+    if (found?.name === document.querySelector("i").textContent) {{
+      for (const link of document.links) link.href = new URL(link.getAttribute("href").split("/").at(-1), folder);
+      break;
+    }}
+    if (folder.pathname === "/") break;
+  }}
+}})().catch(() => {{}});
+</script></body></html>
 """
 
 

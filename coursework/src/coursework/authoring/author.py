@@ -471,16 +471,18 @@ def _replay(results):
     return lambda *arguments: next(following)
 
 
-def to_page(markdown):
-    """Markdown of an author as HTML."""
+def to_page(markdown, formula=None):
+    """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is otherwise left to whoever shows it."""
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-    def formula(content, options):
+    def written(content, options):
+        if formula is not None:
+            return formula(content)
         mark = "$$" if options["display_mode"] else "$"
         return f"{mark}{html.escape(content, quote=False)}{mark}"
 
-    return MarkdownIt().use(dollarmath_plugin, renderer=formula).render(markdown)
+    return MarkdownIt().use(dollarmath_plugin, renderer=written).render(markdown)
 
 
 def _demand_arguments(name, given):

@@ -24,6 +24,7 @@ def add_commands(commands):
     wheels = commands.add_parser("wheels", help="write the packages of coursework, to be installed elsewhere")
     wheels.add_argument("folder", type=Path)
     selftest = commands.add_parser("selftest", help="try every question as students will, and look for leaks")
+    selftest.add_argument("only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to try; all of them")
     selftest.add_argument(
         "--sources", type=Path, help="folder of the notebooks with solutions, if not as course.toml says"
     )
@@ -71,12 +72,12 @@ def trial(name, page):
     print(f"The page: {show(course, name, page or course.archive.with_name('try.html'))}")
 
 
-def selftest(page, budget, **folders):
+def selftest(only, page, budget, **folders):
     from .selftest import selftest as try_all
 
     course = _course(**folders)
     page = page or course.archive.with_name("selftest.html")
-    faults = try_all(course, page, budget)
+    faults = try_all(course, page, budget, only)
     print(f"The page: {page}")
     if faults:
         sys.exit("\n".join(faults))

@@ -6,13 +6,16 @@ bytes. :mod:`coursework.authoring.packing` makes the archive that students downl
 """
 
 import concurrent.futures
+import contextlib
 import copy
 import hashlib
 import json
 import os
+import platform
 import re
 import shutil
 import tempfile
+from importlib import metadata
 from pathlib import Path
 
 from ..checking import sealing
@@ -198,9 +201,12 @@ def _release_one(path, course):
 def _release_variant(path, number, pages, course):
     """Solve, try and seal one variant of a notebook's questions.
 
-    What came of it is kept beside the archive, under a name that follows from the source and from our code.
+    What came of it is kept beside the archive, under a name that follows from all that it was made with: the source,
+    our code, the versions of what computes the answers, and the pages of the first variant, to which its own point.
     """
-    digest = hashlib.sha256(f"{course.edition}\n{number}\n{digest_of_code()}\n".encode() + path.read_bytes())
+    first = (course.sealed / f"{path.stem}.json").read_text("utf8")
+    digest = hashlib.sha256("\n".join([course.edition, str(number), digest_of_code(), *_versions(), first]).encode())
+    digest.update(path.read_bytes())
     kept = course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
     if not kept.exists():
         source = read_source(path, number, course.edition)
@@ -211,11 +217,18 @@ def _release_variant(path, number, pages, course):
         kept.parent.mkdir(parents=True, exist_ok=True)
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()
-        first = json.loads((course.sealed / f"{path.stem}.json").read_text("utf8"))["questions"]
-        kept.write_text(sealed_file(source, first, pages), "utf8")
+        kept.write_text(sealed_file(source, json.loads(first)["questions"], pages), "utf8")
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
+
+
+def _versions():
+    """What computes the answers of a notebook, with its version, as far as it is installed."""
+    yield platform.python_version()
+    for name in ("mpmath", "sympy", "numpy", "scipy", "matplotlib"):
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            yield f"{name} {metadata.version(name)}"
 
 
 def _even_out(name, code, course):
@@ -276,14 +289,8 @@ def release(course, only=(), run=True, variants=None):
     AuthorError
         A question is not well posed, or the folders hold what these sources do not make. Nothing is ever deleted.
     """
-    paths = notebooks_in(course.sources)
-    known = {path.stem for path in paths}
-    _demand_sources(course, known)
-    unknown = sorted(set(only) - known)
-    if unknown:
-        raise AuthorError(f"There is no {unknown[0]}.ipynb in {course.sources}; there are {', '.join(sorted(known))}.")
-    if only:
-        paths = [path for path in paths if path.stem in only]
+    _demand_sources(course, {path.stem for path in notebooks_in(course.sources)})
+    paths = notebooks_in(course.sources, only)
     for folder in (course.exercises, course.sealed):
         folder.mkdir(parents=True, exist_ok=True)
     if course.moved:

@@ -342,8 +342,8 @@ def found_in(texts, secrets):
 # --- the page -----------------------------------------------------------------------------------
 
 
-def selftest(course, page=None, budget=BUDGET):
-    """Try all questions of a course, look for leaks, and write the page.
+def selftest(course, page=None, budget=BUDGET, only=()):
+    """Try all questions of a course, or of the notebooks that are named, look for leaks, and write the page.
 
     Returns
     -------
@@ -355,7 +355,9 @@ def selftest(course, page=None, budget=BUDGET):
     AuthorError
         There is nothing to try, or a notebook cannot be read.
     """
-    paths, declared = notebooks_in(course.sources), declared_strengths(course.sources)
+    paths, declared = notebooks_in(course.sources, only), declared_strengths(course.sources)
+    if only:
+        declared = {name: tries for name, tries in declared.items() if name.partition("/")[0] in only}
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         tried = list(pool.map(_try_notebook, paths, [course] * len(paths), [budget] * len(paths)))
     findings = [finding for found, _ in tried for finding in found]

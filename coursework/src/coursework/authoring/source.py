@@ -75,13 +75,13 @@ class Source(NamedTuple):
     asks_who: bool
 
 
-def notebooks_in(folder):
-    """The notebooks with solutions of a folder.
+def notebooks_in(folder, only=()):
+    """The notebooks with solutions of a folder, or those of them that are named.
 
     Raises
     ------
     AuthorError
-        There is none.
+        There is none, or none of a name.
     """
     found = sorted(Path(folder).glob("*.ipynb"))
     if not found:
@@ -89,7 +89,11 @@ def notebooks_in(folder):
             f"There is no notebook with solutions in {folder}. If the solutions are kept in a private repository, "
             "get them first; without them everything builds, but nothing is released or graded."
         )
-    return found
+    unknown = sorted(set(only) - {path.stem for path in found})
+    if unknown:
+        known = ", ".join(path.stem for path in found)
+        raise author.AuthorError(f"There is no {unknown[0]}.ipynb in {folder}; there are {known}.")
+    return [path for path in found if not only or path.stem in only]
 
 
 @functools.cache
@@ -123,7 +127,7 @@ def too_heavy(question, declared):
     )
 
 
-def read_source(path, variant=0, edition="", only=None):
+def read_source(path, variant=0, edition="", only=None, pictures=None):
     """Run a notebook with solutions and give its questions.
 
     Parameters
@@ -134,7 +138,9 @@ def read_source(path, variant=0, edition="", only=None):
     edition : str
         Of a course: each edition draws afresh.
     only : collection of str, optional
-        The questions that are wanted, without their pictures: cells that these do not need are not run.
+        The questions that are wanted: cells that these do not need are not run.
+    pictures : bool, optional
+        Whether the pictures of variants are drawn; if nothing is said, where all questions are wanted.
 
     Raises
     ------
@@ -185,7 +191,7 @@ def read_source(path, variant=0, edition="", only=None):
                 "shown": {key: text for key, text in written(given[name]).items() if f"{{{{{key}}}}}" in texts[name]},
                 "given": {key: value for key, value in given[name].items() if _is_given(value)},
             } | ({"edition": edition} if edition else {})
-            if rules[name].picture and only is None:
+            if rules[name].picture and (only is None if pictures is None else pictures):
                 drawing = rules[name].picture(given[name])
                 about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
             questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
@@ -287,6 +293,19 @@ def _texts_of_variants(notebook):
             if after is None or after.cell_type != "markdown":
                 raise author.AuthorError(f"{found[1]}: the text of the question comes next after what may vary in it.")
             texts[found[1]] = after.source
+    return texts
+
+
+def texts_of_questions(notebook):
+    """The text of each question as it stands in the source: the Markdown between the check before it and its own."""
+    texts, above = {}, []
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            above.append(cell.source)
+        elif cell.cell_type == "code":
+            found = checked_names(type(notebook)(cells=[cell]))
+            texts |= dict.fromkeys(found, "\n\n".join(above))
+            above = [] if found else above
     return texts
 
 

@@ -140,7 +140,9 @@ def _offer_sibling(reply, question, help_had):
     asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.get("variants", 1))
     if not help_had:
-        reply.messages += [f"Solved without help, so it counts for `{asked}` in full."] if order else []
+        reply.messages += (
+            [f"Solved without help: with a right answer to `{asked}` itself, it counts in full."] if order else []
+        )
     elif siblings:
         said = f"You had help: {HELP.get(help_had, 'it was shown')}."
         if order == len(siblings):

@@ -15,6 +15,13 @@ MP.dps = 40
 #: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
 ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
+#: Below ten to this power a number is not worked with: what is done with it takes memory in the size of the exponent.
+SMALLEST = -1_000_000
+#: The smaller part of a complex number of which the larger one is this many powers of two larger is taken for nothing:
+#: no digit depends on it, and some functions would write out every place between the two.
+APART = 20_000
+#: A decimal exponent beyond which a number is not read by writing it out.
+LONG_EXPONENT = 400
 #: Work on one answer at one point, in additions of real numbers; others cost as many as they take. An
 #: honest answer of thousands of nodes stays far below; a hostile one would take a minute.
 MOST_WORK = 100_000
@@ -107,7 +114,7 @@ def _value(node, results, point):
     if operation == "rational":
         return MP.mpf(int(rest[0])) / int(rest[1])
     if operation == "float":
-        return _bounded(MP.mpf(rest[0]))
+        return _bounded(_float(rest[0]))
     if operation == "constant":
         if rest[0] in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero
             raise Undefined("division by zero")
@@ -131,13 +138,35 @@ def _value(node, results, point):
     return _bounded(FUNCTIONS[operation](*map(number, arguments)))
 
 
+def _float(text):
+    """The number that digits with a point and an exponent stand for."""
+    digits, _, exponent = text.lower().partition("e")
+    if len(exponent.lstrip("+-0")) <= 3 and abs(int(exponent or 0)) <= LONG_EXPONENT:
+        return MP.mpf(text)
+    number = MP.mpf(digits)
+    if number and not exponent.startswith("-") and int(exponent) > 2 * LONG_EXPONENT:
+        raise TooLarge("the value is beyond 10^60")
+    if number and int(exponent) < 2 * SMALLEST:
+        raise NotSupported(SMALL)
+    return number * MP.power(10, int(exponent)) if number else number
+
+
+SMALL = "a number below 10^-1000000"
+
+
 def _bounded(result):
+    if isinstance(result, MP.mpc) and result.real and result.imag:
+        between = MP.mag(result.real) - MP.mag(result.imag)
+        if abs(between) > APART:
+            result = MP.mpc(result.real, 0) if between > 0 else MP.mpc(0, result.imag)
     if MP.isnan(result):
         raise Undefined("no number")
     if MP.isinf(result):
         raise Undefined("infinite")
     if abs(result) > LARGEST:
         raise TooLarge("the value is beyond 10^60")
+    if result and MP.mag(result) < SMALLEST * 10 // 3:
+        raise NotSupported(SMALL)
     return result
 
 

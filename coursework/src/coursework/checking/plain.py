@@ -587,7 +587,7 @@ def _connected(frames):
 
 
 _DIGITS = re.compile(rf"-?[0-9]{{1,{LONGEST_INTEGER + 10}}}")
-_FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,6})?|[-+]?inf|[-+]?nan", re.I)
+_FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,40})?|[-+]?inf|[-+]?nan", re.I)
 _NAME = re.compile(r"\w{1,60}", re.ASCII)
 
 

@@ -33,6 +33,11 @@ def add_commands(commands):
         action="store_true",
         help="run student code although this machine cannot keep it apart; only on a machine you can lose",
     )
+    grade.add_argument(
+        "--as-listed",
+        action="store_true",
+        help="go on although many notebooks say that they are of somebody else than the list shows",
+    )
     regrade = commands.add_parser(
         "regrade", help="judge the stored answers again, after a question or a decision changed"
     )
@@ -75,7 +80,18 @@ def add_commands(commands):
         help="what a column is called there, in a gradebook of another language: --name 'identifier=ID'",
     )
     export.add_argument(
-        "--overwrite", action="store_true", help="fill in also where something else stands; otherwise it stays"
+        "--rules", metavar="FILE.toml", help="the rules of the term: what is late costs points, who is excused has none"
+    )
+    export.add_argument(
+        "--as-graded", action="store_true", help="hand on the points as graded, although the term has rules"
+    )
+    export.add_argument("--dry-run", action="store_true", help="say what would be filled in, and write nothing")
+    export.add_argument(
+        "--overwrite",
+        action="append",
+        default=[],
+        metavar="STUDENT",
+        help="fill in also where somebody entered another mark for this student; an excuse stays",
     )
     export.add_argument("--assignment", help="the assignment whose points are handed on, if there are several")
     export.add_argument(
@@ -212,30 +228,55 @@ def _is_here(store, decision):
 
 
 def term(out, rules, earlier):
-    from .judging.term import BadRules, read_rules
+    from .judging.term import BadRules, keep_rules, read_rules
     from .reporting.course_pages import FOLDER, write_course
     from .store import Store
 
     try:
         said = write_course(Store(out), read_rules(rules), earlier=earlier)
+        keep_rules(Store(out), rules)
     except BadRules as error:
         sys.exit(f"coursework term: {error}")
     print(*said, f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it", sep="\n")
 
 
-def export(out, lms, filled, column, name, overwrite, assignment, feedback, nbgrader, gradescope, student):
+def export(
+    out,
+    lms,
+    filled,
+    column,
+    name,
+    rules,
+    as_graded,
+    dry_run,
+    overwrite,
+    assignment,
+    feedback,
+    nbgrader,
+    gradescope,
+    student,
+):
     from .export import gradebooks
+    from .judging.term import BadRules, read_rules, rules_of
     from .store import Store
 
     if not (lms or feedback or nbgrader or gradescope):
         sys.exit("coursework export: name what to write: --lms, --feedback, --nbgrader or --gradescope.")
     try:
         store = Store(out)
-        marks = gradebooks.Marks(store, assignment)
+        known = None if as_graded else rules or rules_of(store)
+        if known and not rules and (lms or nbgrader):
+            raise gradebooks.CannotExport(
+                f"The term has rules, {known}, and these would be the points before them. Say --rules {known}, or "
+                "--as-graded."
+            )
+        marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None)
         if lms:
             names = dict(one.partition("=")[::2] for one in name)
-            said = gradebooks.fill(lms, marks, column, filled, names, overwrite)
+            said = gradebooks.fill(lms, marks, column, filled, names, overwrite, dry_run)
             print(*said, sep="\n")
+        if dry_run:
+            return
         if feedback:
             written = gradebooks.write_feedback(feedback, marks, store)
             print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
@@ -243,7 +284,7 @@ def export(out, lms, filled, column, name, overwrite, assignment, feedback, nbgr
             gradebooks.write_nbgrader(nbgrader, marks)
         if gradescope:
             gradebooks.write_gradescope(gradescope, marks, student)
-    except gradebooks.CannotExport as error:
+    except (gradebooks.CannotExport, BadRules, ValueError) as error:
         sys.exit(f"coursework export: {error}")
 
 
@@ -264,6 +305,19 @@ def sample_class(out, students, seed, notebooks, solutions, layout):
     print(f"{students} students in {made}")
 
 
+def _told(name, command):
+    """A command that says what the system refused, in place of where in the code that happened."""
+
+    def told(**options):
+        try:
+            return command(**options)
+        except OSError as error:
+            where = f": {error.filename}" if error.filename else ""
+            sys.exit(f"coursework {name}: {error.strerror or error}{where}")
+
+    return told
+
+
 COMMANDS = {
     "grade": grade,
     "regrade": regrade,
@@ -274,3 +328,4 @@ COMMANDS = {
     "gradescope": gradescope,
     "sample-class": sample_class,
 }
+COMMANDS = {name: _told(name, command) for name, command in COMMANDS.items()}

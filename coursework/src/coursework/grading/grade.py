@@ -19,18 +19,21 @@ from typing import NamedTuple
 
 from ..authoring.course import edition_of, find_course, links_of
 from ..checking.plugins import kinds
+from ..checking.variants import plain_identity
 from .judging import marking
 from .judging import secret as in_secret
-from .judging.ledger import DECISIONS, Ledger, digest_of_answer
+from .judging.cases import Contracts
+from .judging.judge import Judge
+from .judging.ledger import DECISIONS, Ledger, with_decisions
 from .judging.secret import secret_beside
-from .store import FORMAT, Store, as_text, write
+from .store import FORMAT, REFUSED, Store, as_text, write
 from .submissions import intake
 from .submissions.identity import BadRoster, Roster
 from .tables import in_a_line, lines, number
 from .versions import software
 from .workers import processors, side_by_side
 
-REFUSED, COURSE, WHOSE, ROSTER = "refused.json", "course.json", "whose.csv", "roster.json"
+COURSE, WHOSE, ROSTER = "course.json", "whose.csv", "roster.json"
 
 
 MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
@@ -155,6 +158,7 @@ def grade(
     workers=None,
     scheduler=None,
     allow_weak_isolation=False,
+    as_listed=False,
     limits=None,
     show=None,
 ):
@@ -178,6 +182,8 @@ def grade(
     scheduler : str, optional
         The address of a Dask cluster.
     allow_weak_isolation : bool
+    as_listed : bool
+        Go on although many notebooks say that they are somebody else's.
     limits : Limits, optional
     show : file, optional
         Where it says how far it is.
@@ -203,20 +209,26 @@ def grade(
     roster = Roster(roster) if roster else None
     if student is not None and roster and student not in roster.people:
         raise BadRoster(f"There is no student {student!r} in the roster.")
-    with store.locked():
+    with contextlib.ExitStack() as closing:
+        closing.enter_context(store.locked())
         course = Course(solutions, assignments)
         try:
             notebooks, refused = intake.take_in(submissions, course.assignments, roster, student)
         except intake.Unfit as error:
             raise NothingToGrade(str(error)) from None
+        if not notebooks and not refused:
+            raise NothingToGrade(f"There is nothing in {submissions}: no notebook, and no other file.")
         work = sort_work(notebooks, course, refused)
         _say_whose(work, refused, roster, store, show)
+        foreign = _say_foreign(work, course, show)
         if roster:
             write(store.folder / ROSTER, as_text(sorted(roster.people)))
         if only_list:
             return {"graded": 0, "kept": 0, "refused": len(refused)}
         _demand_a_class(work, roster, student)
         questions = course.questions(sorted({one.assignment for one in work}), store.folder / "questions")
+        if not as_listed:
+            _demand_own_numbers(work, questions, foreign, roster)
         known = _read(store.folder / COURSE)
         write(store.folder / COURSE, as_text({**known, **course.assignments}))
         ledger = Ledger(store.folder)
@@ -235,15 +247,23 @@ def grade(
             file=show,
         )
         store.log(f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on {platform.node()}")
-        jobs, decisions = _Jobs(waiting, questions, store), ledger.current()
+        decisions, contracts = ledger.current(), Contracts(store.folder)
+
+        def before(one):
+            """The record of the same student before, from which it is known which variants are whose."""
+            return store.read(one.student, one.assignment)
+
+        jobs = _Jobs(waiting, questions, store, contracts, before)
+        judge = closing.enter_context(Judge(questions, contracts, store.log))
 
         def finish(order, results):
             """Judge one student's work, and write its record."""
             one = waiting[order]
             asked = questions[one.assignment]
-            of_student = marking.of_student(asked, one.student)
+            of_student, cases = marking.of_student(asked, one.student, before(one), contracts)
             record = record_of(one, results, key(one), of_student, limits)
-            store.save(marked(record, asked, decisions))
+            record["cases"] = {name: case.answered(of_student[name]).as_json() for name, case in cases.items()}
+            store.save(marked(record, judge, decisions))
             return order, record["notebooks"][0]["isolation"]
 
         progress = _Progress(len(waiting), show)
@@ -258,7 +278,7 @@ def grade(
         # What was kept may have been decided on since.
         for one in kept:
             record = store.read(one.student, one.assignment)
-            again = marked(record, questions[one.assignment], decisions)
+            again = marked(record, judge, decisions)
             if again != record:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
@@ -266,6 +286,7 @@ def grade(
         reports.write_all(store)
         store.log("end")
     _say_guessable(questions, show)
+    _say_other_numbers(store, work, questions, show)
     return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
 
 
@@ -275,14 +296,14 @@ def _say_whose(work, refused, roster, store, show):
     def rows():
         for one in work:
             for notebook in (*one.notebooks, *one.superseded):
-                yield one.student, one.assignment, notebook.file, notebook.matched
+                yield one.student, one.assignment, notebook.file, notebook.matched, notebook.says
 
-    write(store.folder / WHOSE, lines(("student", "assignment", "file", "known by"), rows()))
+    write(store.folder / WHOSE, lines(("student", "assignment", "file", "known by", "says it is of"), rows()))
     around = {one.file.partition(one.claim.place)[0].strip("/") for each in work for one in each.notebooks} - {""}
     if len(around) == 1:
         (folder,) = around
         print(f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for nobody's name.", file=show)
-    for student, assignment, file, matched in itertools.islice(rows(), MOST_SHOWN):
+    for student, assignment, file, matched, _ in itertools.islice(rows(), MOST_SHOWN):
         print(f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})", file=show)
     more = sum(len(one.notebooks) + len(one.superseded) for one in work) - MOST_SHOWN
     if more > 0:
@@ -291,10 +312,80 @@ def _say_whose(work, refused, roster, store, show):
     for one in asked[:MOST_SHOWN]:
         print(f"  ? <- {in_a_line(one.file, 120)}: {in_a_line(one.why, 300)}", file=show)
     if roster:
-        missing = sorted(set(roster.people) - {one.student for one in work})
-        if missing:
-            shown = ", ".join(missing[:MOST_SHOWN]) + (", ..." if len(missing) > MOST_SHOWN else "")
-            print(f"Of the roster, {len(missing)} handed in nothing: {shown}.", file=show)
+        damaged = {one.student for one in refused} & set(roster.people) - {one.student for one in work}
+        missing = sorted(set(roster.people) - {one.student for one in work} - damaged)
+        for names, what in ((missing, "handed in nothing"), (sorted(damaged), "handed in what cannot be graded")):
+            if names:
+                shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
+                print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
+
+
+def _say_foreign(work, course, show):
+    """Say which notebooks say that they are of somebody else than whose they are graded as; give these."""
+    foreign = [
+        (one, notebook)
+        for one in work
+        for notebook in one.notebooks
+        if notebook.says and plain_identity(notebook.says) != plain_identity(one.student)
+    ]
+    for one, notebook in foreign[:MOST_SHOWN]:
+        print(
+            f"  ! {in_a_line(notebook.file, 120)} says that it is of {in_a_line(notebook.says, 60)!r}, and is graded "
+            f"as that of {in_a_line(one.student, 60)!r}",
+            file=show,
+        )
+    if len(foreign) > MOST_SHOWN:
+        print(f"  ... and {len(foreign) - MOST_SHOWN} more.", file=show)
+    return foreign
+
+
+#: Of the notebooks that say whose they are, so many may be wrong before it is the roster that is.
+FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
+
+
+def _demand_own_numbers(work, questions, foreign, roster):
+    """Numbers follow from who one is: where many say to be somebody else, all would be judged by wrong numbers."""
+    varied = {name for name, asked in questions.items() if any("others" in one for one in asked.values())}
+    saying = sum(bool(notebook.says) for one in work if one.assignment in varied for notebook in one.notebooks)
+    wrong = [(one, notebook) for one, notebook in foreign if one.assignment in varied]
+    if len(wrong) <= max(FEW_FOREIGN, SHARE_FOREIGN * saying):
+        return
+    (one, notebook), *_ = wrong
+    why = (
+        "The roster knows them by another word than they wrote: of `student`, `email` and `name` the first column that "
+        "it has is the one that their numbers follow from."
+        if roster
+        else "Give the --roster in which they are called as they wrote, or name their folders so."
+    )
+    raise NothingToGrade(
+        f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else than they are graded "
+        f"as: {notebook.says!r} as {one.student!r}, say. Each student's numbers follow from that word, so their "
+        f"answers would be judged by other numbers than they were given. {why} If all of it is right as it is listed: "
+        "--as-listed."
+    )
+
+
+#: From this share of the answers to questions with variants on, right answers to other numbers are no accident.
+MANY_OTHER_NUMBERS = 0.1
+
+
+def _say_other_numbers(store, work, questions, show):
+    """Say it where many answers are right for other numbers than those that their authors are believed to have had."""
+    for assignment, asked in questions.items():
+        varied = {name for name, question in asked.items() if "others" in question}
+        given = other = 0
+        for one in work:
+            record = store.read(one.student, assignment) if varied and one.assignment == assignment else None
+            for name, mark in record["marks"].items() if record else ():
+                given += name in varied and mark["outcome"] != "not attempted"
+                other += mark["note"] == "other numbers"
+        if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
+            print(
+                f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for other numbers than "
+                "those of the student whose they are, and earn nothing. Are the students called here as they have "
+                "written into their notebooks? If not, grade again with the right --roster: nothing is lost.",
+                file=show,
+            )
 
 
 def _demand_a_class(work, roster, student):
@@ -347,6 +438,8 @@ def _put_renamed_aside(store, work, ledger):
 
 
 def _take_in_decisions(ledger, store, show):
+    if said := ledger.said_of_cut():
+        print(said, file=show)
     for line in ledger.take_in_table(store.folder / DECISIONS, store.all()):
         print(f"{DECISIONS}, not used: {line}.", file=show)
 
@@ -388,7 +481,10 @@ def key_of(work, questions, limits, weak):
         ],
         [notebook.digest for notebook in work.superseded],
         reply_of(work),
-        {name: question["version"] for name, question in questions.items()},
+        {
+            name: [one["version"] for one in (question, *question.get("others", []))]
+            for name, question in questions.items()
+        },
         vars(limits),
         weak,
         software(),
@@ -404,10 +500,12 @@ def reply_of(work):
 class _Jobs:
     """The jobs of the sandbox, one for each notebook, and which work each belongs to."""
 
-    def __init__(self, work, questions, store):
+    def __init__(self, work, questions, store, contracts, before):
         self.work = work
         self.questions = questions
         self.store = store
+        self.contracts = contracts
+        self.before = before
 
     def __len__(self):
         return sum(len(one.notebooks) for one in self.work)
@@ -420,7 +518,7 @@ class _Jobs:
         """The jobs of one student's work."""
         one = self.work[order]
         named = {name for notebook in one.notebooks for name in notebook.named}
-        own = marking.of_student(self.questions[one.assignment], one.student)
+        own, _ = marking.of_student(self.questions[one.assignment], one.student, self.before(one), self.contracts)
         asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
         for_a_person = any(kinds()[question["public"]["kind"]].by_a_person for question in own.values())
         for part, notebook in enumerate(one.notebooks):
@@ -538,6 +636,7 @@ def record_of(work, results, key, questions, limits):
         "student": work.student,
         "assignment": work.assignment,
         "identity": work.notebooks[0].identity,
+        "says": sorted({notebook.says for notebook in work.notebooks if notebook.says}),
         "reply": reply_of(work),
         "notebooks": notebooks,
         "superseded": [{"file": notebook.file, "sha256": notebook.digest} for notebook in work.superseded],
@@ -558,39 +657,17 @@ def _says_little(answer):
     )
 
 
-#: How a cell ends that a limit ended: what is missing then may have been lost to it.
-BY_A_LIMIT = ("timeout", "memory", "disk", "output")
-
-
-def marked(record, questions, decisions=None):
+def marked(record, judge, decisions=None):
     """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
-    limited = any(
-        cell["outcome"] in BY_A_LIMIT or "SIGKILL" in cell.get("error", "")
-        for notebook in record["notebooks"]
-        for cell in notebook["cells"]
-    )
-    marks = {}
-    for name, question in marking.of_student(questions, record["student"]).items():
-        found = marking.mark_with_siblings(
-            name, question, record["answers"], record.get("remembered", {}), record["finished"], limited
-        )
-        decided = (decisions or {}).get((record["student"], record["assignment"], name))
-        if decided is not None and decided.answer == digest_of_answer(record, name):
-            found |= {
-                "outcome": "decided",
-                "points": round(question["worth"] * decided.credit, 4),
-                "messages": [said for said in (*decided.rubric, decided.comment) if said],
-                "before": {key: found[key] for key in ("outcome", "note", "points", "messages")},
-                "decided": {"who": decided.who, "when": decided.when, "id": decided.id},
-            }
-        marks[name] = {**found, "title": question["title"]}
-    return {
-        **record,
-        "marks": marks,
-        "points": round(sum(mark["points"] for mark in marks.values()), 4),
-        "worth": sum(mark["worth"] for mark in marks.values()),
-        "undecided": sum(mark["outcome"] == "undecided" for mark in marks.values()),
-    }
+    own, cases = marking.of_student(judge.questions[record["assignment"]], record["student"], record, judge.contracts)
+    for question in own.values():
+        for one in (question, question.get("contract"), *question.get("second chances", {}).values()):
+            if one is not None:
+                judge.contracts.keep(one)
+    found = judge.marks(record)
+    marks = {name: {**found[name], "title": question["title"]} for name, question in own.items()}
+    cases = {name: case.as_json() for name, case in cases.items()}
+    return with_decisions({**record, "format": FORMAT, "cases": cases, "marks": marks}, decisions or {})
 
 
 class _Progress:
@@ -653,7 +730,8 @@ def regrade(out, *, solutions=None, show=None):
     from .reporting import reports
 
     store = Store(out)
-    with store.locked():
+    with contextlib.ExitStack() as closing:
+        closing.enter_context(store.locked())
         names = sorted({record["assignment"] for record in store.all()})
         if not names:
             raise NothingToGrade(f"There are no records in {store.folder}.")
@@ -669,8 +747,9 @@ def regrade(out, *, solutions=None, show=None):
         ledger = Ledger(store.folder)
         _take_in_decisions(ledger, store, show or sys.stderr)
         decisions, moved = ledger.current(), []
+        judge = closing.enter_context(Judge(questions, Contracts(store.folder), store.log))
         for record in store.all():
-            again = marked(record, questions[record["assignment"]], decisions)
+            again = marked(record, judge, decisions)
             if again == record:
                 continue
             store.save(again)

@@ -18,12 +18,16 @@ from urllib.parse import urlencode
 from markupsafe import Markup
 from tornado import httpserver, ioloop, netutil, web
 
-from .judging.ledger import Ledger, digest_of_answer
+from ..authoring.author import to_page
+from ..checking.variants import plain_identity, text_of
+from .judging.cases import Contracts
+from .judging.ledger import Collision, Ledger, digest_of_answer
 from .reporting import pages
 from .reporting.mathematics import answer_as_mathematics
 from .reporting.reports import deed
 from .reporting.templates_of_pages import ENVIRONMENT
 from .store import Store
+from .submissions.intake import SAYS
 from .tables import readable
 
 ALONE = "127.0.0.1"
@@ -54,6 +58,8 @@ MOST_ABOVE = 4  # cells above the one of an answer that are shown first
 #: Code that fewer share is worth a look; code that more share is what everybody writes.
 FEW = 0.05
 SHORTEST_CODE = 60
+#: What is shorter is no name that is looked for in what was written.
+SHORTEST_NAME = 3
 
 
 class Cluster(NamedTuple):
@@ -105,8 +111,10 @@ class Class:
             )
             for name, about in self.store.json_in(path).items()
         }
+        self.contracts = Contracts(self.store.folder)
         self.records = list(self.store.all())
         self.aliases = {student: f"student {order}" for order, student in enumerate(self._shuffled(), 1)}
+        self._know_names()
         hints = hints_of(self.records, self.store.work)
         groups = defaultdict(list)
         for record in self.records:
@@ -114,13 +122,43 @@ class Class:
                 judged = mark.get("before", mark)
                 # An answer that has a fingerprint is equal to those that share it; another one to its very copies.
                 same = mark["group"] or digest_of_answer(record, question)
-                groups[record["assignment"], question, judged["outcome"], judged["note"], same].append(record)
+                # Equal words to other numbers are another answer: each variant has a right answer of its own.
+                groups[record["assignment"], question, mark["version"], judged["outcome"], judged["note"], same].append(
+                    record
+                )
         self.clusters = {}
         for key, members in groups.items():
             name = hashlib.sha256("\n".join(key).encode()).hexdigest()[:16]
             if int(name, 16) % share[1] == share[0] - 1:
                 found = [(one["student"], said) for one in members for said in hints.get((one["student"], key[1]), ())]
                 self.clusters[name] = Cluster(name, key[0], key[1], members, found)
+
+    def contract(self, cluster):
+        """The question by which the answers of a cluster were judged: these students' own variant; or nothing."""
+        return self.contracts.of(cluster.mark["version"]) or {}
+
+    def without_names(self, text):
+        """A text in which who wrote it, and everybody else in the class, is called by a number."""
+        if not text:
+            return text
+        said = SAYS.sub(lambda found: found[0].replace(found["who"], self._alias(found["who"])), text)
+        return self._names.sub(lambda found: self._alias(found[0]), said) if self._names else said
+
+    def _alias(self, name):
+        return self._known.get(plain_identity(name), "somebody")
+
+    def _know_names(self):
+        """All that students are called, in records and by themselves."""
+        self._known = {}
+        for record in self.records:
+            identity = record["identity"]
+            called = [record["student"], *(identity.get(kind, "") for kind in ("name", "email", "canvas", "moodle"))]
+            for name in [*called, *identity.get("own", ()), *record.get("says", ())]:
+                if len(name) >= SHORTEST_NAME:
+                    self._known.setdefault(plain_identity(name), self.aliases[record["student"]])
+        longest_first = sorted(self._known, key=len, reverse=True)
+        joined = "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first)
+        self._names = re.compile(rf"(?<!\w)(?:{joined})(?!\w)", re.I) if joined else None
 
     def _shuffled(self):
         """The students in an order that follows from their names, and does not tell them."""
@@ -139,7 +177,12 @@ class Class:
         found = current.get((record["student"], cluster.assignment, cluster.question))
         return found if found and found.answer == digest_of_answer(record, cluster.question) else None
 
-    def chosen(self, filters):
+    @staticmethod
+    def decision_on(cluster, record, current):
+        """What was decided last, be it on this answer or on one that was handed in before it."""
+        return current.get((record["student"], cluster.assignment, cluster.question))
+
+    def chosen(self, filters, hide_names=False):
         """The clusters that a grader wants to see, the largest of each question first."""
         current, text = self.ledger.current(), filters.get("search", "").casefold()
         orders = {name: order for order, name in enumerate(self.questions)}
@@ -156,13 +199,14 @@ class Class:
                 continue
             if filters.get("question") and filters["question"] != cluster.question:
                 continue
-            if text and text not in self.searchable(cluster):
+            if text and text not in self.searchable(cluster, hide_names):
                 continue
             found.append(cluster)
         return sorted(found, key=lambda one: (one.assignment, orders.get(one.question, 0), -len(one.members), one.id))
 
-    def searchable(self, cluster):
-        students = " ".join(record["student"] for record in cluster.members)
+    def searchable(self, cluster, hide_names=False):
+        names = self.aliases if hide_names else {}
+        students = " ".join(names.get(record["student"], record["student"]) for record in cluster.members)
         said = " ".join(cluster.mark["messages"])
         answer = pages.answer_as_text(cluster.answer.get("plain"), 2_000)
         return (
@@ -305,6 +349,7 @@ class _Page(web.RequestHandler):
                 grader=settings["grader"],
                 shown=SHOWN,
                 name_of=name_of,
+                hidden=self.graded.without_names if names else lambda text: text,
                 query=lambda **changed: urlencode({key: value for key, value in changed.items() if value}),
                 **about,
             )
@@ -316,7 +361,7 @@ class _Overview(_Page):
         filters, graded = self.filters(), self.graded
         graded.ledger.read()
         current = graded.ledger.current()
-        found = graded.chosen(filters)
+        found = graded.chosen(filters, self.settings["hide_names"])
         outcomes = {cluster.id: graded.outcome(cluster, current) for cluster in found}
         left = [one for one in graded.chosen({"show": "waiting"})]
         worth = Counter()
@@ -337,17 +382,22 @@ class _Overview(_Page):
 
 class _Answer(_Page):
     def get(self, secret, name):
-        graded, filters = self.graded, self.filters()
-        cluster = graded.clusters.get(name)
+        cluster = self.graded.clusters.get(name)
         if cluster is None:
             raise web.HTTPError(404)
+        self.show_cluster(cluster, self.filters())
+
+    def show_cluster(self, cluster, filters, collision=None, comment="", why=""):
+        graded, name = self.graded, cluster.id
         graded.ledger.read()
         current = graded.ledger.current()
-        order = [one.id for one in graded.chosen(filters)]
+        order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         place = order.index(name) if name in order else None
-        about = graded.questions.get(cluster.question, {})
+        about = graded.contract(cluster)
         chosen = self.get_argument("member", "")
-        record = next((one for one in cluster.members if one["student"] == chosen), cluster.members[0])
+        place_of = {str(number): one for number, one in enumerate(cluster.members)}
+        record = place_of.get(chosen, cluster.members[0])
+        seen = [graded.decision_on(cluster, one, current) for one in cluster.members]
         cells, near, pictures = graded.cells(cluster, record)
         judged = cluster.mark.get("before", cluster.mark)
         self.show(
@@ -364,6 +414,10 @@ class _Answer(_Page):
             cells=cells,
             near=near,
             pictures=pictures,
+            collision=collision,
+            seen=" ".join(one.id if one else NONE for one in seen),
+            comment=comment,
+            why=why,
             decisions={one["student"]: graded.decision(cluster, one, current) for one in cluster.members},
             history=[
                 one
@@ -371,6 +425,7 @@ class _Answer(_Page):
                 if (one.assignment, one.question) == (cluster.assignment, cluster.question)
                 and one.student in {member["student"] for member in cluster.members}
             ],
+            asked=Markup(_as_asked(about)),
             right=Markup(answer_as_mathematics(about.get("plain"))),
             right_text=pages.answer_as_text(about.get("plain"), 2_000),
             answer=Markup(answer_as_mathematics(cluster.answer.get("plain"))),
@@ -390,7 +445,7 @@ class _Answer(_Page):
         cluster = graded.clusters.get(name)
         if cluster is None:
             raise web.HTTPError(404)
-        order = [one.id for one in graded.chosen(filters)]
+        order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         taken_back = self.get_argument("credit") == "back"
         try:
             points = None if taken_back else float(self.get_argument("credit").replace(",", "."))
@@ -400,25 +455,55 @@ class _Answer(_Page):
         if points is not None and not 0 <= points <= worth:
             raise web.HTTPError(400, "no such credit")
         credit = None if points is None else points / worth if worth else 0.0
-        only = self.get_argument("only", "")
-        members = [one for one in cluster.members if not only or one["student"] == only]
+        only, who = self.get_argument("only", ""), self.settings["grader"]
+        seen = dict(zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False))
+        members = [(place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))]
+        if not members:
+            raise web.HTTPError(400, "no such student")
         rubric = [line.strip() for line in self.get_arguments("rubric") if line.strip()]
+        why = self.get_argument("why", "")[:LONGEST_COMMENT].strip()
+        comment = self.get_argument("comment", "")[:LONGEST_COMMENT].strip()
+        try:
+            if taken_back:
+                graded.ledger.take_back([record for _, record in members], cluster.question, who, why)
+            else:
+                graded.ledger.append(
+                    [
+                        graded.ledger.decision(
+                            record,
+                            cluster.question,
+                            credit,
+                            who=who,
+                            comment=comment,
+                            rubric=rubric,
+                            why=why,
+                            after=seen.get(place, NONE).removeprefix(NONE),
+                        )
+                        for place, record in members
+                    ],
+                    collisions=True,
+                )
+        except Collision as error:
+            self.set_status(409)
+            self.show_cluster(cluster, filters, collision=error, comment=comment, why=why)
+            return
         self.settings["rubrics"][cluster.question].update(dict.fromkeys(rubric))
-        for record in members:
-            graded.ledger.add(
-                record,
-                cluster.question,
-                credit,
-                who=self.settings["grader"],
-                comment=self.get_argument("comment", "")[:LONGEST_COMMENT].strip(),
-                rubric=rubric,
-                why=self.get_argument("why", "")[:LONGEST_COMMENT].strip(),
-            )
         # On to the one that came next, though the list may be shorter now.
         later = order[order.index(name) + 1 :] if name in order else []
         target = later[0] if later and not only else name
         query = urlencode({key: value for key, value in filters.items() if value})
         self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
+
+
+#: What the page says in place of a decision where there is none.
+NONE = "-"
+
+
+def _as_asked(about):
+    """The text of a question as these students saw it, with their numbers; its author is trusted."""
+    if not about:
+        return ""
+    return to_page(text_of(about["public"]) or about.get("text", ""), pages.formula)
 
 
 def _prose(plain):

@@ -13,7 +13,8 @@ import re
 import secrets
 from pathlib import Path
 
-FORMAT = 2
+FORMAT = 3
+REFUSED = "refused.json"
 
 
 class InUse(RuntimeError):
@@ -151,15 +152,16 @@ def file_name(name):
     return f"{plain.lower() or 'student'}-{hashlib.sha256(name.encode('utf8', 'surrogatepass')).hexdigest()[:20]}"
 
 
-def write(path, text, lasting=True):
+def write(path, text, lasting=True, private=False):
     """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down.
 
-    ``text`` is text, bytes or pieces of text that come one after another.
+    ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds right answers:
+    nobody else who works on this machine may read it.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
     half = path.with_name(f".half-{secrets.token_hex(8)}")
-    with open(half, "wb") as file:
+    with open(os.open(half, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600 if private else 0o666), "wb") as file:
         for piece in (text,) if isinstance(text, (str, bytes)) else text:
             file.write(piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece)
         if lasting:

@@ -174,7 +174,14 @@ def bring_answers_first(target):
     page = target / APPS[0] / "index.html"
     before = page.read_text("utf8")
     start = re.compile(r"await import\(\s*'\.\./config-utils\.js")
-    wait = f"await (await import('../../{scripts.folder_name()}/notebook.js')).prepare();\n        "
+    script = f"../../{scripts.folder_name()}/notebook.js"
+    # Asked for by another name, a script that did not come is fetched once more; without it the notebook opens as it is
+    # kept here, and the page's answers come into it another time.
+    wait = (
+        f"await import('{script}').catch(() => import('{script}?again')).then((first) => first.prepare())"
+        ".catch((error) => console.warn(`The answers of the page are not in this notebook yet: ${error.message}`));\n"
+        "        "
+    )
     after, count = start.subn(lambda found: wait + found[0], before)
     if count != 1:
         raise RuntimeError(f"{page} starts in another way than it did: answers of the pages would not come into it")

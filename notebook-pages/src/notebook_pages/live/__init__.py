@@ -6,7 +6,8 @@ The site's folder ``runtime`` holds all of it, and nothing there is loaded befor
 - ``wheels/<hash>/*.whl``: SymPy, mpmath and our own packages, byte-compiled;
 - ``sealed-<hash>/``: the sealed variants of the book's questions, of which a reader's Python fetches its own;
 - ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file names of
-  wheels in it are relative to the lock file. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says;
+  wheels in it are relative to the lock file. The same list lies in ``lock-<hash>/``, for the pages of this edition,
+  which may be open when the next one comes. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says;
 - ``scripts-<hash>/``: what makes the cells of a page run in place (``js``, ``python``).
 
 Whatever else is to run Python in a browser (a notebook interface, say) needs only the address of
@@ -59,6 +60,7 @@ def add_live_code(app, pagename, templatename, context, doctree):
             "bytes": 0,  # finish.py puts in how many it takes to start Python
             "runtime": pathto(f"{runtime.FOLDER}/", 1),
             "pyodide": f"{runtime.pyodide_folder()}/",
+            "lock": "",  # finish.py puts in where the packages of this edition are listed
             "scripts": pathto(f"{scripts.folder_name()}/", 1),
             "notebook": pathto(notebook_address(pagename), 1),
             "cells": {

@@ -232,4 +232,9 @@ def write(site, setting):
     loaded = [pyodide / name for name in PYODIDE_FILES]
     loaded += [target / packages[name]["file_name"] for name in first]
     lock = {"info": official["info"], "packages": packages, "first": DISTRIBUTION, "bytes": sum(map(size, loaded))}
-    (target / LOCK).write_text(json.dumps(lock, indent=1), "utf8")
+    content = json.dumps(lock, indent=1).encode()
+    for outdated in target.glob("lock-*/"):
+        shutil.rmtree(outdated)
+    for place in (target / LOCK, target / f"lock-{sha256(content)[:12]}" / LOCK):
+        place.parent.mkdir(exist_ok=True)
+        place.write_bytes(content)

@@ -49,4 +49,4 @@ def write(site):
     esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
     shutil.copyfile(JS / "page.css", static / "live.css")
     # A service worker may act for the pages below it only.
-    esbuild(JS / "service-worker.js", f"--outfile={site / 'service-worker.js'}")
+    esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")

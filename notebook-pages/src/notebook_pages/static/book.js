@@ -90,3 +90,14 @@ document.querySelector("button.print-page")?.addEventListener("click", () => pri
 if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined") {
   DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
 }
+
+// The theme brings the contents back to where they stood on the page before; the entry of this page is to be seen.
+{
+  const entry = document.querySelector(".bd-sidebar-primary li.current > a.current");
+  const side = entry?.closest(".bd-sidebar-primary");
+  const show = () => {
+    const [box, line] = [side.getBoundingClientRect(), entry.getBoundingClientRect()];
+    if (line.top < box.top || line.bottom > Math.min(box.bottom, innerHeight)) side.scrollTop += line.top - box.top - side.clientHeight / 3;
+  };
+  if (entry) addEventListener("load", show);
+}

@@ -2,7 +2,6 @@
 {
   const table = document.querySelector("table.my-progress");
   const record = (page) => progress.all()[page] ?? { read: [], done: [], checked: [], answers: {} };
-  const plain = new Map([...table.querySelectorAll("td")].map((cell) => [cell, cell.textContent]));
   const fill = () => {
     for (const row of table.tBodies[0].rows) {
       const { read, done, checked, answers } = record(row.dataset.page);
@@ -10,7 +9,7 @@
       for (const cell of row.querySelectorAll("td")) {
         const names = cell.dataset.names.split(" ").filter(Boolean);
         const reached = names.filter((name) => all[cell.dataset.kind].includes(name));
-        cell.textContent = reached.length ? `${reached.length} of ${names.length}` : plain.get(cell);
+        if (names.length) cell.textContent = `${reached.length} of ${names.length}`; // else there is nothing to do
         if (cell.dataset.kind === "recap" && reached.length)
           cell.textContent += `, ${reached.filter((name) => answers[name].rightAtFirst).length} right at once`;
         cell.classList.toggle("whole", names.length > 0 && reached.length === names.length);

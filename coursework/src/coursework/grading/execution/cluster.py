@@ -127,7 +127,10 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
             )
         except OSError as error:
             raise ValueError(f"There is no Dask scheduler to be reached at {address} ({error}).") from None
-        client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
+        try:
+            client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
+        except OSError as error:
+            raise ValueError(f"The scheduler at {address} was lost ({error}). The same command goes on.") from None
         stack.callback(_leave, client, name)
         sent = {}
         for job in jobs:

@@ -324,14 +324,24 @@ def forbid_new_privileges():
 
 
 def user_for_students(preferred, uid_map):
-    """The user that root runs student code as: one that nobody else is, if this system has it."""
+    """The user that root runs student code as: one that nobody else is, if this system has it.
+
+    Raises
+    ------
+    RuntimeError
+        There is no other user than root here.
+    """
     if os.geteuid() != 0:
         return os.geteuid()
-    for line in uid_map.splitlines():
-        first, _, count = map(int, line.split())
-        if first <= preferred < first + count:
-            return preferred
-    return OUTSIDER
+    known = [tuple(map(int, line.split())) for line in uid_map.splitlines()]
+    for user in (preferred, OUTSIDER):
+        if any(first <= user < first + count for first, _, count in known):
+            return user
+    raise RuntimeError(
+        "Here is no other user than root, as in a container or namespace of one user, so that student code could not "
+        "be run as anybody else. Start the grading as an ordinary user, or in a container that has more users "
+        "(unshare --map-auto, podman --userns=auto)."
+    )
 
 
 def die_with_parent():

@@ -5,7 +5,9 @@ quotation marks and line ends, stays as the system wrote it, so that the system 
 student wrote gets into it.
 """
 
+import datetime
 import json
+import math
 import os
 import re
 import secrets
@@ -14,7 +16,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...checking.reply import plain_text
-from ..store import file_name, write
+from ..judging.ledger import Ledger, with_decisions
+from ..judging.term import EXCUSED, results_of, say_what_marked_costs
+from ..store import REFUSED, as_text, file_name, write
 from ..submissions.identity import local_parts
 from ..submissions.languages import LANGUAGES, in_english
 from ..tables import in_a_line, number, readable, table
@@ -40,7 +44,16 @@ class CannotExport(ValueError):
 
 
 class Marks:
-    """The points of each student, over one assignment or all.
+    """The points of each student, over one assignment or all, with all decisions, and by the rules of the term.
+
+    Parameters
+    ----------
+    store : Store
+    assignment : str, optional
+    rules : Rules, optional
+        Of the term: then lateness costs what they say, and who is excused has no points.
+    now : datetime, optional
+        As of when.
 
     Attributes
     ----------
@@ -49,8 +62,15 @@ class Marks:
         The records of each student.
     """
 
-    def __init__(self, store, assignment=None):
-        self.records = [record for record in store.all() if assignment in (None, record["assignment"])]
+    def __init__(self, store, assignment=None, rules=None, now=None):
+        self.store, self.rules = store, rules
+        decisions = Ledger(store.folder).current()
+        self.behind, self.records = 0, []
+        for record in store.all():
+            if assignment in (None, record["assignment"]):
+                decided = with_decisions(record, decisions)
+                self.behind += decided != record
+                self.records.append(decided)
         if not self.records:
             named = f" of {assignment!r}" if assignment else ""
             raise CannotExport(f"There are no records{named} in {store.folder}.")
@@ -60,9 +80,40 @@ class Marks:
             self.students.setdefault(record["student"], []).append(record)
         worth = {record["assignment"]: record["worth"] for record in self.records}
         self.worth = sum(worth.values())
+        self.results = self._results(worth, now or datetime.datetime.now(datetime.UTC)) if rules else {}
+
+    def _results(self, worth, now):
+        """What the rules make of each record, by student and assignment."""
+        unknown = [name for name in self.assignments if name not in self.rules.assignments]
+        if unknown:
+            raise CannotExport(f"The rules say nothing of {', '.join(unknown)}.")
+        found, marked = {}, []
+        for student, records in self.students.items():
+            own = {record["assignment"]: record for record in records}
+            for result in results_of(student, own, self.rules, worth, now)[0]:
+                if result.assignment in own:
+                    found[student, result.assignment] = result
+                    if result.late and result.handed_in is None:
+                        marked.append(result.assignment)
+        if marked and self.rules.marked is None and self.rules.late_costs:
+            raise CannotExport(say_what_marked_costs(marked))
+        return found
+
+    def penalty(self, record):
+        """The share of the points of a record that its lateness costs."""
+        found = self.results.get((record["student"], record["assignment"]))
+        return found.penalty if found else 0.0
+
+    def excused(self, student):
+        """Whether the rules excuse a student from what is handed on here, or from a part of it."""
+        return any(
+            self.results[student, record["assignment"]].state == EXCUSED
+            for record in self.students[student]
+            if self.results
+        )
 
     def points(self, student):
-        return sum(record["points"] for record in self.students[student])
+        return sum(record["points"] * (1 - self.penalty(record)) for record in self.students[student])
 
     def undecided(self, student):
         return sum(record["undecided"] for record in self.students[student])
@@ -156,7 +207,11 @@ def _split(text, delimiter):
 # --- the systems --------------------------------------------------------------------------------
 
 
-def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
+#: What was written into each column of a gradebook, by student: what stands there of these is ours to change.
+WRITTEN = "exported.json"
+
+
+def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_run=False):
     """Fill the gradebook of Canvas, Moodle or Brightspace.
 
     Parameters
@@ -170,8 +225,10 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
         Where the filled gradebook goes.
     names : dict, optional
         What columns are called in this gradebook, by their names in English.
-    overwrite : bool
-        Whether something else that stands in a cell, such as Canvas's ``EX`` for excused, is written over.
+    overwrite : collection of str
+        Students whose mark by hand is written over. An excuse, such as Canvas's ``EX``, never is.
+    dry_run : bool
+        Say what would be written, and write nothing.
 
     Returns
     -------
@@ -198,40 +255,63 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
             f"The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: "
             "points are scaled."
         )
-    filled_in, waiting, closed, kept = 0, [], [], []
+    header = book.header[place]
+    known = marks.store.json_in(written_before) if (written_before := marks.store.folder / WRITTEN).exists() else {}
+    ours = known.setdefault(header, {})
+    filled_in, waiting, closed, kept, excused, replaced, changes = 0, [], [], [], [], [], []
+    strangers = sorted(set(overwrite) - set(found.values()))
+    if strangers:
+        raise CannotExport(f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook.")
     for line, student in sorted(found.items()):
-        if marks.undecided(student):
+        if marks.excused(student):
+            excused.append(student)
+        elif marks.undecided(student):
             waiting.append(student)
         elif system == "Moodle" and book.says(line, book.column("grade can be changed")).casefold() == book.no:
             closed.append(student)
         else:
             text = number(round(marks.points(student) * scale, 2))
             there = book.says(line, place)
-            if there not in ("", "-") and not _is_same(there, text):
-                kept.append(f"{student}: {there}, and graded {text}")
-                if not overwrite:
+            before = ours.setdefault(student, [])
+            if there not in ("", "-") and not any(_is_same(there, one) for one in (text, *before)):
+                if student not in overwrite or not _is_number(there):
+                    kept.append(f"{student}: {there}, and graded {text}")
                     continue
+                replaced.append(f"{student}: {there} -> {text}")
+            elif there not in ("", "-") and not _is_same(there, text):
+                changes.append(f"{student}: {there} -> {text}")
+            if text not in before:
+                before.append(text)
             book.put(line, place, text.replace(".", ",") if comma else text)
             filled_in += 1
+    if changes:
+        said.append(f"Changed since it was written from here last ({len(changes)}):")
+        said += [f"  {in_a_line(change, 200)}" for change in changes]
     target = Path(filled) if filled else path.with_name(f"{path.stem}-filled{path.suffix}")
-    write(target, bytes(book))
-    said.append(f"{filled_in} filled in: {target}")
+    if dry_run:
+        said.append(f"{filled_in} would be filled in: nothing was written.")
+    else:
+        # First what is ours: of a crash in between, the next run knows more than it wrote, and nothing is overlooked.
+        write(written_before, as_text(known))
+        write(target, bytes(book))
+        said.append(f"{filled_in} filled in: {target}")
     without = [
         book.says(line, _shown(book, system))
         for line in range(first, len(book.lines))
         if line not in found and any(field.says for field in book.lines[line][0])
     ]
     unmatched = [student for student in marks.students if student not in found.values() and student not in several]
+    damaged, without = _with_damaged(marks.store, without)
     for heading, names in (
         ("In the gradebook, and nothing was handed in", without),
+        ("In the gradebook, and what they handed in cannot be graded", damaged),
         ("Handed in, and not in the gradebook", unmatched),
         ("Of a name that is there more than once, or that two go by, so not filled in", several),
         ("Not filled in, because a person has still to decide", waiting),
         ("Not filled in, because the system allows no change", closed),
-        (
-            "Written over, as you said" if overwrite else "Not filled in, because something stands there (--overwrite)",
-            kept,
-        ),
+        ("Excused by the rules, so not filled in", excused),
+        ("A mark by hand, written over as you said", replaced),
+        ("Not filled in, because something else stands there than was written from here", kept),
     ):
         if names:
             said.append(f"{heading} ({len(names)}):")
@@ -240,10 +320,31 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=False):
 
 
 def _is_same(there, text):
+    return _is_number(there) and float(there.replace(",", ".")) == float(text)
+
+
+def _is_number(there):
     try:
-        return float(there.replace(",", ".")) == float(text)
+        return math.isfinite(float(there.replace(",", ".")))
     except ValueError:
         return False
+
+
+def _with_damaged(store, names):
+    """Of those without a record: who handed in only what was refused, and who nothing."""
+    refused = store.json_in(store.folder / REFUSED) if (store.folder / REFUSED).exists() else []
+    known = {_signs(student) for _, student, _ in refused if student}
+    damaged = [name for name in names if _signs(name) in known or _signs(_turned(name)) in known]
+    return damaged, [name for name in names if name not in damaged]
+
+
+def _signs(name):
+    return "".join(sign for sign in name.casefold() if sign.isalnum())
+
+
+def _turned(name):
+    last, _, first = name.partition(",")
+    return f"{first} {last}"
 
 
 def _system(book):
@@ -394,6 +495,10 @@ def write_feedback(path, marks, store):
     CannotExport
         A page is missing, or two would have one name.
     """
+    if marks.behind:
+        raise CannotExport(
+            f"Decisions on {marks.behind} records are not in the pages yet: coursework regrade {store.folder}."
+        )
     pages = {}
     for record in marks.records:
         page = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
@@ -430,8 +535,8 @@ def write_nbgrader(path, marks):
                 "",
                 "",
                 record["points"],
-                0,
-                record["points"],
+                round(record["points"] * marks.penalty(record), 4),
+                round(record["points"] * (1 - marks.penalty(record)), 4),
                 record["worth"],
             )
         )

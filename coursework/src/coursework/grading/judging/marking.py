@@ -16,18 +16,18 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from ...authoring.author import AuthorError
-from ...authoring.source import DECLARED, checked_names, declared_strengths, read_source
+from ...authoring.source import DECLARED, checked_names, declared_strengths, read_source, texts_of_questions
 from ...checking.evaluate import MP
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
 from ...checking.plain import NotPlain, read_plain
 from ...checking.plugins import packages
 from ...checking.questions import compare
 from ...checking.reply import HELP, Reply
-from ...checking.variants import siblings_of, variant_of
 from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
 from . import secret as in_secret
+from .cases import asked_of, case_by_rule, case_of
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
@@ -39,6 +39,18 @@ WITH_HELP = 0.8
 LONGEST_FOR_SIBLINGS = 1_000
 #: Verdicts that are kept for those who hand in the same, at most.
 MOST_KEPT = 4096
+#: The mark of an answer under which the process that judges ended, but for what the question says.
+UNJUDGED = {
+    "outcome": "undecided",
+    "note": "too much work",
+    "details": {},
+    "messages": ["Working this answer out takes more time or memory than it may: a person decides."],
+    "points": 0,
+    "group": "",
+    "tries": None,
+}
+#: How a cell ends that a limit ended: what is missing then may have been lost to it.
+BY_A_LIMIT = ("timeout", "memory", "disk", "output")
 #: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
 CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
@@ -64,17 +76,21 @@ def questions_of(path, secret, edition=""):
 
 def _questions_of(path, secret, edition):
     declared = declared_strengths(Path(path).parent)
-    source = read_source(path, edition=edition, only=list(names_asked(path)))
-    found = {name: about(question, secret, declared.get(name)) for name, question in source.questions.items()}
+    source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
+    texts = texts_of_questions(source.notebook)
+    found = {
+        name: about(question, secret, declared.get(name), texts.get(name, ""))
+        for name, question in source.questions.items()
+    }
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
         having = [name for name, rule in source.rules.items() if number < rule.count]
-        for name, question in read_source(path, number, edition, having).questions.items():
+        for name, question in read_source(path, number, edition, having, pictures=True).questions.items():
             found[name].setdefault("others", []).append(about(question, secret, declared.get(name)))
     return found
 
 
-def of_student(questions, identity):
-    """The questions of a student, each in the student's own variant.
+def of_student(questions, identity, record=None, contracts=None):
+    """The questions of a student, each in the student's own variant, and the case of each.
 
     Parameters
     ----------
@@ -82,22 +98,27 @@ def of_student(questions, identity):
         As :func:`load_questions` gives them.
     identity : str
         Of the student, as the roster has it: what a notebook says of itself does not count.
+    record : dict, optional
+        What was graded of the student before: a student's variant stays, whatever became of the others.
+    contracts : Contracts, optional
+        The questions as they stood then.
+
+    Returns
+    -------
+    questions : dict
+        As :func:`coursework.grading.judging.cases.asked_of` gives each.
+    cases : dict of str to Case
     """
-    own = {}
+    own, cases = {}, {}
     for name, question in questions.items():
-        variants = [question, *question.get("others", [])]
-        number = variant_of(identity, name, len(variants), question["public"].get("edition", ""))
-        own[name] = variants[number]
-        if len(variants) > 1:
-            siblings = [other for order, other in enumerate(variants) if order != number]
-            own[name] = {**own[name], "siblings": siblings}
-            # Those that count in its place, by their names; in an exam each has one question.
-            own[name]["second chances"] = {
-                sibling: variants[(number + order) % len(variants)]
-                for order, sibling in enumerate(siblings_of(name, len(variants)), 1)
-                if not question["public"].get("exam")
-            }
-    return own
+        today = case_by_rule(name, question, identity)
+        case = case_of(record, name, question, contracts) if record else None
+        if case is None or case.edition != today.edition:
+            case = today
+        own[name], cases[name] = asked_of(name, question, case, contracts), case
+        if case.own.variant != today.own.variant:
+            own[name]["newer"] = asked_of(name, question, today, contracts)
+    return own, cases
 
 
 def with_second_chances(questions, named=None):
@@ -111,10 +132,11 @@ def with_second_chances(questions, named=None):
     return {**questions, **chances}
 
 
-def about(question, secret, guessable=None):
+def about(question, secret, guessable=None, text=""):
     """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it.
 
-    ``guessable`` is how many tries of a script it withstands, where its author declared that it can be guessed.
+    ``guessable`` is how many tries of a script it withstands, where its author declared that it can be guessed;
+    ``text`` is that of a question without variants: one that has them holds its own.
     """
     found = json.loads(
         json.dumps(
@@ -134,6 +156,7 @@ def about(question, secret, guessable=None):
                 "guessable": guessable,
                 "partial": read(question.public, question.plain).text if question.partial else None,
                 "rubric": question.rubric,
+                "text": "" if "text" in question.public else text,
             }
         )
     )
@@ -162,7 +185,7 @@ def load_questions(paths, kept, secret, edition=""):
         places[path] = Path(kept) / f"{path.stem}-{depends}.json"
 
     def work_out(path):
-        write(places[path], json.dumps(questions_of(path, secret, edition), ensure_ascii=False))
+        write(places[path], json.dumps(questions_of(path, secret, edition), ensure_ascii=False), private=True)
 
     missing = [path for path, place in places.items() if not place.exists()]
     if len(missing) == 1:
@@ -202,6 +225,15 @@ def asked_of_sandbox(questions):
     }
 
 
+def was_limited(record):
+    """Whether a limit ended one of the cells of a record."""
+    return any(
+        cell["outcome"] in BY_A_LIMIT or "SIGKILL" in cell.get("error", "")
+        for notebook in record["notebooks"]
+        for cell in notebook["cells"]
+    )
+
+
 # --- one answer ---------------------------------------------------------------------------------
 
 
@@ -228,7 +260,9 @@ def mark(name, question, answer, finished=True, limited=False):
         script finds the right answer, or ``None``.
     """
     # Many hand in the same. What is judged follows from the version of the question and from these texts alone.
-    known = name, question["version"], len(question.get("siblings", [])), json.dumps(answer), finished, limited
+    contract = question.get("contract", question)["version"]
+    of_question = name, question["version"], contract, len(question.get("siblings", [])), "newer" in question
+    known = *of_question, json.dumps(answer), finished, limited
     if known not in _marked:
         if len(_marked) >= MOST_KEPT:
             _marked.clear()
@@ -242,7 +276,10 @@ _marked = {}
 def _mark(name, question, answer, finished, limited):
     reply, text = judge(name, question, answer, finished, limited)
     short = reply.outcome == "wrong" and len(answer["plain"]["nodes"]) <= LONGEST_FOR_SIBLINGS
-    if short and any(_is_right(name, other, answer) for other in question.get("siblings", [])):
+    if short and "newer" in question and _is_right(name, question["newer"], answer):
+        said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
+        reply = _undecided(name, "numbers of another edition", said)
+    elif short and any(_is_right(name, other, answer) for other in question.get("siblings", [])):
         reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
     share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     if reply.outcome == "wrong" and question["partial"] and reply.note != "other numbers":
@@ -265,7 +302,7 @@ def _mark(name, question, answer, finished, limited):
 
 def _is_right(name, question, answer):
     """Whether an answer is right for a question. Of most it takes one look to see that they are not."""
-    with contextlib.suppress(Exception):  # as in judging: what cannot be worked out is not right
+    with contextlib.suppress(ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable):
         text = fingerprint(question["public"], read(question["public"], answer["plain"]))
         return text in question["known"] and judge(name, question, answer)[0].outcome == "correct"
     return False
@@ -312,9 +349,7 @@ def mark_with_siblings(name, question, answers, remembered, finished=True, limit
         helped = remembered.get(sibling, {}).get("help")
         if sibling in answers and not helped and (had or found["outcome"] != "correct"):
             if judge(sibling, other, answers[sibling])[0].outcome == "correct":
-                said = f"`{sibling}` was solved without help, and counts for this question."
-                about = {"outcome": "correct", "note": "by a sibling", "points": question["worth"], "messages": [said]}
-                return found | about
+                return found | _by_a_sibling(question, found, sibling)
     if found["outcome"] == "correct" and had and "second chances" in question:
         share = question["credit"].get("help", WITH_HELP)
         said = (
@@ -323,6 +358,20 @@ def mark_with_siblings(name, question, answers, remembered, finished=True, limit
         found |= {"note": "with help", "points": round(question["worth"] * share, 4)}
         found["messages"] = [said] if share < 1 else []
     return found
+
+
+def _by_a_sibling(question, found, sibling):
+    """What a sibling that was solved without help makes of the mark of a question.
+
+    It earns what help cost. Where the question itself was not answered right, whose numbers were solved is anybody's
+    guess, and with each sibling a friend's answer would have one more chance: a person looks.
+    """
+    if found["outcome"] == "correct":
+        said = f"`{sibling}` was solved without help, and counts for this question."
+        return {"note": "by a sibling", "points": question["worth"], "messages": [said]}
+    said = f"`{sibling}` was solved without help, and the question itself was not answered right: a person decides."
+    messages = [*found["messages"], said]
+    return {"outcome": "undecided", "note": "by a sibling alone", "points": 0, "messages": messages}
 
 
 def judge(name, question, answer, finished=True, limited=False):
@@ -355,7 +404,10 @@ def judge(name, question, answer, finished=True, limited=False):
         return question["known"].get(text)
 
     try:
-        plain = read_plain(answer["plain"])
+        plain = in_calls_of(question, read_plain(answer["plain"]))
+        if plain is None:
+            said = "The function was not called with the arguments that this question has now. Grade again: it is run."
+            return _undecided(name, "not called", said), ""
         reply = compare(name, question["public"], plain, look_up)
         rounded = reply.outcome == "wrong" and reply.note in ("", "rounded too far")
         if rounded and _nearly_right(question, plain):
@@ -371,9 +423,27 @@ def judge(name, question, answer, finished=True, limited=False):
             reply = _in_secret(name, question, answer, plain, reply, found[-1])
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
+    except MemoryError:
+        raise  # the process that judges is at its limit, and what else it would judge is not to suffer
     except Exception as error:  # a fault of ours costs no student a mark
         reply = _undecided(name, "not worked out", f"This answer could not be worked out ({type(error).__name__}).")
     return reply, "".join(found)
+
+
+def in_calls_of(question, plain):
+    """What a function returned, in the order of the calls that a question has now; ``None`` if it was not called so.
+
+    What was recorded are the results of the calls of the contract, one after another.
+    """
+    calls = question["public"].get("calls")
+    called = question.get("contract", question)["public"].get("calls")
+    kind, *value = plain["value"]
+    if kind != "function" or calls == called:
+        return plain
+    results, *rest = value
+    if calls is None or called is None or len(results) != len(called) or any(call not in called for call in calls):
+        return None
+    return {**plain, "value": [kind, [results[called.index(call)] for call in calls], *rest]}
 
 
 def _in_secret(name, question, answer, plain, reply, text):

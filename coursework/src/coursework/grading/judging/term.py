@@ -10,6 +10,7 @@ The rules stand in one file that people read, such as::
     a-day = 0.1             # each day that has begun costs this share of the points earned
     most = 0.5              # and all days together no more than this
     nothing-after-days = 7  # what is later than this earns nothing
+    marked = 0.1            # what a system marks as late, and does not say when it came
 
     [assignments.simple-orientations]
     due = 2026-10-05T23:59:00
@@ -31,12 +32,14 @@ everything here follows from them and from that file.
 """
 
 import datetime
+import json
 import math
 import tomllib
 from pathlib import Path
 from typing import NamedTuple
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
+from ..store import write
 from ..submissions.identity import Roster
 from ..submissions.intake import as_time
 
@@ -69,6 +72,8 @@ class Rules(NamedTuple):
     a_day, most : float
         Shares of the points earned.
     nothing_after : timedelta or None
+    marked : float or None
+        The share that is lost by what a system marked as late without saying when it came.
     assignments : dict of str to Assignment
     drop : list of (int, list of str)
     extensions : dict of (student, assignment) to datetime or ``"excused"``
@@ -83,6 +88,12 @@ class Rules(NamedTuple):
     assignments: dict
     drop: list
     extensions: dict
+    marked: float | None = None
+
+    @property
+    def late_costs(self):
+        """Whether lateness costs anything."""
+        return bool(self.a_day) or self.nothing_after is not None
 
     def penalty(self, late):
         """The share of the earned points that a delay costs.
@@ -120,7 +131,7 @@ def read_rules(path):
     except (ZoneInfoNotFoundError, ValueError, TypeError):
         raise BadRules(f"{path}: there is no time zone {said['time-zone']!r}.") from None
     late = _table(path, "late", said.get("late", {}))
-    _demand(path, "late", late, {"grace-minutes", "a-day", "most", "nothing-after-days"})
+    _demand(path, "late", late, {"grace-minutes", "a-day", "most", "nothing-after-days", "marked"})
     shares = {name: _number(path, f"late.{name}", late.get(name, default), 1) for name, default in LATE.items()}
     nothing_after = late.get("nothing-after-days")
     assignments = {}
@@ -163,10 +174,23 @@ def read_rules(path):
         assignments,
         drop,
         extensions,
+        _number(path, "late.marked", late["marked"], 1) if "marked" in late else None,
     )
 
 
 LATE = {"a-day": 0, "most": 1}
+#: Where it is kept which file the rules of the term are in.
+KEPT = "rules.json"
+
+
+def keep_rules(store, path):
+    """Keep where the rules of the term are: marks are not handed on without them unsaid."""
+    write(store.folder / KEPT, json.dumps(str(path)))
+
+
+def rules_of(store):
+    """The file with the rules by which the term was put together last; ``None`` if it was not."""
+    return store.json_in(store.folder / KEPT) if (store.folder / KEPT).exists() else None
 
 
 def _table(path, where, value):
@@ -326,6 +350,7 @@ def _result(student, name, record, rules, worth, now):
         points, when = record["points"], _handed_in(student, record, about, rules.zone)
         if when is None:
             late = any(notebook["late"] for notebook in record["notebooks"]) and extension is None
+            penalty = (rules.marked or 0.0) if late else 0.0
         elif due is not None:
             delayed = delay(when, due, rules.zone)
             penalty, late = rules.penalty(delayed), delayed > rules.grace
@@ -333,6 +358,15 @@ def _result(student, name, record, rules, worth, now):
         state, late, penalty = EXCUSED, False, 0.0
     full = record["worth"] if record else worth.get(name, 0)
     return Result(name, state, points, full, due, when, late, penalty, record["undecided"] if record else 0)
+
+
+def say_what_marked_costs(assignments):
+    """What is to be decided where a system marked work as late, and rules do not say what that costs."""
+    names = ", ".join(sorted(set(assignments)))
+    return (
+        f"Of {names}, {len(assignments)} are marked as late by the system, which does not say when they came, and so "
+        "far that costs nothing. Say what it costs: marked = 0.1 in [late], or 0; or name a table of times."
+    )
 
 
 def _handed_in(student, record, about, zone):

@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 from ..judging import term
+from ..judging.ledger import Ledger, with_decisions
 from ..store import as_text, file_name, write
 from ..tables import number, table
 from . import pages
@@ -57,26 +58,34 @@ def write_course(store, rules, *, earlier=(), now=None):
     now = now or datetime.datetime.now(datetime.UTC)
     counts = [_earlier(path) for path in earlier]
     statistics, worth, students = Statistics(), {}, set()
+    decisions = Ledger(store.folder).current()
     for record in store.all():
-        statistics.add(record)
+        statistics.add(with_decisions(record, decisions))
         worth[record["assignment"]] = record["worth"]
         students.add(record["student"])
     roster = store.folder / ROSTER
     if roster.exists():
         students.update(store.json_in(roster))
     said = _misspelt(rules, students, worth)
-    folder, rows, unknown = store.folder / FOLDER, [], []
+    folder, rows, unknown, marked = store.folder / FOLDER, [], [], []
     for student in sorted(students):
-        records = {name: found for name in rules.assignments if (found := store.read(student, name)) is not None}
+        records = {
+            name: with_decisions(found, decisions)
+            for name in rules.assignments
+            if (found := store.read(student, name)) is not None
+        }
         results, total = term.results_of(student, records, rules, worth, now)
         _write_student(folder, student, records, results, total, rules)
         rows.append(_row(student, results, total))
         unknown += [one.assignment for one in results if one.assignment in records and one.due and not one.handed_in]
+        marked += [one.assignment for one in results if one.late and not one.handed_in]
     for name in sorted(set(unknown)):
         said.append(
             f"{name}: of {unknown.count(name)} nobody knows when they were handed in, and lateness cost nothing. "
             f'A table of your system says it: times = "worksheet.csv" in [assignments.{name}].'
         )
+    if marked and rules.marked is None and rules.late_costs:
+        said.append(term.say_what_marked_costs(marked))
     write(folder / "course.csv", table(_header(rules), rows))
     _write_questions(folder, statistics, rules.name, counts)
     write(folder / "counts.json", as_text(statistics.counts(rules.name)))

@@ -28,6 +28,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
+from .pictures import JPEG, PNG, is_picture
 
 MOST_BYTES = 20 << 20  # of one notebook
 MOST_CELLS = 1_000
@@ -54,11 +55,14 @@ TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
 ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
 MOST_TRIED = 100  # of one question
-#: Pictures that are shown of one notebook, all together, and how those begin that are shown.
+#: Pictures that are shown of one notebook, all together.
 MOST_BYTES_OF_PICTURES = 4 << 20
-STARTS_OF_PICTURES = {"image/png": b"\x89PNG\r\n\x1a\n", "image/jpeg": b"\xff\xd8\xff"}
 TRIED = re.compile(r"[0-9a-f]{6}")
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
+
+
+#: How a notebook says whose it is, to get the numbers of that student.
+SAYS = re.compile(r"""^[^#\n]*?\b(?:me|student)\(\s*(?P<mark>['"])(?P<who>[^'"\n]{1,200})(?P=mark)\s*,?\s*\)""", re.M)
 
 
 class Refused(NamedTuple):
@@ -105,6 +109,8 @@ class Notebook(NamedTuple):
     beside : tuple of Beside
     handed_in : str
         When, in ISO 8601, as the system says; without a time zone where the system names none.
+    says : str
+        Whose it says that it is, for the numbers of its questions; empty if it does not.
     """
 
     file: str
@@ -120,6 +126,7 @@ class Notebook(NamedTuple):
     read: Callable
     beside: tuple = ()
     handed_in: str = ""
+    says: str = ""
 
     @property
     def cells(self):
@@ -208,7 +215,14 @@ def take_in(path, assignments=(), roster=None, student=None):
                 whose = claim.student if claim else ""
                 read = " The notebook beside it can read it." if source in have else ""
                 refused.append(Refused(name, whose, f"This is no notebook: its name does not end in .ipynb.{read}"))
-    return notebooks, refused
+    return notebooks, [_of_whom(one, layout, roster) for one in refused]
+
+
+def _of_whom(refused, layout, roster):
+    """A file that was refused, with whose it is where a roster says so: its student did not hand in nothing."""
+    claim = layout.claim(refused.file) if roster else None
+    known = roster.find(claim.keys, claim.place)[0] if claim else None
+    return refused if known is None else refused._replace(student=known)
 
 
 #: nbgrader's file beside what was handed in. Its time zone is UTC unless a course has changed that.
@@ -289,8 +303,15 @@ def _take(found, others, refused, layout, name, when, read, outer):
             claim.late,
             claim,
             read,
+            says=_says(cells),
         )
     )
+
+
+def _says(cells):
+    """Whose a notebook says that it is: the last time that it says so."""
+    said = [found["who"] for cell in cells for found in SAYS.finditer(cell["source"]) if found["who"].strip()]
+    return said[-1] if said else ""
 
 
 @functools.lru_cache(1_000)
@@ -525,7 +546,10 @@ class _OwnPlace(io.RawIOBase):
 
 
 def _files_of_archive(path, refused, repositories):
-    archive = zipfile.ZipFile(_OwnPlace(path))
+    try:
+        archive = zipfile.ZipFile(_OwnPlace(path))
+    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+        raise Unfit(f"{path} is no zip archive, or a damaged one ({error}).") from None
     entries = sorted(archive.infolist(), key=lambda entry: entry.filename, reverse=True)
     repeated = {one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename}
     # What the archive knows of each is let go one by one: of a hundred thousand it would be half of the memory.
@@ -733,7 +757,7 @@ def remembered_in(data):
 def pictures_in(data):
     """The pictures under each code cell of a notebook, as it was handed in: texts in base64, by the cell's number.
 
-    They are the student's to change, and are for people to look at; what is no picture by its first bytes is left out.
+    They are the student's to change, and are for people to look at; what is no picture from end to end is left out.
     """
     found, left = {}, MOST_BYTES_OF_PICTURES
     notebook = _json(data)
@@ -743,13 +767,13 @@ def pictures_in(data):
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
             shown = output.get("data") if isinstance(output, dict) else None
-            for kind, start in STARTS_OF_PICTURES.items():
+            for kind in (PNG, JPEG):
                 text = shown.get(kind) if isinstance(shown, dict) else None
                 text = "".join(text) if isinstance(text, list) and all(isinstance(one, str) for one in text) else text
                 if not isinstance(text, str) or len(text) > left:
                     continue
                 with contextlib.suppress(ValueError):
-                    if base64.b64decode(text := "".join(text.split()), validate=True).startswith(start):
+                    if is_picture(kind, base64.b64decode(text := "".join(text.split()), validate=True)):
                         found.setdefault(str(number), []).append(f"{kind};base64,{text}")
                         left -= len(text)
     return found

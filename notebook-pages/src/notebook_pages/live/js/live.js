@@ -11,8 +11,7 @@ const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one :
 
 class Page {
   constructor({ data, boxes, bar }) {
-    this.runtime = new URL(data.runtime, location.href).href;
-    this.pyodide = data.pyodide;
+    this.place = { runtime: new URL(data.runtime, location.href).href, pyodide: data.pyodide, lock: data.lock };
     this.answers = new Answers(data.page);
     this.bar = bar;
     this.figures = new Figures((name, data) => this.python?.tell(name, data));
@@ -227,7 +226,8 @@ class Page {
     } catch (error) {
       this.empty();
       this.bar.progress(null);
-      this.bar.say(error.message === "interrupted" ? "Stopped: Python was not loaded." : `Python could not be started: ${error.message}.`);
+      if (error.message === "interrupted") this.bar.say("Stopped: Python was not loaded.");
+      else await this.bar.explain(error, "Python could not be started");
     }
     this.busy = this.whole = this.stopping = false;
     this.tally = null;
@@ -237,7 +237,7 @@ class Page {
   async load() {
     this.bar.say("Python is being loaded ...");
     this.has = null;
-    this.python = new Python(this.runtime, this.pyodide, (message, cell) => this.hear(message, cell));
+    this.python = new Python(this.place, (message, cell) => this.hear(message, cell));
     const { python } = this;
     setTimeout(() => this.edit());
     try {

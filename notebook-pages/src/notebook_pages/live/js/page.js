@@ -5,6 +5,17 @@
   const boxes = [...document.querySelectorAll("div.cell")].filter((box) => box.querySelector(".cell_input"));
   const make = (tag, attributes, text = "") => Object.assign(document.createElement(tag), attributes, { textContent: text });
 
+  // What would only be good to know another time is not worth a failure: all sites of an address share one store, and it
+  // may be full. Returns whether the browser has kept it.
+  const note = (store, key, value) => {
+    try {
+      store.setItem(key, value);
+      return true;
+    } catch {
+      return false;
+    }
+  };
+
   // The bar at the foot of the window: it lies over the page, so that no line moves.
   const bar = make("section", { className: "live-bar", hidden: true });
   bar.setAttribute("aria-label", "Python on this page");
@@ -43,7 +54,7 @@
       if (loaded !== null) Object.assign(progress, { max: all, value: loaded });
     },
     fetched() {
-      localStorage.setItem(`book ${place} fetched`, data.pyodide);
+      note(localStorage, `book ${place} fetched`, data.pyodide);
       tellSize();
     },
     buttons: (actions) => Object.entries(actions).map(([text, action]) => {
@@ -68,7 +79,7 @@
     const able = isSecureContext && "serviceWorker" in navigator && self === top && !window.keepsNothing;
     // What the browser had no room for would be gone (see answers.js).
     if (crossOriginIsolated || !able || sessionStorage.getItem(RUN) || globalThis.unkeptAnswers?.size) return false;
-    sessionStorage.setItem(RUN, "tried");
+    if (!note(sessionStorage, RUN, "tried")) return false;
     try {
       await navigator.serviceWorker.register(`${place}service-worker.js`);
       const late = new Promise((_, reject) => setTimeout(reject, 5000, new Error("it does not start")));
@@ -78,13 +89,34 @@
       return false;
     }
     const figures = [...document.querySelectorAll("figure.moving")].map(({ model }) => model?.moved);
-    sessionStorage.setItem(RUN, JSON.stringify({ page: data.page, number, line: scrollY, figures }));
+    if (!note(sessionStorage, RUN, JSON.stringify({ page: data.page, number, line: scrollY, figures }))) return false;
     location.reload();
     return true;
   };
 
   let page;
-  const script = (name) => import(new URL(data.scripts + name, location.href));
+  // A browser remembers a script that has not come as long as the page is open: it is asked for by another name then.
+  let tries = 0;
+  const script = async (name) => {
+    try {
+      return await import(new URL(`${data.scripts}${name}${tries ? `?again=${tries}` : ""}`, location.href));
+    } catch (error) {
+      tries += 1;
+      throw Object.assign(error, { isLost: true });
+    }
+  };
+  // What has not worked, and where a script has not come, why: a page that was open while others took its place asks for
+  // what is no longer there.
+  tools.explain = async (error, what = "That did not work") => {
+    if (!error.isLost) return tools.say(`${what}: ${error.message}.`);
+    const now = await fetch(location.pathname, { cache: "no-cache", signal: AbortSignal.timeout(5000) }).then((answer) => answer.ok && answer.text(), () => "");
+    if (now && !now.includes(data.scripts.split("/").at(-2))) {
+      return tools.ask("This page has been published anew since you opened it, and its code runs after a reload. What you wrote here is kept.", {
+        "Reload": () => location.reload(),
+      });
+    }
+    tools.say(now ? `${what}: ${error.message}.` : `${what}: the place of these pages does not answer. Try once more when you have a network.`);
+  };
   const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
   const ask = async (number) => {
     if (fromDisk) return tools.say(FROM_DISK);
@@ -94,7 +126,7 @@
       if (number !== undefined) opened.run(opened.cells[number]);
     } catch (error) {
       page = undefined;
-      tools.say(`What runs the code could not be loaded: ${error.message}.`);
+      await tools.explain(error);
     }
   };
 
@@ -126,7 +158,7 @@
     try {
       await (await script("keep.js")).keep(tools);
     } catch (error) {
-      tools.say(`That did not work: ${error.message}.`);
+      await tools.explain(error);
     }
   });
 
@@ -140,7 +172,7 @@
         tools.say(await act(data, originals));
         if (/load|restore/.test(choice.dataset.answers)) (await open()).reread();
       } catch (error) {
-        tools.say(`That did not work: ${error.message}.`);
+        await tools.explain(error);
       }
     });
   }
@@ -149,8 +181,10 @@
   const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`];
   const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));
   const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
-  if (again.page) sessionStorage.setItem(RUN, "tried");
-  if (localStorage.getItem(`book ${place} kept`)) script("keep.js").then(({ remind }) => remind(tools)).catch(() => {});
+  if (again.page) note(sessionStorage, RUN, "tried");
+  // The service worker has made a newer edition whole.
+  navigator.serviceWorker?.addEventListener("message", ({ data: { edition } }) =>
+    edition && script("keep.js").then(({ tellOfRenewal }) => tellOfRenewal(tools)).catch(() => {}));
   if (again.page === data.page) {
     addEventListener("load", () => scrollTo(0, again.line));
     // What the reader has moved before stands there again; the scripts of the figures have run by now.

@@ -8,7 +8,7 @@ const PATIENCE = 2500;
 const LONGER = 10_000;
 
 export class Python {
-  constructor(runtime, pyodide, listener) {
+  constructor(place, listener) {
     this.listener = listener;
     this.jobs = 0;
     // Shared memory, through which Python is asked to stop, is given to isolated pages only.
@@ -19,13 +19,12 @@ export class Python {
       this.worker.addEventListener("message", ({ data }) => this.hear(data, resolve, reject));
       this.worker.addEventListener("error", (event) => {
         event.preventDefault();
-        this.end(event.message || "its script could not be loaded");
-        reject(new Error(event.message || "its script could not be loaded"));
+        this.end(event.message || "its script could not be loaded", { isLost: !event.message });
       });
     });
     this.ready.catch(() => {});
     this.watchSilence();
-    this.worker.postMessage({ type: "start", runtime, pyodide, interrupts: this.interrupts?.buffer });
+    this.worker.postMessage({ type: "start", ...place, interrupts: this.interrupts?.buffer });
   }
 
   watchSilence() {
@@ -40,8 +39,7 @@ export class Python {
     if (data.type === "ready") resolve(data);
     else if (data.type === "done") this.finish(data.outcome);
     else if (data.type === "dead") {
-      this.end(data.reason);
-      reject(new Error(data.reason));
+      this.end(data.reason, { isLost: true });
     } else if (data.job === undefined || data.job === this.current?.job) this.listener(data, this.current?.show);
   }
 
@@ -77,12 +75,12 @@ export class Python {
     }, PATIENCE);
   }
 
-  // End the thread; what runs in it has no outcome but this one.
-  end(reason) {
+  // End the thread; what runs in it has no outcome but this one. ``about`` says whether a file may be lost.
+  end(reason, about) {
     clearTimeout(this.silence);
     this.worker.terminate();
     this.ended = true;
-    this.giveUp(new Error(reason));
+    this.giveUp(Object.assign(new Error(reason), about));
     this.finish({ status: "ended", reason });
   }
 }

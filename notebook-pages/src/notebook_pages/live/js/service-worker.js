@@ -1,8 +1,10 @@
 // Registered when the reader asks for what it does, and for nothing else: it isolates the pages, so that Python can be
-// interrupted also where the server sends no such headers, and it gives the pages that were kept when there is no network.
+// interrupted also where the server sends no such headers, and it gives the pages that were kept.
+import { Editions } from "./editions.js";
+
 const SITE = new URL("./", location.href).pathname;
-const KEPT = `book ${SITE}`;
-const LIST = `${SITE}kept.json`; // in the cache only: what is kept, as offline.json had it
+const editions = new Editions(SITE);
+const RACE = 2000; // milliseconds: so long a page waits for a newer edition to come whole, before the kept one is shown
 
 addEventListener("install", () => skipWaiting());
 addEventListener("activate", (event) => event.waitUntil(clients.claim()));
@@ -21,36 +23,36 @@ function isolated(answer) {
   return new Response(empty ? null : answer.body, { status: answer.status, statusText: answer.statusText, headers });
 }
 
-// The copy that is kept of a file; of a file whose address names a version, that version only.
-async function copyOf(url) {
-  if (!(await caches.has(KEPT))) return undefined;
-  const cache = await caches.open(KEPT);
-  const list = await (await cache.match(LIST))?.json();
-  const path = decodeURI(url.pathname.slice(SITE.length)).replace(/(^|\/)$/, "$1index.html");
-  const version = url.searchParams.get("v");
-  if (!list?.files[path] || (version && !list.files[path].startsWith(version))) return undefined;
-  return cache.match(new URL(SITE + path, location.href));
+// Whether the address is one of the book's own: below a root, others may have theirs. ``self.bookHolds`` is what
+// install.py found at the top of the site; JupyterLite has a service worker of its own, and hangs in an isolated page.
+function isOurs({ origin, pathname, searchParams }) {
+  if (origin !== location.origin || !pathname.startsWith(SITE) || searchParams.has("kept")) return false;
+  return ["", ...self.bookHolds].includes(decodeURI(pathname.slice(SITE.length)).split("/")[0]);
 }
 
-async function answer(request) {
-  const url = new URL(request.url);
-  // What never changes under its address need not be asked for again.
-  const lasts = url.searchParams.has("v") || /\/(scripts|pyodide|sealed)-[0-9a-f]{12}\/|\/wheels\//.test(url.pathname);
-  const kept = lasts && await copyOf(url);
-  if (kept) return isolated(kept);
-  try {
-    return isolated(await fetch(request));
-  } catch (error) {
-    const copy = await copyOf(url);
-    if (copy) return isolated(copy);
-    throw error;
+// A kept book renews itself: whole, or not at all. Pages that are open, and were there before, are told.
+let looking = null;
+async function renew() {
+  const there = await editions.newest();
+  if (!there || (await editions.offered()).edition === there.edition) return;
+  const { edition } = await editions.renew();
+  if (edition !== there.edition) for (const client of await clients.matchAll({ type: "window" })) client.postMessage({ edition });
+}
+
+async function answer(event, url) {
+  // Where nothing has come of the last look, or it still goes on, no page waits for the next one.
+  if (event.request.mode === "navigate" && !looking) {
+    looking = renew().catch((error) => console.info(`The kept book stays as it is: ${error.message}`));
+    const over = looking.finally(() => (looking = null));
+    event.waitUntil(over);
+    await Promise.race([over, new Promise((go) => setTimeout(go, RACE))]);
   }
+  return isolated((await editions.find(url)) ?? (await fetch(event.request)));
 }
 
 addEventListener("fetch", (event) => {
   const { request } = event, url = new URL(request.url);
-  // JupyterLite has a service worker of its own, and hangs in an isolated page.
-  if (request.method !== "GET" || url.origin !== location.origin || url.pathname.startsWith(`${SITE}lite/`)) return;
+  if (request.method !== "GET" || !isOurs(url)) return;
   if (request.cache === "only-if-cached" && request.mode !== "same-origin") return;
-  event.respondWith(answer(request));
+  event.respondWith(answer(event, url));
 });

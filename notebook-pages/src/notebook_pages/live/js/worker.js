@@ -133,13 +133,13 @@ function watchModules() {
   }
 }
 
-async function start({ runtime, pyodide, interrupts }) {
+async function start({ runtime, pyodide, lock: listed, interrupts }) {
   let lock;
   watchModules();
   watchFetching(() => lock?.bytes);
   const [{ loadPyodide }] = await Promise.all([
     import(`${runtime}${pyodide}pyodide.js`),
-    fetch(`${runtime}pyodide-lock.json`, { cache: "no-cache" }).then(async (answer) => (lock = await answer.json())),
+    fetch(`${runtime}${listed}pyodide-lock.json`).then(async (answer) => (lock = await answer.json())),
   ]);
   packages = lock.packages;
   postMessage({ type: "progress", bytes: 0, all: lock.bytes });
