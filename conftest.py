@@ -8,6 +8,7 @@ from importlib import metadata
 import nbval.kernel
 import nbval.plugin
 import pytest
+import stored_outputs
 import times
 from places import BROWSER_REQUIRED, HTML, PATIENCE
 from seed import SEED
@@ -15,7 +16,6 @@ from xdist.scheduler import LoadFileScheduling
 
 from notebook_pages import warm_kernels
 from notebook_pages.browser import FLAGS, MISSING, find
-from notebook_pages.moves import moves
 
 # Tests that take long, each by itself, and share nothing with the others of their file.
 APART = (
@@ -47,30 +47,6 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
-compare_strictly = nbval.plugin.IPyNbCell.compare_outputs
-format_difference = nbval.plugin.IPyNbCell.format_output_compare
-
-
-def compare_outputs(cell, test, ref, skip_compare=None):
-    """As nbval compares outputs, but for numbers that moved by as little as :mod:`notebook_pages.moves` allows."""
-    for now, stored in zip(test, ref):
-        _undo_small_moves(now.get("data", {}), stored.get("data", {}), cell.sanitize)
-        _undo_small_moves(now, stored, cell.sanitize)
-    return compare_strictly(cell, test, ref, skip_compare)
-
-
-def _undo_small_moves(now, stored, sanitize):
-    for kind in now.keys() & stored.keys():
-        if isinstance(now[kind], str) and isinstance(stored[kind], str):
-            if not any(move.too_far for move in moves(sanitize(stored[kind]), sanitize(now[kind]))):
-                now[kind] = stored[kind]
-
-
-def format_output_compare(cell, key, left, right):
-    format_difference(cell, key, left, right)
-    cell.comparison_traceback += [f"\n  {move}" for move in moves(left, right) if move.too_far][:5]
-
-
 def pytest_addoption(parser):
     parser.addoption("--write-times", action="store_true", help="write the table of tests/TIMES.md")
 
@@ -79,8 +55,8 @@ def pytest_configure(config):
     # What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata.
     if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
         raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
-    nbval.plugin.IPyNbCell.compare_outputs = compare_outputs
-    nbval.plugin.IPyNbCell.format_output_compare = format_output_compare
+    nbval.plugin.IPyNbCell.compare_outputs = stored_outputs.compare_outputs
+    nbval.plugin.IPyNbCell.format_output_compare = stored_outputs.format_output_compare
     nbval.kernel.KernelManager = warm_kernels.WarmKernelManager
     config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(

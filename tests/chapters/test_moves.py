@@ -6,7 +6,8 @@ import sys
 
 import nbformat
 import pytest
-from places import REPOSITORY, compare_outputs
+from places import REPOSITORY
+from stored_outputs import compare_outputs
 
 from notebook_pages.moves import FREE, moves
 from notebook_pages.notebooks import all_notebooks
