@@ -179,7 +179,7 @@ def _show_next_hint(question, reply, entry):
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
     if len(steps) > earned:
         # In words, and not as a call of `hint`, which few notebooks import.
-        reply.messages.append("Each further answer, if it is another one, earns a hint." if earned == 0 else "")
+        reply.messages.append("Each new answer earns you a hint." if earned == 0 else "")
     reply.messages = [line for line in reply.messages if line]
 
 

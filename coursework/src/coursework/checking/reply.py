@@ -10,7 +10,7 @@ from collections.abc import Iterable
 OUTCOMES = {
     "correct": ("✓", "Correct", "#1a7f37"),
     "wrong": ("✗", "Not yet", "#b54708"),
-    "invalid": ("!", "Not in the form that is asked for", "#b54708"),
+    "invalid": ("!", "Wrong form", "#b54708"),
     "undecided": ("?", "Undecided", "#5b5fc7"),
     "hints": ("→", "So far", "#6b7280"),
     "recorded": ("→", "Taken down", "#5b5fc7"),
