@@ -6,7 +6,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from conftest import REPOSITORY
+from places import REPOSITORY
 from simulated_recordings import FAULTS, NAMES, as_text, faulty, simulate
 
 from orientation_workbench.command import main
