@@ -6,26 +6,20 @@ import copy
 import csv
 import io
 import json
-import random
 import re
 import shutil
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
 import nbformat
 import pytest
 import sympy
-from seed import SEED
-from test_release import COURSE, needs_solutions
 from trial_course import made_in, write_source
 
 import coursework
 from coursework.authoring.author import AuthorError, solution_code
 from coursework.authoring.packing import archive
 from coursework.authoring.release import release
-from coursework.authoring.selftest import try_question
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import check as check_module
@@ -136,31 +130,6 @@ def test_variants_are_different_fair_and_of_the_students_own(course):
     assert len(set(drawn)) == 12 and drawn[0] == '{"x": 0, "y": 0}'
 
 
-def of_the_book():
-    """The questions of the book that have variants, by name."""
-    return {
-        name: about
-        for path in sorted(COURSE.sealed.glob("*.json"))
-        for name, about in json.loads(path.read_text("utf8"))["questions"].items()
-        if "variants" in about
-    }
-
-
-def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
-    """Of a question's variants all but one have as many as each other; without variants it is a multiple of eight."""
-    counts = collections.defaultdict(list)
-    for path in COURSE.sealed.rglob("*.json"):
-        for name, about in json.loads(path.read_text("utf8"))["questions"].items():
-            if about.get("lockers"):
-                counts[name].append(sealing.count_of(about["lockers"]))
-    assert len(counts) > 150
-    for name, found in counts.items():
-        if len(found) > 2:
-            assert len(set(sorted(found)[:-1])) == 1, name
-        else:
-            assert max(found) % 8 == 0 and len(set(found)) == 1, name
-
-
 def test_empty_lockers_are_like_the_others_and_come_again(course):
     """A second release gives the same; what the first one sealed is all there, and opens as before."""
     known = sorted(course.sealed.rglob("*.json"))
@@ -170,38 +139,6 @@ def test_empty_lockers_are_like_the_others_and_come_again(course):
     about = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]
     data = base64.b85decode(about["lockers"])
     assert len({data[start : start + 16] for start in range(0, len(data), 16)}) == sealing.count_of(about["lockers"])
-
-
-def test_the_book_has_variants_that_stay_small():
-    counts = [about["variants"] for about in of_the_book().values()]
-    assert len(counts) >= 60 and sum(count >= 16 for count in counts) >= 27
-    assert sum("picture" in about for about in of_the_book().values()) >= 4
-    files = list(COURSE.sealed.rglob("*.json"))
-    assert sum(path.stat().st_size for path in files) < 1_500_000
-    for path in (COURSE.sealed / "variants").glob("*.json"):
-        assert path.stat().st_size < 20_000, path  # all that a student's own variant needs beside the first
-        first = json.loads((COURSE.sealed / f"{path.stem.rpartition('-')[0]}.json").read_text("utf8"))["questions"]
-        for name, about in json.loads(path.read_text("utf8"))["questions"].items():
-            assert about["salt"] != first[name]["salt"] and "kind" not in about and "text" not in about
-
-
-@needs_solutions
-def test_a_variant_of_the_book_is_opened_by_its_own_answer_and_by_no_other():
-    chance = random.Random(SEED)
-    name = chance.choice(sorted(of_the_book()))
-    count = of_the_book()[name]["variants"]
-    path = COURSE.sources / f"{name.partition('/')[0]}.ipynb"
-    numbers = [0, *chance.sample(range(1, count), 2)]
-    asked = {number: read_source(path, number).questions[name] for number in numbers}
-    for number, question in asked.items():
-        assert try_question(question, budget=0).faults == [], (name, number)
-        student = next(f"s{k}" for k in range(999) if variants.variant_of(f"s{k}", name, count) == number)
-        coursework.me(student)
-        assert "{{" not in repr(coursework.variant(name))
-        for other, theirs in asked.items():
-            outcome = questions.judge(name, questions.find_question(name), theirs.plain)[0].outcome
-            assert (outcome == "correct") == (number == other), (name, number, other)
-    coursework.me("")
 
 
 def test_the_grader_finds_the_same_variant_from_the_roster():
@@ -304,26 +241,6 @@ def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recor
     variants._identity = ""
     again = coursework.check(NAME, everybody.force * everybody.arm)
     assert (again.tries, again.help) == (4, "hint") and "Right with help" in repr(coursework.progress())
-
-
-def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
-    script = (Path(__file__).parents[3] / "notebook-pages/src/notebook_pages/live/js/notebooks.js").read_text("utf8")
-    start, stop = script.index("const HELP"), script.index("\n}\n", script.index("export function joinProgress")) + 3
-    (tmp_path / "join.mjs").write_text(
-        script[start:stop] + "\nconsole.log(joinProgress(...process.argv.slice(2)));", "utf8"
-    )
-
-    def joined(*records):
-        texts = [json.dumps({NAME: record}) for record in records]
-        node = Path(sys.executable).with_name("node")
-        said = subprocess.run([node, tmp_path / "join.mjs", *texts], capture_output=True, check=True, text=True)
-        return json.loads(said.stdout)[NAME]
-
-    before = {"outcome": "correct", "help": "hint", "answers": ["a"]}
-    after = {"outcome": "wrong", "variant": 3, "answers": ["b"]}
-    assert joined(before, after) == {**after, "other variants": {"0": before}}
-    kept = {**after, "other variants": {"0": before}}
-    assert joined(kept, {**after, "answers": ["c"]}) == {**kept, "answers": ["b", "c"]}
 
 
 def test_a_name_that_is_no_text_or_names_a_notebook_is_explained(recorded):

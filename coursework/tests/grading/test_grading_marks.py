@@ -10,7 +10,6 @@ import sympy as sm
 from grading_class import write_sources
 
 from coursework.authoring import author
-from coursework.authoring.course import find_course
 from coursework.authoring.release import read_source
 from coursework.authoring.source import cells_needed
 from coursework.checking.evaluate import MOST_WORK, TooLarge, values
@@ -21,10 +20,6 @@ from coursework.checking.questions import compare, judge
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.marking import CUT_SHORT, mark, questions_of
 from coursework.grading.reporting import reports
-
-SOURCES = find_course().sources
-SLICED = ("simple-orientations",)
-OTHERS = [path for path in sorted(SOURCES.glob("*.ipynb")) if path.stem not in (*SLICED, "chapters")]
 
 
 @pytest.fixture(scope="module")
@@ -217,24 +212,6 @@ def test_the_cells_that_a_question_needs_are_found():
     assert cells_needed(notebook, ["levers/one"]) == {0, 1, 2, 4, 5, 6}
     assert cells_needed(notebook, ["levers/two"]) == {0, 3, 7, 8}
     assert cells_needed(notebook, []) == set()
-
-
-@pytest.mark.parametrize("name", [*SLICED, *(pytest.param(path.stem, marks=pytest.mark.long) for path in OTHERS)])
-def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name):
-    path = SOURCES / f"{name}.ipynb"
-    rules = read_source(path).rules
-    for number in range(1, max((rule.count for rule in rules.values()), default=1)):
-        having = [question for question, rule in rules.items() if number < rule.count]
-        whole, part = read_source(path, number).questions, read_source(path, number, only=having).questions
-        assert list(whole) == list(part)
-        for one, other in zip(whole.values(), part.values(), strict=True):
-            assert {**one.public, "picture": None} == {**other.public, "picture": None}
-            assert (one.plain, one.entries, one.near, one.credit) == (
-                other.plain,
-                other.entries,
-                other.near,
-                other.credit,
-            )
 
 
 def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, monkeypatch):
