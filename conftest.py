@@ -11,7 +11,7 @@ import pytest
 import stored_outputs
 import times
 from places import BROWSER_REQUIRED, HTML, PATIENCE
-from seed import SEED
+from seed import SEED, spread
 from xdist.scheduler import LoadFileScheduling
 
 from notebook_pages import warm_kernels
@@ -86,16 +86,6 @@ def pytest_collection_modifyitems(items):
         for item in found:
             if item not in chosen:
                 item.add_marker(pytest.mark.long)
-
-
-def spread(cases, number):
-    """So many of the cases, spread evenly from the first to the last.
-
-    >>> spread("abcdefghij", 3), spread("abcdefghij", 1), spread("ab", 5)
-    (['b', 'f', 'i'], ['f'], ['a', 'b'])
-    """
-    number = min(number, len(cases))
-    return [cases[len(cases) * (2 * k + 1) // (2 * number)] for k in range(number)]
 
 
 def pytest_unconfigure():

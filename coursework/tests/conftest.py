@@ -12,19 +12,26 @@ sys.path.append(PLUGIN)
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), PLUGIN]))
 
 
-@pytest.fixture(scope="session")
-def browser():
+class Browser:
     """Headless Chromium; skipped with a reason where there is none."""
-    import shutil
 
-    from playwright.sync_api import sync_playwright
+    @pytest.fixture(scope="session")
+    def browser(self):
+        import shutil
 
-    names = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-    found = next(filter(None, map(shutil.which, names)), None)
-    if found is None:
-        reason = "there is no Chromium here"
-        pytest.fail(reason) if os.environ.get("BOOK_BROWSER_REQUIRED") == "1" else pytest.skip(reason)
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
+        from playwright.sync_api import sync_playwright
+
+        names = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+        found = next(filter(None, map(shutil.which, names)), None)
+        if found is None:
+            pytest.skip("there is no Chromium here")
+        with sync_playwright() as playwright:
+            chromium = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+            yield chromium
+            chromium.close()
+
+
+def pytest_configure(config):
+    # Where these are tests of a larger project, that has a browser for all.
+    if config.rootpath == Path(__file__).parents[1]:
+        config.pluginmanager.register(Browser())

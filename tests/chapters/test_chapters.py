@@ -9,8 +9,9 @@ import nbformat
 import pytest
 from places import REPOSITORY
 
+import orientation_course
 from coursework.authoring.source import read_source
-from coursework.checking.plugins import kinds
+from coursework.checking.kinds import KINDS
 from notebook_pages import chapters, new
 
 
@@ -146,7 +147,7 @@ def test_what_cannot_be_made_is_told_and_nothing_changed(book, capsys, monkeypat
 
 
 def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
-    assert set(new.EXAMPLES) == set(kinds())
+    assert set(new.EXAMPLES) == {*KINDS, *orientation_course.KINDS}
     path = book / "tests" / "solutions" / "trial.ipynb"
     notebook = nbformat.v4.new_notebook(cells=[new.code("import sympy as sm\n\nfrom coursework import check")])
     nbformat.write(notebook, path)

@@ -118,8 +118,8 @@ class Today(datetime.date):
         return cls{day}
 datetime.date = Today
 os.environ.pop("BOOK_TEST_SEED", None)
-import conftest
-print(conftest.SEED, conftest.spread(range(100), 7))
+import seed
+print(seed.SEED, seed.spread(range(100), 7))
 """
-    told = subprocess.check_output([sys.executable, "-c", program], cwd=REPOSITORY / "tests", text=True)
+    told = subprocess.check_output([sys.executable, "-c", program], cwd=REPOSITORY / "coursework" / "tests", text=True)
     assert told == "every day [7, 21, 35, 50, 64, 78, 92]\n"

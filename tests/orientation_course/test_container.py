@@ -85,11 +85,12 @@ def test_the_page_shows_a_container_without_a_network_that_nothing_can_be_writte
     options = shown()
     assert {"--network=none", "--read-only", "--cap-drop=all", "--security-opt=no-new-privileges"} <= set(options)
     recipe = (ROOT / "Containerfile").read_text("utf8")
-    assert "USER 65534" in recipe and "[grading]" in recipe and "bubblewrap" in recipe
+    assert "USER 65534" in recipe and "coursework wheels" in recipe and "bubblewrap" in recipe
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf8"))["project"]
-    copied = set(re.search(r"COPY (pyproject.toml .*) /coursework/", recipe)[1].split())
+    copied = set(re.search(r"COPY (pyproject.toml .*) /book/", recipe)[1].split())
     assert {"pyproject.toml", "constraints.txt", project["readme"], *project["license-files"]} == copied
-    assert all((ROOT / name).is_file() for name in copied)
+    folders = set(re.findall(r"COPY (\w+) /book/\1", recipe))
+    assert folders == {"src", "coursework"} and all((ROOT / name).exists() for name in copied | folders)
 
 
 #: What Docker's own filter of system calls denies to whoever has no privileges, of what keeping apart could use: as in

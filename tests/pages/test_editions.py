@@ -77,7 +77,9 @@ def test_what_is_new_is_told_of_chapters_that_are_there():
 # ---- what an earlier edition had an address for -------------------------------
 
 
-SECOND = json.loads((REPOSITORY / "tests" / "editions" / "second" / "addresses.json").read_text("utf8"))
+SECOND = json.loads(
+    (REPOSITORY / "tests" / "orientation_course" / "editions" / "second" / "addresses.json").read_text("utf8")
+)
 
 
 def test_every_page_and_label_of_the_second_edition_leads_somewhere():

@@ -404,7 +404,7 @@ def test_take_away_menu(browser, site):
     for name in chapters:
         menu = text(name).partition('<details class="take-away">')[2].partition("</details>")[0]
         data = ["zip"] if name in WITH_RECORDINGS else []
-        assert re.findall(r'href="[^"]*\.(\w+)"', menu) == ["ipynb", "py", "whl", *data]
+        assert re.findall(r'href="[^"]*\.(\w+)"', menu) == ["ipynb", "py", "zip", *data]
     with zipfile.ZipFile(HTML / "take-away" / "recordings.zip") as archive:
         names = archive.namelist()
         assert "recordings/LICENSE.txt" in names and len(names) == len(set(names))

@@ -190,7 +190,7 @@ def test_a_mended_package_has_another_version(tmp_path):
         subprocess.run(["git", *name, *arguments], cwd=tmp_path, env=about, check=True, capture_output=True)
 
     def built(place, code="import sys; from coursework.__main__ import main; main(['wheels', sys.argv[1]])"):
-        environment = {**os.environ, "PYTHONPATH": str(place)}
+        environment = {**os.environ, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
         command = [sys.executable, "-c", code, str(tmp_path / "wheels")]
         subprocess.run(command, env=environment, check=True, capture_output=True, cwd=tmp_path)
         found = {path.name.split("-")[0]: path for path in (tmp_path / "wheels").iterdir()}

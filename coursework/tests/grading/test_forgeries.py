@@ -123,8 +123,8 @@ def test_many_of_them_pass_the_check_that_a_student_has(records):
 class Class:
     """Marks of a class whose students are known by their folders alone, or by what a system or a roster says."""
 
-    def __init__(self, **identities):
-        self.students, self.worth = identities, 6
+    def __init__(self, folder, **identities):
+        self.students, self.worth, self.store = identities, 6, Store(folder)
 
     def identity(self, student):
         return self.students[student]
@@ -134,6 +134,9 @@ class Class:
 
     def undecided(self, student):
         return 0
+
+    def excused(self, student):
+        return False
 
 
 OF_CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,T (7)\nBob,2,,bob,,\nEve,3,,eve,,\n"
@@ -158,7 +161,7 @@ OF_MOODLE = (
 )
 def test_a_line_of_a_gradebook_is_filled_for_nobody_else(tmp_path, book, students, filled):
     (tmp_path / "book.csv").write_text(book, "utf8")
-    said = gradebooks.fill(tmp_path / "book.csv", Class(**students))
+    said = gradebooks.fill(tmp_path / "book.csv", Class(tmp_path, **students))
     after = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[1:]
     changed = [line.lower() for line, old in zip(after, book.splitlines()[1:], strict=True) if line != old]
     assert len(changed) == len(filled) and all(name in line for name, line in zip(filled, changed, strict=True))

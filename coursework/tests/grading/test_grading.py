@@ -425,7 +425,7 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
     assert versions.digest_of_packages(copies) == versions.digest_of_packages()
     digests = {versions.digest_of_packages()}
     for path in (
-        ours / "grading" / "marking.py",
+        ours / "grading" / "judging" / "marking.py",
         ours / "checking" / "kinds.py",
         ours / "authoring" / "author.py",
         theirs / "euler_angles.py",

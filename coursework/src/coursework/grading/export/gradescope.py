@@ -24,8 +24,6 @@ from ..versions import folders
 
 HOME = Path("/autograder")
 CONFIGURATION = "autograder.json"
-#: What is not needed to grade one submission: the cluster.
-LEFT_OUT = {"distributed"}
 
 SETUP = """#!/usr/bin/env bash
 # Run once by Gradescope, with a network: Python, what the packages need, and the questions worked out.
@@ -107,7 +105,7 @@ def requirements():
 
     of_packages = metadata.packages_distributions()
     ours = {name for package in folders() for name in of_packages.get(package.name, ())}
-    found, waiting = {}, deque((name, frozenset({"", "grading"})) for name in ours)
+    found, waiting = {}, deque((name, frozenset({"", "tools"})) for name in ours)
     seen = set(waiting)
     while waiting:
         name, extras = waiting.popleft()
@@ -116,9 +114,7 @@ def requirements():
             found[distribution.name.lower()] = distribution.version
         for line in distribution.requires or ():
             requirement = Requirement(line)
-            if requirement.name in LEFT_OUT or not any(
-                requirement.marker is None or requirement.marker.evaluate({"extra": extra}) for extra in extras
-            ):
+            if not any(requirement.marker is None or requirement.marker.evaluate({"extra": extra}) for extra in extras):
                 continue
             one = requirement.name, frozenset({"", *requirement.extras})
             if one not in seen:
