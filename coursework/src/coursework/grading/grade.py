@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..authoring.course import edition_of, find_course, links_of
-from ..checking.plugins import kinds
 from ..checking.identity import plain_identity
+from ..checking.plugins import kinds
 from .judging import marking
 from .judging import secret as in_secret
 from .judging.cases import Contracts
