@@ -1,0 +1,307 @@
+"""``python -m notebook_pages.anywhere``: numbers as other machines have them.
+
+Every cell is run, all that is sealed or released is made, and every doctest is tried as if this processor were
+another one: with each kernel of OpenBLAS, without the instructions that NumPy would not have there, on one thread and
+on many; and what needs SymPy only in WebAssembly, in the Python of browsers. A table says what moved and by how much.
+"""
+
+import argparse
+import ctypes
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections import defaultdict
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+
+from coursework.authoring.course import find_course
+from coursework.authoring.source import notebooks_in
+
+from .execution import STORED
+from .live.cells import ALONE, kinds_of_cells, outputs_of_messages, stored_outputs, write_python
+from .live.runtime import COMPILER, FETCHED, PYODIDE, compile_wheels
+from .moves import moves, moves_of_outputs
+from .notebooks import all_notebooks
+from .packing import build_wheel
+from .paths import NODE, PACKAGES, REPOSITORY
+from .released import digests_of
+from .warm_kernels import WarmAsyncKernelManager
+
+#: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a processor has not that is as old as that.
+KERNELS = {
+    "Prescott": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
+    "Nehalem": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
+    "Haswell": ("X86_V4", "AVX512_ICL", "AVX512_SPR"),
+    "SkylakeX": (),
+}
+#: What SkylakeX needs.
+NEEDED = "X86_V4"
+#: Among threads OpenBLAS shares out what it adds up: the sums come in another order.
+THREADS = {"one thread": "1", "four threads": "4"}
+DOCTESTS = ("src/orientation", "src/orientation_figures", "src/orientation_recordings", "coursework/src/coursework")
+BROWSERS = "WebAssembly"
+
+
+# --- on one machine -----------------------------------------------------------------------------
+
+
+def numbers_here(only):
+    """What this process finds: the moves of cells, the failed doctests, and a digest of all that is released."""
+    return {
+        "kernel": kernel_in_use(),
+        "cells": moves_of_cells(only),
+        "doctests": failed_doctests(),
+        "released": digests_of_releases(only),
+    }
+
+
+def kernel_in_use():
+    """The kernel that NumPy's OpenBLAS has chosen, by its own word; empty where NumPy has another library."""
+    import numpy  # loads it
+
+    for file in Path(numpy.__file__).parent.with_name("numpy.libs").glob("*openblas*"):
+        name = ctypes.CDLL(str(file)).scipy_openblas_get_corename64_
+        name.restype = ctypes.c_char_p
+        return name().decode()
+    return ""
+
+
+def notebooks(only):
+    paths = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
+    return [path for path in paths if not only or path.stem in only]
+
+
+def moves_of_cells(only):
+    with ProcessPoolExecutor(os.cpu_count()) as pool:  # each has a process of its own that forks kernels
+        return [told for found in pool.map(moves_in, notebooks(only)) for told in found]
+
+
+def moves_in(path):
+    """Run a notebook; give each move as its place, its words, and which share it is of what is allowed."""
+    stored, now = (nbformat.read(path, as_version=4) for _ in range(2))
+    NotebookClient(
+        now,
+        timeout=600,
+        allow_errors=True,
+        coalesce_streams=True,
+        kernel_manager_class=WarmAsyncKernelManager,
+        resources={"metadata": {"path": str(path.parent)}},
+    ).execute()
+    cells = [pair for pair in zip(stored.cells, now.cells) if pair[0].cell_type == "code"]
+    return [
+        told
+        for number, (before, after) in enumerate(cells)
+        if before.execution_count is not None
+        for told in in_words(place_of(path, number), moves_of_outputs(before.outputs, after.outputs))
+    ]
+
+
+def place_of(path, number):
+    return f"{path.relative_to(REPOSITORY).with_suffix('')}, cell {number}"
+
+
+def in_words(place, found):
+    if found is None:
+        return [(place, "other outputs than stored", math.inf)]
+    exact = place.startswith(STORED)  # what is released is compared byte by byte
+    return [(place, str(move), math.inf if exact else move.share) for move in found]
+
+
+def failed_doctests():
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "pytest",
+            "--doctest-modules",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "-o",
+            "addopts=",
+            *DOCTESTS,
+        ],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
+    )
+    failed = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return failed or ([done.stdout + done.stderr] if done.returncode else [])
+
+
+def digests_of_releases(only):
+    """What is released of each notebook and sealed of each variant, before the slow hash that seals it."""
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        return {name: digest for found in pool.map(digests_of, sources(only)) for name, digest in found.items()}
+
+
+def sources(only):
+    paths = notebooks_in(find_course(REPOSITORY).sources)
+    return [path for path in paths if not only or path.stem in only]
+
+
+# --- in the Python of browsers ------------------------------------------------------------------
+
+#: Runs each notebook as the page runs it, with the program with which the build finds out what each cell needs; then
+#: makes what is sealed of those sources that need no NumPy. What reads notebooks is not there: JSON serves.
+IN_A_BROWSER = """
+import glob, io, json, shutil, sys, types, zipfile
+for wheel in glob.glob("/wheels/*.whl"):
+    zipfile.ZipFile(wheel).extractall("/packages")
+sys.path.insert(0, "/packages")
+codes = json.load(open("/wheels/codes.json"))
+program = compile(open("/wheels/alone.py").read(), "alone", "exec")
+plain, told = sys.__stdout__, {}
+for name in codes["cells"]:
+    sys.argv = ["-c", "/wheels/python", *codes["packages"]]
+    sys.stdin, sys.__stdout__ = io.StringIO(json.dumps(codes["cells"][name])), io.StringIO()
+    exec(program, {"__name__": "alone"})
+    told[name] = json.loads(sys.__stdout__.getvalue())
+sys.__stdout__ = plain
+sys.meta_path[:] = [finder for finder in sys.meta_path if type(finder).__name__ != "Missing"]
+for name in [name for name in sys.modules if name.partition(".")[0] == "numpy"]:
+    del sys.modules[name]
+
+class Node(dict):
+    __getattr__ = dict.get
+    __setattr__ = dict.__setitem__
+
+sys.modules["nbformat"] = types.ModuleType("nbformat")
+sys.modules["nbformat"].read = lambda path, as_version: json.load(open(path), object_hook=Node)
+shutil.copytree("/wheels/authoring", "/packages/coursework/authoring")
+sys.path.append("/wheels")
+from released import digests_of
+released = {}
+for path in sorted(glob.glob("/wheels/sources/*.ipynb")):
+    try:
+        released |= digests_of(path)
+    except ValueError as error:
+        if "numpy" not in str(error):
+            raise
+json.dump({"cells": told, "released": released}, open("/wheels/told.json", "w"))
+"""
+
+
+def numbers_in_a_browser(only):
+    """The moves of those cells that need SymPy only, and the digests of the sources that need no more."""
+    kinds, stored = kinds_of_cells(), {}
+    for path in notebooks(only):
+        name = str(path.relative_to(REPOSITORY).with_suffix(""))
+        if any(not kind["needs"] for kind in kinds[name]):
+            cells = nbformat.read(path, as_version=4).cells
+            stored[name] = [cell for cell in cells if cell.cell_type == "code"]
+    codes = {name: [cell.source for cell in cells] for name, cells in stored.items()}
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        own = build_wheel(folder / "built")
+        for wheel in (own, *(wheel for wheel in compile_wheels(sorted(FETCHED.glob("*.whl"))))):
+            shutil.copy(wheel, folder)
+        write_python(folder / "python")
+        shutil.copytree(REPOSITORY / "src" / "coursework" / "authoring", folder / "authoring")
+        shutil.copy(Path(__file__).with_name("released.py"), folder)
+        (folder / "sources").mkdir()
+        for path in sources(only):
+            shutil.copy(path, folder / "sources")
+        (folder / "codes.json").write_text(json.dumps({"cells": codes, "packages": PACKAGES}), "utf8")
+        (folder / "alone.py").write_text(ALONE, "utf8")
+        (folder / "program.py").write_text(IN_A_BROWSER, "utf8")
+        subprocess.run([NODE, COMPILER[0], PYODIDE / "pyodide.mjs", folder / "program.py", folder], check=True)
+        told = json.loads((folder / "told.json").read_text("utf8"))
+    moved = [
+        found
+        for name, cells in stored.items()
+        for number, (cell, kind, one) in enumerate(zip(cells, kinds[name], told["cells"][name], strict=True))
+        if not kind["needs"] and cell.execution_count is not None
+        for found in moves_in_a_browser(f"{name}, cell {number}", cell, one)
+    ]
+    return {"kernel": "", "cells": moved, "doctests": [], "released": told["released"]}
+
+
+def moves_in_a_browser(place, cell, told):
+    before, after = stored_outputs(cell), outputs_of_messages(told["messages"])
+    if told["outcome"]["status"] != "ok" or [form for form, _ in before] != [form for form, _ in after]:
+        return [(place, str(told["outcome"])[-300:], math.inf)]
+    return [found for (_, text), (_, now) in zip(before, after) for found in in_words(place, moves(text, now))]
+
+
+# --- on all of them -----------------------------------------------------------------------------
+
+
+def machines():
+    """Each machine that this processor can be, with what is to be said to its libraries; and those it cannot be."""
+    import numpy._core._multiarray_umath as umath
+
+    has = {name for name, there in umath.__cpu_features__.items() if there}
+    possible, impossible = {"as it is": {}}, {}
+    for kernel, lacking in KERNELS.items():
+        if kernel == "SkylakeX" and NEEDED not in has:
+            impossible[kernel] = "this processor has no AVX-512"
+            continue
+        disabled = " ".join(name for name in lacking if name in has)
+        for words, threads in THREADS.items():
+            possible[f"{kernel}, {words}"] = {
+                "OPENBLAS_CORETYPE": kernel,
+                "OPENBLAS_NUM_THREADS": threads,
+                **({"NPY_DISABLE_CPU_FEATURES": disabled} if disabled else {}),
+            }
+    return possible, impossible
+
+
+def numbers_of(environment, only):
+    done = subprocess.run(
+        [sys.executable, "-m", __spec__.name, "--here", *only],
+        cwd=REPOSITORY,
+        env=os.environ | environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("only", nargs="*", help="notebooks, by the names of their files; all of them if there is none")
+    parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.here:
+        print(json.dumps(numbers_here(options.only)))
+        return
+    possible, impossible = machines()
+    faults, first = [], None
+    print("| machine | cells that moved | the largest move | doctests that fail | released otherwise |")
+    print("| --- | ---: | --- | ---: | ---: |")
+    for name, environment in [*possible.items(), (BROWSERS, None)]:
+        found = numbers_in_a_browser(options.only) if environment is None else numbers_of(environment, options.only)
+        wanted = (environment or {}).get("OPENBLAS_CORETYPE")
+        if wanted and found["kernel"] and found["kernel"] != wanted:
+            faults.append(f"{name}: OpenBLAS has chosen {found['kernel']}")
+        first = first or found["released"]
+        others = [what for what, known in found["released"].items() if first.get(what) != known]
+        print(row(name, found["cells"], found["doctests"], others), flush=True)
+        faults += [f"{name}: {place}: {words}" for place, words, share in found["cells"] if share > 1]
+        faults += [f"{name}: {line}" for line in found["doctests"]]
+        faults += [f"{name}: {what} is released otherwise than on this machine as it is" for what in others]
+    for name, why in impossible.items():
+        print(f"| {name} | not tried: {why} | | | |")
+    sys.exit("\n".join(faults) or 0)
+
+
+def row(name, moved, doctests, released):
+    places = defaultdict(list)
+    for place, words, _ in moved:
+        places[place].append(words)
+    largest = max(moved, key=lambda told: told[2], default=("", "", 0))
+    told = f"{largest[0]}: {largest[1]}" if moved else ""
+    return f"| {name} | {len(places)} | {told} | {len(doctests)} | {len(released)} |"
+
+
+if __name__ == "__main__":
+    main()
