@@ -93,10 +93,6 @@ MESSAGES = {
     # Of an axis and an angle: the axis is neither halved nor doubled.
     "half": lambda question: "The angle is half of what it should be; the axis is right.",
     "double": lambda question: "The angle is twice what it should be; the axis is right.",
-    "other order, and a sign": lambda question, turn: (
-        f"Two things: the angle of {_turn(turn)} has the wrong sign, and the product is in the wrong order. "
-        f"{_other_order(question)}"
-    ),
 }
 
 
@@ -137,7 +133,6 @@ DEEDS = {
     "axis reversed": "turned the wrong way round",
     "sequence reversed": "gave the sequence in reverse",
     "cosine for sine": "interchanged sine and cosine",
-    "other order, and a sign": "multiplied in the other order and gave the {turn} angle the wrong sign",
     "impossible sequence": "gave a sequence that is none",
     "zero axis": "gave an axis of length zero",
     "not orthogonal": "gave a matrix that is not orthogonal",
@@ -201,8 +196,6 @@ def _of_turns(build, turns):
     if count > 1:
         yield Mistake("other order", {}, build(turns[::-1]))
         yield Mistake("sign of every turn", {}, build(changed(*range(count))))
-        for turn in range(count):
-            yield Mistake("other order, and a sign", {"turn": turn}, build(changed(turn)[::-1]))
         for turn in range(count):
             yield Mistake("turn missing", {"turn": turn}, build(turns[:turn] + turns[turn + 1 :]))
     for first, second in itertools.combinations(range(count), 2):

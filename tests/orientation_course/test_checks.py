@@ -744,20 +744,6 @@ def test_messages_speak_of_what_was_asked_for():
                 assert "matrix" not in message(one.public, mistake.note, mistake.details).replace("with matrices", "")
 
 
-@pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
-@pytest.mark.parametrize("sequence", ["zx", "zxy", "xyx"])
-def test_another_order_with_a_wrong_sign_is_one_diagnosis(kind, sequence):
-    turns = list(zip(sequence, (theta, alpha, phi)))
-    build = plugins.kinds()[kind].build
-    symbols = " ".join(str(angle) for _, angle in turns)
-    one = make("trial/os", kind, build(turns), frames=("D", "A"), symbols=symbols, turns=turns)
-    for turn in range(len(turns)):
-        slipped = [(axis, -angle if place == turn else angle) for place, (axis, angle) in enumerate(turns)]
-        reply = reply_to(one, build(slipped[::-1]))
-        assert reply.note == "other order, and a sign" and len(reply.messages) == 1
-        assert reply.details == {"turn": turn}
-
-
 def test_one_answer_gets_one_diagnosis():
     """Where two mistakes lead to one answer, both are true of it; being told two things helps nobody."""
     one = KINDS["symbols in a matrix"]

@@ -38,15 +38,6 @@ def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
             assert max(found) % 8 == 0 and len(set(found)) == 1, name
 
 
-def test_how_many_pages_there_are_tells_no_variant_from_another():
-    """All but the first, whose pages the others share, have as many as each other."""
-    counts = collections.defaultdict(set)
-    for path in (COURSE.sealed / "variants").glob("*.json"):
-        for name, about in json.loads(path.read_text("utf8"))["questions"].items():
-            counts[name].add(len(about.get("pages") or ()))
-    assert len(counts) >= 60 and all(len(found) == 1 for found in counts.values())
-
-
 def test_the_book_has_variants_that_stay_small():
     counts = [about["variants"] for about in of_the_book().values()]
     assert len(counts) >= 60 and sum(count >= 16 for count in counts) >= 27

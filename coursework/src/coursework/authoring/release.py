@@ -278,25 +278,8 @@ def _even_out(name, code, course):
         most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
         for one in ones:
             one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
-        # The pages of a variant follow upon those of the first one, to which no empty one can be added.
-        _even_pages(ones[1:], code)
     for file, content in zip(files, contents, strict=True):
         file.write_text(_as_text(content), "utf8")
-
-
-def _even_pages(variants, code):
-    """Give variants of a question as many pages each, with empty ones after those that a locker names."""
-    lengths = [list(map(len, one.get("pages") or ())) for one in variants]
-    most = max(map(len, lengths), default=0)
-    usual = sorted(length for some in lengths for length in some)
-    for one in variants:
-        pages = list(one.get("pages") or ())
-        for order in range(most - len(pages)):
-            seed = hashlib.sha256(f"{code} {one['salt']} page {order}".encode())
-            length = usual[int.from_bytes(seed.digest()[:4], "big") % len(usual)]
-            pages.append(sealing.empty_page(length, seed.digest()))
-        if pages:
-            one["pages"] = pages
 
 
 def _run_one(path, sealed):

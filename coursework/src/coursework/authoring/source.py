@@ -316,7 +316,8 @@ def _demand_shown(file, notebook, rules, given, texts, questions):
                 f"{name}: its text shows {{{{{unknown[0]}}}}}, which is not drawn; drawn are {', '.join(given[name])}."
             )
         unseen = [one for one in unshown if not re.search(rf"\b{one}\b", code)]
-        if unseen and not rules[name].picture:
+        # What `where` ties to others may stand for them.
+        if unseen and not rules[name].picture and not rules[name].where:
             raise author.AuthorError(
                 f"{name}: students would not see {unseen[0]}, which is drawn: neither its text, which would show it as "
                 f"{{{{{unseen[0]}}}}}, nor a cell that they get, nor a picture."

@@ -153,11 +153,6 @@ def seal(content, key):
     return _text(hidden + _tag(hidden, key, "page")[:PAGE_TAG])
 
 
-def empty_page(length, secret):
-    """A page of so many characters that no key opens: only the secret tells it from the others."""
-    return _text(hashlib.shake_256(secret).digest(length * 4 // 5)).ljust(length, "0")[:length]
-
-
 def unseal(sealed, key):
     """Open what :func:`seal` locked.
 

@@ -15,7 +15,7 @@ import json
 import re
 import zlib
 
-from .identity import forgotten, identity, plain_identity
+from .identity import identity, plain_identity
 
 #: So many siblings of a question count: with all of them, somebody else's answer would count, too.
 SIBLINGS = 2
@@ -149,5 +149,4 @@ def variant(name: str) -> Given:
     from .questions import find_question
 
     question = find_question(name)
-    said = forgotten(question)
-    return Given(text_of(question) + (f"\n\n{said}" if said else ""), question.get("given", {}))
+    return Given(text_of(question), question.get("given", {}))

@@ -12,6 +12,7 @@ import io
 import json
 import os
 import random
+import re
 import zipfile
 from pathlib import Path
 from typing import NamedTuple
@@ -255,7 +256,7 @@ class _Student:
         self.exercise, self.answers, self.dice, self.identity = exercise, answers, dice, identity
         self.cells = copy.deepcopy(exercise.cells)
         for cell in self.cells:
-            cell.source = cell.source.replace("student('')", f"student({identity!r})")
+            cell.source = re.sub(r"(student|me)\(''\)", lambda found: f"{found[1]}({identity!r})", cell.source)
         self.expected = {name: ["not attempted", ""] for name in exercise.questions}
         self.did = []
         skill = dice.betavariate(4, 1.6)
