@@ -9,7 +9,6 @@ decides names what was decided when they looked: if it is another by then, nothi
 import contextlib
 import csv
 import datetime
-import fcntl
 import getpass
 import hashlib
 import json
@@ -18,6 +17,7 @@ import secrets
 from typing import NamedTuple
 
 from .identity import decoded
+from .locks import lock
 from .tables import as_written
 
 FILE = "ledger.jsonl"
@@ -255,7 +255,7 @@ class Ledger:
     def _alone(self):
         """Keep other writers away, and know what they have written."""
         with open(self.path, "ab+") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
+            lock(file)
             file.seek(0)
             whole = file.read()
             cut = whole[whole.rfind(b"\n") + 1 :]
