@@ -15,7 +15,7 @@ from pathlib import Path
 import yaml
 
 from . import install, offline
-from .paths import BUILD, HTML, WEBSITE, fingerprint, package, pages
+from .paths import BUILD, HTML, WEBSITE, fingerprint, let_everybody_read, package, pages
 
 NAME = package()["name"]
 FOLDER = HTML / "take-away"
@@ -143,6 +143,7 @@ def main():
             print(f"Made in {time.monotonic() - start:.0f} s: {path}, {path.stat().st_size / 1e6:.1f} MB")
     write_front_page()
     install.write_list(HTML)
+    let_everybody_read(HTML)
 
 
 if __name__ == "__main__":

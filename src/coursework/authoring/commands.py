@@ -65,18 +65,30 @@ def wheels(folder):
     print(*(wheel(name, folder) for name in DISTRIBUTIONS), sep="\n")
 
 
+def _writable(page):
+    """The path of a page that is to be written; that it cannot be is said before the work is done."""
+    from .author import AuthorError
+
+    try:
+        Path(page).parent.mkdir(parents=True, exist_ok=True)
+        open(page, "a").close()
+    except OSError as error:
+        raise AuthorError(f"{page} cannot be written ({error.strerror}). Say where the page may go: --page") from None
+    return page
+
+
 def trial(name, page):
     from .trial import trial as show
 
     course = _course()
-    print(f"The page: {show(course, name, page or course.archive.with_name('try.html'))}")
+    print(f"The page: {show(course, name, _writable(page or course.archive.with_name('try.html')))}")
 
 
 def selftest(only, page, budget, **folders):
     from .selftest import selftest as try_all
 
     course = _course(**folders)
-    page = page or course.archive.with_name("selftest.html")
+    page = _writable(page or course.archive.with_name("selftest.html"))
     faults = try_all(course, page, budget, only)
     print(f"The page: {page}")
     if faults:

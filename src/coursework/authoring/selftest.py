@@ -6,6 +6,7 @@ with it, if anything is.
 
 import base64
 import concurrent.futures
+import contextlib
 import hashlib
 import html
 import io
@@ -428,8 +429,10 @@ def attack_kept(question, text, budget, folder):
     place = Path(folder, f"{hashlib.sha256(asked.encode()).hexdigest()[:24]}.json")
     if not place.exists():
         found = attack(question, text, budget)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_text(json.dumps(found), "utf8")
+        with contextlib.suppress(OSError):  # where nothing can be written, it is not kept
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(json.dumps(found), "utf8")
+        return found
     return Found(*json.loads(place.read_text("utf8")))
 
 
