@@ -241,6 +241,31 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(statics, tmp_pa
     assert "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()
 
 
+def test_a_release_says_what_the_selftest_will_refuse(statics, tmp_path, monkeypatch, capsys):
+    """The deflection of a beam, with numbers of one's own: an ordinary question, and soon guessed."""
+    course = shutil.copytree(statics, tmp_path / "course")
+    answer = (
+        "### BEGIN SOLUTION\ndeflection = 450 * 2**3 / (3 * 2000)\n### END SOLUTION\ncheck('beam/tip', deflection)\n"
+    )
+    hidden = "### BEGIN HIDDEN TESTS\nquestion('beam/tip', kind='expression', worth=3)\n### END HIDDEN TESTS"
+    text = "The load is 450 N, the length 2 m, and EI is 2000 N m2. Give the deflection F l^3 / 3EI as `deflection`."
+    cells = [
+        ("code", "import sympy as sm\nfrom coursework import check"),
+        ("markdown", text),
+        ("code", answer + hidden),
+    ]
+    write_source(course / "solutions", *cells, name="beam")
+    monkeypatch.chdir(course)
+    main(["release", "beam"])
+    said = capsys.readouterr().out
+    assert re.search(r"selftest` will refuse beam/tip: It can be guessed: found after \d+", said), said
+    assert "first-steps" not in said
+    kept = set((course / "build" / "attacks").iterdir())
+    with pytest.raises(SystemExit, match="beam/tip: It can be guessed"):
+        main(["selftest", "beam"])
+    assert set((course / "build" / "attacks").iterdir()) == kept
+
+
 def test_one_notebook_is_tried_alone(statics, tmp_path, monkeypatch, capsys):
     course = shutil.copytree(statics, tmp_path / "course")
     shutil.copy(EXAMPLE / "solutions" / "moments.ipynb", course / "solutions")
