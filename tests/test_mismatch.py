@@ -111,7 +111,7 @@ def test_the_pose_that_is_asked_for_decides(count, start):
         texts = [printed(numbers) for numbers in both_sides(truth, dcm[None])]
         found = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
         assert found.further_pose, (truth.words(), str(found))
-        turns = next(turns for words, turns in explanation.FURTHER_POSES if words == found.further_pose)
+        turns = next(turns for words, turns in table.FURTHER_POSES if words == found.further_pose)
         for name, degrees in turns:
             dcm = np.array(simple_dcm(name, np.radians(degrees + generator.uniform(-4, 4)))) @ dcm
         more = [printed(numbers) for numbers in both_sides(truth, dcm[None])]

@@ -13,19 +13,6 @@ from .meaning import dcms_from_numbers, numbers_from_dcms
 from .mounting import mountings
 from .text import Poses, read_poses
 
-#: Turns that a reader can make with a thing in the hand: each the words, and the turns about the body's own axes.
-FURTHER_POSES = (
-    ("turn it by about 40 degrees about its x axis", (("x", 40),)),
-    ("turn it by about 30 degrees about its y axis", (("y", 30),)),
-    ("turn it by about 50 degrees about its z axis", (("z", 50),)),
-    ("turn it by about 40 degrees about its x axis, then by about 25 about its own y axis", (("x", 40), ("y", 25))),
-    (
-        "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, "
-        "then by about 20 about its own x axis",
-        (("z", 50), ("y", 30), ("x", 20)),
-    ),
-)
-
 #: Of so many readings it is seen whether a further pose tells them apart; more are told apart by a pose of three turns.
 LOOKED_AT = 300
 
@@ -198,10 +185,10 @@ def _further_pose(chains, sides):
     """
     chains = chains[:LOOKED_AT]
     readings = {id(chain.first): chain.first for chain in chains}.values()
-    for words, turns in FURTHER_POSES:
+    for words, turns in table.FURTHER_POSES:
         if all(_tells_apart(chains, _turned(reading, sides[0][0].numbers[-1:], turns)) for reading in readings):
             return words
-    return FURTHER_POSES[-1][0]
+    return table.FURTHER_POSES[-1][0]
 
 
 def _turned(reading, numbers, turns):
