@@ -10,19 +10,19 @@ from test_mismatch import BAD, QUATERNIONS, SPELLINGS, both_sides, known, printe
 
 from orientation import quaternion_from_dcm, random_orientations, simple_dcm
 from orientation_workbench import explain
-from orientation_workbench.mismatch import table
+from orientation_workbench.mismatch import mend, table
 from website.paths import NODE, REPOSITORY
 
 SCRIPTS = REPOSITORY / "src" / "orientation_figures" / "moving" / "js"
 PROGRAM = """
 import { readFileSync } from 'node:fs';
-import { explain } from '%s';
+import { explain, mendingLine } from '%s';
 const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
 console.log(JSON.stringify(cases.map(({ first, second, declared, noise }) => {
   try {
     const found = explain(first, second, table, { firstDeclared: declared[0], secondDeclared: declared[1], noise });
     return { verdict: found.verdict, faults: found.faults, left: found.chains.length, residual: found.residual,
-      further: found.furtherPose };
+      further: found.furtherPose, mended: found.verdict === 'named' ? mendingLine(found.chains[0]) : '' };
   } catch (error) { return { error: error.message }; }
 })));
 """
@@ -43,7 +43,8 @@ def in_python(case):
     except ValueError as error:
         return {"error": str(error)}
     return {"verdict": found.verdict, "faults": list(found.faults), "left": len(found.chains),
-            "residual": found.residual, "further": found.further_pose}  # fmt: skip
+            "residual": found.residual, "further": found.further_pose,
+            "mended": mend.python_line(found.chains[0]) if found.verdict == "named" else ""}  # fmt: skip
 
 
 def case(first, second, declared=({}, {}), noise=0.0):

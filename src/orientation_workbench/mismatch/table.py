@@ -312,6 +312,21 @@ FURTHER_POSES = (
 )
 
 
+#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation.
+TAUGHT = {
+    "order": ("chapters/convention-card.html", "The convention card"),
+    "sequence": ("chapters/euler-angles.html", "Euler angles"),
+    "axes of the turns": ("chapters/successive-orientations.html", "Successive orientations"),
+    "places": ("chapters/euler-angles.html", "Euler angles"),
+    "signs": ("chapters/simple-orientations.html", "Simple orientations"),
+    "unit": ("chapters/convention-card.html", "The convention card"),
+    "place of the angle": ("chapters/axis-and-angle.html", "Axis and angle"),
+    "inverse": ("chapters/direction-cosine-matrices.html", "Direction cosine matrices"),
+    "axes": ("chapters/cases-from-practice.html", "Cases from practice"),
+    "turn": ("chapters/cases-from-practice.html", "Cases from practice"),
+}
+
+
 def whole_table():
     """The table as plain data, for the page."""
     return {
@@ -320,6 +335,7 @@ def whole_table():
         "kinds": KINDS,
         "book": BOOK,
         "inverse": INVERSE,
+        "taught": TAUGHT,
         "further poses": [[words, [list(turn) for turn in turns]] for words, turns in FURTHER_POSES],
         "body axes": [[list(names), words] for names, words in BODY_AXES.items()],
         "world axes": [[list(names), words] for names, words in WORLD_AXES.items()],

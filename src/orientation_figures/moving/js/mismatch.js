@@ -492,3 +492,74 @@ export function drawnDcms(explanation, table, pose) {
     return dcmFromNumbers(reading, poses.numbers[pose]);
   });
 }
+
+// For each of the words of a chain the page of the book that teaches it: [address, title].
+export function taughtBy({ first, second, relation }, table) {
+  const links = [];
+  for (const { kind, words } of [first, second]) {
+    for (const said of words) {
+      const own = table.kinds[kind].find(({ choices }) => choices.some((option) => option.words === said));
+      links.push(table.taught[own?.group] ?? null);
+    }
+  }
+  if (relation.inverse) links.push(table.taught.inverse);
+  for (const whose of ['body', 'world']) if (relation[`${whose} turn`]) links.push(table.taught.turn);
+  return [...links, table.taught.axes, table.taught.axes];
+}
+
+// ---- the line that mends it: as orientation_workbench.mismatch.mend ----------------------------------------
+
+const rowsInPython = (rows) => `[${rows.map((row) => `[${row.join(', ')}]`).join(', ')}]`;
+const inPython = (names) => `np.array(${rowsInPython(axesMatrix(names))})`;
+const turnInPython = (dcm) => `np.array(${rowsInPython(dcm.map((row) => row.map((entry) => {
+  const rounded = Number(entry.toFixed(6)) + 0;
+  return Number.isInteger(rounded) ? `${rounded}.0` : String(rounded);
+})))})`;
+const ascending = (places) => places.every((place, k) => place === k);
+const subscript = (places) => (ascending(places) ? '' : `[[${places.join(', ')}]]`);
+const sorted = (places) => places.every((place, k) => k === 0 || places[k - 1] <= place);
+const pick = (name, places) => (sorted(places) ? name : `${name}[[${places.join(', ')}]]`);
+const signed = (choices, name) => (choices.signs === '+++' ? name : `(${name} * np.array([${[...choices.signs].map((sign) => `${sign}1`.replace('+', '')).join(', ')}]))`);
+const letters = (choices) => (choices['axes of the turns'] === 'space fixed' ? choices.sequence : choices.sequence.toUpperCase());
+const inDegrees = (choices) => (choices.unit === 'degrees' ? ', degrees=True' : '');
+const indices = (order, wanted) => [...wanted].map((part) => order.indexOf(part));
+
+function readInPython({ kind, choices }, name) {
+  if (kind === 'matrix') return name;
+  if (kind === 'quaternion') return `Rotation.from_quat(${pick(name, indices(choices.order, 'xyzw'))}).as_matrix().T`;
+  if (kind === 'Euler angles') {
+    return `Rotation.from_euler('${letters(choices)}', ${signed(choices, pick(name, indices(choices.places, '123')))}${inDegrees(choices)}).as_matrix().T`;
+  }
+  if (kind === 'rotation vector') return `Rotation.from_rotvec(${name}${inDegrees(choices)}).as_matrix().T`;
+  const vector = choices['place of the angle'] === 'last' ? `${name}[3] * ${name}[:3]` : `${name}[0] * ${name}[1:]`;
+  return `Rotation.from_rotvec(${vector}${inDegrees(choices)}).as_matrix().T`;
+}
+
+function writeInPython({ kind, choices }, matrix) {
+  if (kind === 'matrix') return matrix;
+  const there = matrix.endsWith('.T') && !matrix.includes('@') ? matrix.slice(0, -2) : `(${matrix}).T`;
+  if (kind === 'quaternion') return `Rotation.from_matrix(${there}).as_quat()${subscript(indices('xyzw', choices.order))}`;
+  if (kind === 'Euler angles') {
+    return signed(choices, `Rotation.from_matrix(${there}).as_euler('${letters(choices)}'${inDegrees(choices)})`)
+      + subscript([...choices.places].map((which) => Number(which) - 1));
+  }
+  const whole = `Rotation.from_matrix(${there}).as_rotvec(${inDegrees(choices).slice(2)})`;
+  if (kind === 'rotation vector') return whole;
+  return choices['place of the angle'] === 'first' ? `np.concatenate([[np.linalg.norm((v := ${whole}))], v / np.linalg.norm(v)])`
+    : `np.concatenate([(v := ${whole}) / np.linalg.norm(v), [np.linalg.norm(v)]])`;
+}
+
+export function mendingLine({ first, second, relation }) {
+  const plain = relation.body === SAME_AXES && relation.world === SAME_AXES && !('body turn' in relation);
+  if (plain && first.kind === 'quaternion' && second.kind === 'quaternion') {
+    const line = pick('second', indices(second.choices.order, first.choices.order));
+    return relation.inverse ? `${line} * np.array([${[...first.choices.order].map((part) => (part === 'w' ? 1 : -1)).join(', ')}])` : line;
+  }
+  let matrix = readInPython(second, 'second');
+  if (relation['body turn']) matrix = `${turnInPython(transpose(relation['body turn']))} @ ${matrix}`;
+  if (relation['world turn']) matrix = `${matrix} @ ${turnInPython(transpose(relation['world turn']))}`;
+  if (relation.body !== SAME_AXES) matrix = `${inPython(relation.body)}.T @ ${matrix}`;
+  if (relation.world !== SAME_AXES) matrix = `${matrix} @ ${inPython(relation.world)}`;
+  if (relation.inverse) matrix = matrix.includes('@') ? `(${matrix}).T` : `${matrix}.T`;
+  return writeInPython(first, matrix.replace(/\.T\.T$/, ''));
+}
