@@ -411,23 +411,27 @@ function samplesOf(kind, poses, table) {
   return SAMPLES.map((dcm) => numbersFromDcm(plain, dcm.map((row) => scale(hand, row)))[0]);
 }
 
-// What a chain predicts that the second side gives where the first gives these numbers: equal for chains that are
-// mathematically the same.
+// What a chain predicts that the second side gives where the first gives these numbers, as keys: two chains that share
+// one are mathematically the same, for an orientation has two triples of Euler angles, and either may be printed.
 function predictionsOf(chains, samples, decimals, table) {
   const dcms = new Map(), factor = 10 ** decimals;
   return chains.map((chain) => {
     if (!dcms.has(chain.first)) dcms.set(chain.first, samples[chain.first.kind].map((numbers) => dcmFromNumbers(chain.first, numbers)));
     const plain = plainReading(chain.second.kind, table);
-    const key = dcms.get(chain.first).map((dcm) => numbersFromDcm(chain.second, related(chain.relation, dcm))
-      .map((numbers) => dcmFromNumbers(plain, numbers).flat().map((entry) => Math.round(entry * factor) + 0).join()).sort());
-    return JSON.stringify([chain.first.kind, chain.second.kind, key]);
+    const eachSample = dcms.get(chain.first).map((dcm) => [...new Set(numbersFromDcm(chain.second, related(chain.relation, dcm))
+      .map((numbers) => dcmFromNumbers(plain, numbers).flat().map((entry) => Math.round(entry * factor) + 0).join()))]);
+    return eachSample.reduce((keys, own) => keys.flatMap((key) => own.map((one) => `${key};${one}`)), [`${chain.first.kind};${chain.second.kind}`]);
   });
 }
 
 function classesOf(chains, poses, table) {
-  const found = new Map(), samples = Object.fromEntries(poses.kinds.map((kind) => [kind, samplesOf(kind, poses, table)]));
-  predictionsOf(chains, samples, 5, table).forEach((key, k) => { if (!found.has(key)) found.set(key, chains[k]); });
-  return [...found.values()];
+  const found = [], seen = new Set(), samples = Object.fromEntries(poses.kinds.map((kind) => [kind, samplesOf(kind, poses, table)]));
+  predictionsOf(chains, samples, 5, table).forEach((keys, k) => {
+    if (keys.some((key) => seen.has(key))) return;
+    found.push(chains[k]);
+    for (const key of keys) seen.add(key);
+  });
+  return found;
 }
 
 function turnedNumbers(reading, numbers, turns) {
@@ -442,7 +446,7 @@ function furtherPose(all, poses, table) {
   const decides = ([, turns]) => readings.every((reading) => {
     const own = chains.filter(({ first }) => first.kind === reading.kind);
     const keys = predictionsOf(own, { [reading.kind]: [turnedNumbers(reading, poses.numbers.at(-1), turns)] }, 2, table);
-    return new Set(keys).size === keys.length;
+    return new Set(keys.flat()).size === keys.flat().length;
   });
   return (table['further poses'].find(decides) ?? table['further poses'].at(-1))[0];
 }
