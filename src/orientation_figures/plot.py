@@ -30,12 +30,15 @@ SETTINGS = {
     "ytick.color": LIGHT["muted"],
     "grid.color": LIGHT["muted"],
     "grid.alpha": 0.25,
-    "lines.linewidth": 2.2,
+    "lines.linewidth": 1.9,
     "legend.frameon": False,
     "axes.facecolor": "none",
     "figure.facecolor": "none",
     "savefig.facecolor": "none",
 }
+
+
+SET = 0.8  # of the size on a wide page
 
 
 class Plot:
@@ -75,8 +78,8 @@ class Plot:
             )
         self.alt, self.colours, self.width = alt.strip(), LIGHT, width
         with matplotlib.rc_context(SETTINGS):
-            # A pixel of the page is a point of Matplotlib's, so that sizes in text agree.
-            self.figure = Figure(figsize=(width / 72, height / 72), layout="constrained")
+            # Set smaller than it is shown, so that its words can still be read where a telephone shrinks the whole.
+            self.figure = Figure(figsize=(SET * width / 72, SET * height / 72), layout="constrained")
             self.axes = self.figure.subplots(rows, sharex=True)
 
     def __enter__(self):

@@ -98,6 +98,6 @@ function sentence(theta, passed, turns) {
     return `${by} It lies as at first, but the belt is twisted, and $q$ has come to −1. ${passed > 0.995
       ? 'Passed round the plate, the belt is twisted the other way: the twist has not gone.' : 'Now hold the plate and pass the belt round it.'}`;
   }
-  return `${by} The belt is twisted twice, and $q$ is 1 again. ${passed > 0.995
-    ? 'Passed round the plate, which has not turned, the belt is flat: two full turns can be undone, one cannot.' : 'Hold the plate and pass the belt round it.'}`;
+  return passed > 0.995 ? `${by} Passed round the plate, which has not turned, the belt is flat: two full turns can be undone, one cannot.`
+    : `${by} The belt has twice the twist, and $q$ is 1 again. Hold the plate and pass the belt round it.`;
 }

@@ -76,7 +76,7 @@ export function render({ model, el }) {
     'aria-valuemax': '90' }, element('span'));
   const margin = element('span', { class: 'value' });
   const text = liveText();
-  const more = model.get('more');
+  const more = model.get('more') !== false;
   open(el, stage(sheet, text), element('div', { class: 'readouts' }, ...(more ? [sequence.element] : []),
     element('div', { class: 'controls' }, ...sliders.map((one) => one.element),
       group('Move the gimbal', 'row-of-controls', ...(more ? buttons : buttons.slice(0, 1)))),

@@ -15,9 +15,9 @@ export function render({ model, el }) {
   const double = doubleView(model), way = wayView(model);
   const views = { double, way };
   const switches = [['double', '$q$ and $-q$'], ['way', 'From $A$ to $B$']].map(([name, text]) => button(text, () => change(model, { view: name })));
-  const across = model.get('more') ? [element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches))] : [];
-  const root = open(el, ...across, ...double.parts, ...(model.get('more') ? way.parts : []));
-  root.classList.toggle('two-views', model.get('more'));
+  const across = model.get('more') !== false ? [element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches))] : [];
+  const root = open(el, ...across, ...double.parts, ...(model.get('more') !== false ? way.parts : []));
+  root.classList.toggle('two-views', model.get('more') !== false);
 
   function draw() {
     const shown = model.get('view');
@@ -36,7 +36,7 @@ export function render({ model, el }) {
 // ---- q and -q ------------------------------------------------------------------------------------------
 
 function doubleView(model) {
-  const self = { redraw() {} }, more = model.get('more');
+  const self = { redraw() {} }, more = model.get('more') !== false;
   let lit = null, typed = [0, 0, 0], stop = () => {};
   const turnTo = (angle) => {
     stop();

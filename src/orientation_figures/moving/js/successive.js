@@ -91,7 +91,7 @@ export function render({ model, el }) {
   const text = liveText();
   open(el, stage(sheet, text),
     element('div', { class: 'controls chain' }, chain.element,
-      ...(model.get('more') ? [element('div', { class: 'row-of-controls' }, about.element, compare.element)] : []), ...rows.map((row) => row.element),
+      ...(model.get('more') !== false ? [element('div', { class: 'row-of-controls' }, about.element, compare.element)] : []), ...rows.map((row) => row.element),
       element('div', { class: 'row-of-controls' }, more, fewer)),
     element('div', { class: 'readouts' },
       readout([title], product), readout(['Multiplied out'], result.element)));
@@ -120,7 +120,7 @@ export function render({ model, el }) {
     heads.forEach((head, k) => writeWords(head, hat(end, AXES[k])));
     result.show(dcm.map((row) => row.map((entry) => fixed(entry))));
     sheet.draw(() => picture(sheet, { turns, kind, share, other, lit }));
-    text.say(sentence(end, kind, dcm, comparison, otherDcm, lit, model.get('more')));
+    text.say(sentence(end, kind, dcm, comparison, otherDcm, lit, model.get('more') !== false));
   }
 
   draw();

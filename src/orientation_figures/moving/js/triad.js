@@ -57,7 +57,7 @@ export function render({ model, el }) {
         ...fields.map((field) => field.element), ...presets)),
     element('div', { class: 'readouts' },
       readout(['Direction cosine matrix ${}^A\\mathbf{C}^N$'], matrix.element),
-      ...(model.get('more') ? [readout(['Euler angles', sequence.element], euler.element),
+      ...(model.get('more') !== false ? [readout(['Euler angles', sequence.element], euler.element),
         readout(['Axis and angle'], axisAngle.element), readout(['Quaternion'], quaternion.element)] : [])));
 
   function draw() {

@@ -1,0 +1,87 @@
+"""The last pass over the built pages: what can be written into them only when everything is there.
+
+- The address of each script and style carries a version, made of its contents: no cache mixes old ones with new pages.
+- Each page names the policy by which it lives (Content-Security-Policy): what the browser may load, and from where.
+- Pages with code say what it weighs to start Python.
+"""
+
+import base64
+import json
+import posixpath
+import re
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+
+from .live.runtime import FOLDER, LOCK
+
+VERSIONED = re.compile(
+    r'(<(?:script|link)\b[^>]*?\s(?:src|href)=")([^"?#:]+\.(?:js|css|svg|png|webmanifest))(?:\?v=\w*)?"'
+)
+INLINE = re.compile(r"<script(?: [^>]*)?>(.*?)</script>", re.DOTALL)
+CHARSET = re.compile(r'(<meta charset="utf-8" ?/?>)(?:<meta http-equiv="Content-Security-Policy"[^>]*>)?')
+#: Styles stand in the text because KaTeX and the drawings place their parts by them. Scripts do not, except for those
+#: that the build has written, each known by its fingerprint; `blob:` is what a cell shows that the reader has run.
+POLICY = {
+    "default-src": "'self'",
+    "script-src": "'self' 'wasm-unsafe-eval' blob:",
+    "style-src": "'self' 'unsafe-inline'",
+    "img-src": "'self' data: blob:",
+    "font-src": "'self' data:",
+    "connect-src": "'self' blob:",
+    "worker-src": "'self'",
+    "object-src": "'none'",
+    "base-uri": "'self'",
+    "form-action": "'self'",
+}
+
+
+def pages_of(site):
+    """The pages of the book in ``site``; notebooks in ``lite`` are not pages."""
+    return [path for path in sorted(site.rglob("*.html")) if path.relative_to(site).parts[0] != "lite"]
+
+
+def policy(text, elsewhere):
+    """The policy of the page ``text``, whose Python may fetch from ``elsewhere``."""
+    scripts = [match[1] for match in INLINE.finditer(text) if "src=" not in match[0].partition(">")[0]]
+    data = [match[1] for match in INLINE.finditer(text) if 'type="application/' in match[0].partition(">")[0]]
+    digests = {base64.b64encode(sha256(script.encode()).digest()).decode() for script in scripts if script not in data}
+    rules = {**POLICY, "connect-src": " ".join([POLICY["connect-src"], *elsewhere])}
+    rules["script-src"] += "".join(f" 'sha256-{digest}'" for digest in sorted(digests))
+    return "; ".join(f"{name} {value}" for name, value in rules.items())
+
+
+def write(site):
+    @cache
+    def version(path):
+        return sha256(path.read_bytes()).hexdigest()[:8] if path.is_file() else None
+
+    (listed,) = (site / FOLDER).glob(f"lock-*/{LOCK}")
+    lock = json.loads(listed.read_text("utf8"))
+    addresses = [package["file_name"] for package in lock["packages"].values()]
+    elsewhere = sorted({"/".join(address.split("/")[:3]) for address in addresses if "://" in address})
+    for page in pages_of(site):
+        before = page.read_text("utf8")
+
+        def with_version(match, folder=page.parent):
+            found = version(Path(posixpath.normpath(folder / match[2])))
+            return f'{match[1]}{match[2]}?v={found}"' if found else match[0]
+
+        text = VERSIONED.sub(with_version, before)
+        text = re.sub(r'("bytes":)\d+', rf"\g<1>{lock['bytes']}", text)
+        text = re.sub(r'("lock":")[^"]*', rf"\g<1>{listed.parent.name}/", text)
+        rules = f'<meta http-equiv="Content-Security-Policy" content="{policy(text, elsewhere)}">'
+        text, count = CHARSET.subn(lambda match: match[1] + rules, text)
+        if count != 1:
+            raise RuntimeError(f"{page} must say once how it is encoded; it does {count} times")
+        if text != before:
+            page.write_text(text, "utf8")
+
+
+def finish(app, exception):
+    if not exception and app.builder.format == "html":
+        write(Path(app.outdir))
+
+
+def setup(app):
+    app.connect("build-finished", finish, priority=990)  # after all others

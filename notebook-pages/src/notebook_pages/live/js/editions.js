@@ -1,0 +1,117 @@
+// The editions of the book that this browser keeps, whole or not at all: for the service worker, and for the page's menu.
+// A file lies under its path and its content, so that no edition puts anything in the place of another's; an edition is a
+// list of such files, and the one entry that names the newest is written when all of them are there. What the edition
+// before it had stays for the tabs that still show it. Format 1 had one file for each path; its lists name no format.
+const FORMAT = 2;
+const SILENCE = 20_000; // milliseconds without a byte, after which a file is given up
+const AT_ONCE = 6; // files that are fetched side by side
+
+export class Editions {
+  constructor(site) {
+    this.site = site;
+    this.name = `book ${site}`;
+    this.list = this.address("kept.json"); // in the cache only
+  }
+
+  address(path) {
+    return new URL(this.site + encodeURI(path), location.href).href;
+  }
+
+  // Where a file lies: also what it is fetched by, which no cache on the way takes for another edition's.
+  key(path, print, format = FORMAT) {
+    return this.address(path) + (format === FORMAT ? `?kept=${print}` : "");
+  }
+
+  // {format, edition, parts, files, before}: the newest whole edition, or null. Files are fingerprints by their paths.
+  async newest() {
+    if (!(await caches.has(this.name))) return null;
+    const list = await (await (await caches.open(this.name)).match(this.list))?.json();
+    return list?.edition && (list.format ?? 1) <= FORMAT ? list : null;
+  }
+
+  // The copy of what is asked for by ``url``: of the newest edition, unless it names a version or is of the one before.
+  async find(url) {
+    const list = await this.newest();
+    if (!list) return undefined;
+    const path = decodeURI(url.pathname.slice(this.site.length)).replace(/(^|\/)$/, "$1index.html");
+    const version = url.searchParams.get("v") ?? "";
+    const print = [list.files[path], list.before?.[path]].find((known) => known?.startsWith(version));
+    return print && (await caches.open(this.name)).match(this.key(path, print, list.format ?? 1));
+  }
+
+  // What there is to keep: the server's list, in two parts, of [fingerprint, bytes] by path.
+  async offered() {
+    const answer = await fetch(this.address("offline.json"), { cache: "no-cache", signal: AbortSignal.timeout(SILENCE) });
+    if (!answer.ok) throw new Error("these pages do not say what there is to keep (offline.json)");
+    return answer.json();
+  }
+
+  // The files of some parts that would have to be fetched.
+  async missing(offer, parts) {
+    const files = Object.entries(Object.assign({}, ...parts.map((part) => offer[part])));
+    const there = new Set((await caches.has(this.name)) ? (await (await caches.open(this.name)).keys()).map(({ url }) => url) : []);
+    return files.filter(([path, [print]]) => !there.has(this.key(path, print)));
+  }
+
+  // Fetch what is not there yet, then make it the newest edition. Where this breaks off, nothing has changed but that
+  // less is missing the next time. Two at once would do the same work, so the second one waits. Returns the list.
+  renew(parts, progress = () => {}) {
+    return navigator.locks.request(this.name, async () => {
+      const there = await this.newest(), offer = await this.offered();
+      const wanted = await this.missing(offer, parts ??= there.parts);
+      if (there?.edition === offer.edition && parts.every((part) => there.parts.includes(part))) return there;
+      const cache = await caches.open(this.name);
+      const all = wanted.reduce((sum, [, [, bytes]]) => sum + bytes, 0);
+      let loaded = 0;
+      progress(0, all);
+      const take = async () => {
+        for (let next = wanted.shift(); next; next = wanted.shift()) {
+          const [path, [print, bytes]] = next;
+          await cache.put(this.key(path, print), await this.fetch(path, print));
+          progress(loaded += bytes, all);
+        }
+      };
+      await Promise.all(Array.from({ length: AT_ONCE }, take));
+      const prints = (of) => Object.fromEntries(Object.entries(of).map(([path, [print]]) => [path, print]));
+      const files = prints(Object.assign({}, ...parts.map((part) => offer[part])));
+      const same = there?.edition === offer.edition;
+      const before = same ? there.before : there?.format === FORMAT ? there.files : undefined;
+      const list = { format: FORMAT, edition: offer.edition, parts, files, before };
+      await cache.put(this.list, new Response(JSON.stringify(list), { headers: { "Content-Type": "application/json" } }));
+      const used = new Set([files, before ?? {}].flatMap((of) => Object.entries(of)).map(([path, print]) => this.key(path, print)));
+      for (const { url } of await cache.keys()) if (url !== this.list && !used.has(url)) await cache.delete(url);
+      return list;
+    });
+  }
+
+  // One file, as soon as it is known to be the one that the edition names.
+  async fetch(path, print) {
+    const giveUp = new AbortController();
+    let clock;
+    const wait = () => {
+      clearTimeout(clock);
+      clock = setTimeout(() => giveUp.abort(new Error(`for ${SILENCE / 1000} seconds nothing has come of ${path}`)), SILENCE);
+    };
+    try {
+      wait();
+      const answer = await fetch(this.key(path, print), { cache: "no-cache", signal: giveUp.signal });
+      if (!answer.ok) throw new Error(`${path} did not come (${answer.status})`);
+      const parts = [], reader = answer.body.getReader();
+      for (let { done, value } = await reader.read(); !done; { done, value } = await reader.read()) {
+        wait();
+        parts.push(value);
+      }
+      const content = await new Blob(parts).arrayBuffer();
+      const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", content));
+      const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("").slice(0, print.length);
+      if (found !== print) throw new Error(`${path} is of another edition; try once more`);
+      return new Response(content, { headers: { "Content-Type": answer.headers.get("Content-Type") ?? "application/octet-stream" } });
+    } finally {
+      clearTimeout(clock);
+    }
+  }
+
+  forget() {
+    return caches.delete(this.name);
+  }
+}

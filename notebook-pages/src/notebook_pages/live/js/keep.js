@@ -1,0 +1,88 @@
+// The whole book kept in this browser, to be read where there is no network: by choice, and with its size told.
+import { SITE } from "./answers.js";
+import { Editions } from "./editions.js";
+
+const editions = new Editions(SITE);
+const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e7 ? 1 : 0)} MB`;
+
+function hindrance() {
+  if (!isSecureContext || !navigator.serviceWorker || !globalThis.caches) {
+    return "This browser, or this address (it is not https), does not let pages be kept. “Offline pages” on the front page is the same book as a zip.";
+  }
+  return self === top ? null : "In a frame nothing can be kept: open the book in a tab of its own.";
+}
+
+async function take(tools, parts) {
+  tools.say("The book is being fetched ...");
+  try {
+    await navigator.serviceWorker.register(`${SITE}service-worker.js`);
+    await editions.renew(parts, tools.progress);
+    tools.say("The book is kept in this browser: its pages open without a network. Some browsers offer to install it as an app.");
+    // Or the browser may make room when it likes. Some ask the reader, who may take their time.
+    navigator.storage?.persist?.().catch(() => {});
+  } catch (error) {
+    const full = error.name === "QuotaExceededError";
+    tools.say(`That did not work: ${full ? "this browser has no room left for the book" : error.message}. Nothing was changed.`);
+  }
+  tools.progress(null);
+}
+
+// What the menu's entry does: tell the sizes, and ask.
+export async function keep(tools) {
+  const reason = hindrance();
+  if (reason) return tools.say(reason);
+  const there = await editions.newest();
+  let offer;
+  try {
+    offer = await editions.offered();
+  } catch (error) {
+    if (!there) throw error;
+    return tools.say("The book is kept in this browser, and there is no network now.");
+  }
+  const size = async (parts) => megabytes((await editions.missing(offer, parts)).reduce((all, [, [, bytes]]) => all + bytes, 0));
+  const isNewest = there?.edition === offer.edition;
+  const actions = {};
+  if (!isNewest) actions[`The pages, ${await size(["book"])}`] = () => take(tools, ["book"]);
+  if (!isNewest || !there.parts.includes("python")) {
+    actions[`With Python, ${await size(["book", "python"])}`] = () => take(tools, ["book", "python"]);
+  }
+  if (there) {
+    actions["Forget it"] = async () => {
+      await editions.forget();
+      tools.say("The book is no longer kept in this browser. Your answers still are.");
+    };
+  }
+  actions["Not now"] = () => tools.say("Nothing was changed.");
+  tools.ask(isNewest ? "The book is kept in this browser, for reading without a network."
+    : there ? "A copy of the book is kept here, of another edition. Renew it?"
+      : "Keep the book in this browser, for reading without a network? When these pages change, it fetches what has changed.", actions);
+}
+
+// The sections of a page by their headings, without the sections within them.
+function sections(text) {
+  const page = new DOMParser().parseFromString(text, "text/html");
+  page.querySelectorAll(".headerlink, .katex-mathml").forEach((part) => part.remove());
+  return new Map([...page.querySelectorAll("article section[id]")].map((section) => {
+    const heading = section.querySelector("h1, h2, h3, h4")?.textContent.trim() ?? section.id;
+    section.querySelectorAll("section").forEach((part) => part.remove());
+    return [heading, section.textContent.replace(/\s+/g, " ")];
+  }));
+}
+
+// A newer edition has come while this page was open: say so, and what is different on it.
+export async function tellOfRenewal(tools) {
+  const list = await editions.newest();
+  const page = decodeURI(location.pathname.slice(SITE.length)).replace(/(^|\/)$/, "$1index.html");
+  const cache = await caches.open(editions.name);
+  const copy = async (files) => (await cache.match(editions.key(page, files?.[page])))?.text();
+  const [before, now] = [await copy(list.before), await copy(list.files)];
+  if (!before || !now || before === now) return;
+  const [old, fresh] = [sections(before), sections(now)];
+  const changed = [...fresh].filter(([heading, text]) => old.get(heading) !== text).map(([heading]) => `“${heading}”`);
+  const what = !changed.length ? "The text of this page is the same."
+    : `On this page this has changed: ${changed.slice(0, 4).join(", ")}${changed.length > 4 ? ` and ${changed.length - 4} more` : ""}.`;
+  tools.ask(`A new edition of the book is here. ${what}`, {
+    "Show it": () => location.reload(),
+    "Not now": () => tools.say("The page stays as it is until you open it again."),
+  });
+}

@@ -1,0 +1,391 @@
+// Loaded when the reader first asks for code to run: the page's cells, the bar below, and the order of runs.
+import { Cell } from "./cell.js";
+import { Answers, coursework, fingerprint, nameCells, PREFIX, unkept } from "./answers.js";
+import { named } from "./names.js";
+import { agreeOnRecords, bringTogether, readCopy } from "./notebooks.js";
+import { Figures } from "./figures.js";
+import { element, preformatted } from "./output.js";
+import { Python } from "./python.js";
+
+const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
+
+class Page {
+  constructor({ data, boxes, bar }) {
+    this.place = { runtime: new URL(data.runtime, location.href).href, pyodide: data.pyodide, lock: data.lock };
+    this.answers = new Answers(data.page);
+    this.bar = bar;
+    this.figures = new Figures((name, data) => this.python?.tell(name, data));
+    this.cells = boxes.map((box, index) => new Cell(box, index + 1, data.cells[index] ?? {}, this));
+    const ids = nameCells(this.cells.map(({ kind, original }) => ({ name: kind.name, original })));
+    this.cells.forEach((cell, index) => (cell.id = ids[index]));
+    this.queue = [];
+    this.buttons = bar.buttons({
+      "Run the page": () => this.run(),
+      Stop: () => this.stop(),
+      "Start afresh": () => this.reset(),
+      "Book’s code": () => this.askToUndo(),
+    });
+    this.show();
+  }
+
+  // The editors are made while Python is being loaded, which takes longer.
+  edit() {
+    for (const cell of this.cells) cell.edit();
+    this.askWho();
+  }
+
+  // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.
+  askWho() {
+    const cell = this.cells.find(({ original }) => /^me\(/m.test(original));
+    if (!cell || this.who?.contains(document.activeElement)) return;
+    const name = coursework.read("me.txt")?.text ?? "";
+    const field = Object.assign(element("input"), { value: name, name: "me", autocomplete: "email", spellcheck: false });
+    const label = element("label", "", "Your name or address, as your course has it: ", field);
+    const button = element("button", "", name ? "Change" : "Give me my own numbers");
+    const words = name ? `The numbers on these pages are those of ${name}.`
+      : "These are the numbers that everybody sees. Whoever says who they are gets their own; it stays in this browser.";
+    const form = element("form", "live-note live-choice live-who", element("p", "", words), label, " ", button);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      if (field.value.trim() === name) return;
+      coursework.write("me.txt", field.value.trim());
+      field.blur();
+      button.blur();
+      for (const other of this.cells) other.ran = false;
+      this.askWho();
+      this.bar.say(field.value.trim() ? "From the next run on, the numbers are your own." : "From the next run on, the numbers are those that everybody sees.");
+    });
+    if (this.who) this.who.replaceWith(form);
+    else cell.input.after(form);
+    this.who = form;
+  }
+
+  // --- the reader's edits ----------------------------------------------------------------------
+
+  // One cell's text has changed here: its entry, and no other, is written.
+  keep(cell) {
+    const { id, number, original, code } = cell;
+    let kept = true;
+    if (cell.edited) {
+      kept = this.answers.write(id, { code, number, original: fingerprint(original), at: Date.now() }, cell.known);
+    } else {
+      kept = this.answers.remove(id);
+    }
+    cell.known = code;
+    cell.own = cell.edited ? code : undefined; // until another tab's text takes its place
+    if (!kept || window.keepsNothing) {
+      this.bar.say(`${window.keepsNothing ? "Your browser forbids this page to keep anything" : "This browser has no room left for your answers"}: what you write lasts until you leave the page. “Take away: with my answers” saves it.`);
+    }
+    this.show();
+  }
+
+  // Put what is kept back where the book's code is still the same; elsewhere ask.
+  async bring() {
+    this.answers.bringOld(this.cells.map(({ id }) => id), this.cells.map(({ original }) => original));
+    await this.lookAtNotebook();
+    if (this.reread()) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
+    addEventListener("storage", ({ key, newValue }) => {
+      if (key !== null && !(key.startsWith(PREFIX) && key.includes(` ${this.answers.page} `))) return;
+      const cell = this.cells.find(({ id }) => this.answers.isOf(id, key));
+      if (cell?.own !== undefined) this.answers.overtake(cell.id, newValue, cell.own);
+      this.reread();
+    });
+    // A tab that slept has missed what others wrote.
+    const wake = async () => document.hidden || (await this.lookAtNotebook(), this.reread());
+    document.addEventListener("visibilitychange", wake);
+    // What lasts as long as the page only is not to be closed by a slip.
+    addEventListener("beforeunload", (event) => {
+      if (unkept.size || (window.keepsNothing && this.cells.some((cell) => cell.edited))) event.preventDefault();
+    });
+    addEventListener("pageshow", ({ persisted }) => persisted && wake());
+  }
+
+  // The page's notebook in JupyterLite, if this browser keeps one, may hold newer answers.
+  async lookAtNotebook() {
+    if (!localStorage.getItem(this.answers.agreed)) return;
+    try {
+      await agreeOnRecords(this.answers.page);
+      const copy = await readCopy(`${this.answers.page}.ipynb`);
+      if (copy) bringTogether(this.answers.page, copy);
+    } catch (error) {
+      console.warn(`The notebook of this page could not be read: ${error.message}`);
+    }
+  }
+
+  // Make the cells hold what is kept. Returns how many texts there are.
+  reread() {
+    const kept = this.answers.all();
+    const all = kept.size;
+    this.offers ??= new Map();
+    for (const cell of this.cells) {
+      const entry = kept.get(cell.id);
+      if (entry && entry.original !== fingerprint(cell.original)) continue;
+      kept.delete(cell.id);
+      if (entry || cell.edited) cell.follow(entry ? entry.code : cell.original);
+      if (cell.editor) cell.showEarlier();
+    }
+    for (const [name, box] of this.offers) if (!kept.has(name)) box.remove(), this.offers.delete(name);
+    for (const [name, entry] of kept) if (!this.offers.has(name)) this.offer(name, entry);
+    const aside = this.cells.some((cell) => this.answers.earlier(cell.id, cell.original).length);
+    if (all || aside) this.edit();
+    this.show();
+    return all;
+  }
+
+  offer(name, entry) {
+    const cell = this.cells.find(({ id }) => id === name)
+      ?? this.cells[Math.min(Math.max(entry.number, 1), this.cells.length) - 1];
+    const choose = (text, action) => {
+      const button = element("button", "", text);
+      button.type = "button";
+      button.addEventListener("click", () => {
+        this.answers.setAside(cell.id, entry.code, entry.at);
+        this.answers.remove(name);
+        action();
+        this.reread();
+      });
+      return button;
+    };
+    this.edit();
+    const box = element("div", "live-note live-choice",
+      element("p", "", "The book’s code here has changed since you edited it. This was yours:"),
+      preformatted("stream", entry.code),
+      choose("Use mine", () => cell.write(entry.code)), " ", choose("Keep the book’s", () => {}));
+    box.setAttribute("role", "group");
+    box.setAttribute("aria-label", `An older edit of ${cell.name}`);
+    cell.input.after(box);
+    this.offers.set(name, box);
+  }
+
+  // One press must not take away the work of an hour.
+  askToUndo() {
+    const edited = this.cells.filter((cell) => cell.edited);
+    this.bar.ask(`Bring back the book’s code in ${plural(edited.length, "cell")}? What you wrote there is kept below each cell.`, {
+      "Bring it back": () => {
+        const mine = edited.map((cell) => [cell, cell.code]);
+        for (const cell of edited) cell.write(cell.original);
+        this.bar.ask("All cells hold the book’s code again.", {
+          Undo: () => {
+            for (const [cell, code] of mine) cell.write(code);
+            this.bar.say("Your code is back.");
+          },
+        });
+      },
+      "Keep mine": () => this.bar.say("Nothing was changed."),
+    });
+  }
+
+  // --- what is to run --------------------------------------------------------------------------
+
+  // The picture of such a cell is there already, and nothing else comes of running it.
+  leftOut(cell) {
+    return cell.kind.skip && !cell.edited;
+  }
+
+  // Whether a cell runs just now, with the code that stands in it, and is not being stopped.
+  atWork(cell) {
+    return this.running === cell && cell.sent === cell.code && !this.stopping;
+  }
+
+  // Run one cell, and before it what has not run yet; without a cell, the whole page.
+  run(cell) {
+    if (!cell && this.cells.every((other) => this.leftOut(other))) {
+      return this.bar.say("Each cell of this page draws a picture that is there already. Run below a cell draws it anew.");
+    }
+    // Asked twice by a quick hand: it is on its way.
+    if (cell ? this.atWork(cell) : this.whole) return;
+    if (cell) cell.asked = true; // by its own button: its figure begins anew
+    else {
+      this.whole = true;
+      this.empty(); // every cell comes in its order
+    }
+    const upTo = cell ? cell.number : this.cells.length;
+    const before = this.cells.slice(0, upTo).filter((other) =>
+      other !== cell && !(cell && (other.ran || other.stopped || this.atWork(other))) && !(this.leftOut(other) && !(cell?.kind.skip)));
+    for (const next of cell ? [...before, cell] : before) {
+      if (!this.queue.includes(next)) {
+        this.queue.push(next);
+        next.box.classList.add("waiting");
+      }
+    }
+    this.tally ??= { ran: 0, plain: 0, failed: [], missing: new Set(), alone: true };
+    this.tally.alone &&= Boolean(cell);
+    if (!this.busy) this.work();
+  }
+
+  async work() {
+    this.busy = true;
+    this.retry = true; // what could not be fetched before is tried again
+    this.show();
+    try {
+      while (this.queue.length) {
+        if (!this.python) await this.load();
+        await this.next(this.queue.shift());
+      }
+      this.report();
+    } catch (error) {
+      this.empty();
+      this.bar.progress(null);
+      if (error.message === "interrupted") this.bar.say("Stopped: Python was not loaded.");
+      else await this.bar.explain(error, "Python could not be started");
+    }
+    this.busy = this.whole = this.stopping = false;
+    this.tally = null;
+    this.show();
+  }
+
+  async load() {
+    this.bar.say("Python is being loaded ...");
+    this.has = null;
+    this.python = new Python(this.place, (message, cell) => this.hear(message, cell));
+    const { python } = this;
+    setTimeout(() => this.edit());
+    try {
+      this.has = await python.ready;
+      this.bar.fetched();
+    } catch (error) {
+      if (this.python === python) this.python = null;
+      throw error;
+    }
+    this.bar.progress(null);
+  }
+
+  hear(message, cell) {
+    if (message.type === "progress" && !this.has) this.bar.progress(message.bytes, message.all);
+    else if (message.type === "fetching") this.bar.say(`${named(message.name)} is being fetched from ${message.place} ...`);
+    else if (message.type === "output") cell.take(message.message);
+    else if (message.type === "kept") this.keepOf(message);
+    else if (message.type === "widget") this.figures.hear(message.message);
+    else if (message.type === "observed") this.figures.observed(message.widget, message.message);
+  }
+
+  // Coursework has written down who works here, or how far they are.
+  keepOf({ name, text }) {
+    coursework.write(name, text);
+    if (name === "me.txt") this.askWho();
+  }
+
+  async next(cell) {
+    const needs = cell.edited ? [] : cell.kind.needs ?? [];
+    const lacking = needs.filter((module) => !this.has.modules.includes(module));
+    this.running = cell;
+    cell.begin();
+    if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
+    // Code that the page hides above this cell; what it puts out belongs to no cell.
+    const { before } = cell.kind;
+    const show = lacking.length ? { take() {} } : cell; // it cannot run whole, but others use names that it gives before
+    const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }, this.retry, coursework.all()) : { status: "ok" };
+    const outcome = hidden.status === "ok" ? await this.python.run(cell.sent, cell.name, needs, show, this.retry, coursework.all()) : hidden;
+    this.retry = false;
+    this.running = null;
+    if (lacking.length && ["ok", "error", "missing"].includes(outcome.status)) {
+      this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
+    } else this.settle(cell, outcome);
+    cell.asked = this.stopping = false;
+  }
+
+  leave(cell, reason) {
+    this.tally.missing.add(cell.number);
+    const note = element("div", "live-note", element("p", "", `Not run here: ${reason}.`));
+    cell.leave(note);
+    this.last = `${cell.name} was not run: ${reason}.`;
+  }
+
+  settle(cell, outcome) {
+    const { status } = outcome;
+    if (status === "ok") {
+      cell.end();
+      this.tally.ran += 1;
+      this.tally.plain += Boolean(outcome.plain);
+      const words = cell.words.join(" ").trim();
+      const by = outcome.plain ? ", its numbers by plain Python in NumPy’s place" : "";
+      this.last = `${cell.name} ran${by}${words ? `. Result: ${words.length > 200 ? `${words.slice(0, 200)} ...` : words}` : ", without a result to show"}`;
+    } else if (status === "missing") {
+      this.leave(cell, outcome.reason);
+    } else if (status === "error") {
+      const text = preformatted("stream", outcome.traceback);
+      text.classList.add("stderr", "live-error");
+      cell.end(text);
+      this.tally.failed.push(cell.number);
+      this.last = `${cell.name} raised an error: ${outcome.traceback.split("\n").at(-1)}`;
+      if (this.queue.length) this.last += " The cells after it were not run.";
+      this.empty();
+    } else {
+      const lost = status === "ended";
+      const why = outcome.reason === "interrupted" || !lost ? "Stopped." : `Python broke off: ${outcome.reason}.`;
+      const then = lost ? " Python starts anew at the next run, and the page’s earlier cells run again first." : " What the cells before it have defined is still there.";
+      cell.end(element("div", "live-note", element("p", "", why + then)));
+      cell.ran = false;
+      cell.stopped = cell.sent === cell.code; // it runs again when it is asked for, or changed; not because a later cell is
+      // What is in the queue was asked for after Stop: it runs, and where Python starts anew, what stands before it.
+      const [next, whole] = this.stopping ? [this.queue.at(-1), this.whole] : [];
+      this.stopping = false;
+      if (lost || !next) this.empty();
+      if (lost) {
+        this.forget();
+        this.whole = false;
+        if (next) this.run(whole ? undefined : next);
+      }
+      this.last = `${cell.name}: ${why}${then}`;
+      this.tally.stopped = true;
+    }
+  }
+
+  report() {
+    const { ran, plain, failed, missing, alone, stopped } = this.tally;
+    const parts = [`${plural(ran, "cell")} ran.`];
+    if (plain) parts.push(`In ${plain} of them plain Python stood in for NumPy.`);
+    const last = `${this.last[0].toUpperCase()}${this.last.slice(1)}`;
+    if (missing.size) parts.push(`${plural(missing.size, "cell was", "cells were")} not run; the reason stands below each.`);
+    this.bar.say(alone || stopped || failed.length ? last : parts.join(" "));
+  }
+
+  empty() {
+    for (const cell of this.queue) cell.box.classList.remove("waiting");
+    this.queue = [];
+  }
+
+  // --- stopping --------------------------------------------------------------------------------
+
+  stop() {
+    this.empty();
+    this.whole = false;
+    this.stopping = Boolean(this.running);
+    this.python?.interrupt();
+    if (this.python?.ended) this.forget();
+  }
+
+  // Python is gone, and with it every name: the next run begins with the first cell.
+  forget() {
+    this.python = null;
+    for (const cell of this.cells) cell.ran = false;
+  }
+
+  reset() {
+    this.empty();
+    this.python?.end("interrupted");
+    this.forget();
+    for (const cell of this.cells) cell.restore();
+    this.bar.progress(null);
+    this.bar.say("All is as the book has it, except for your edits. Python starts anew at the next run.");
+  }
+
+  show() {
+    const [all, stop, afresh, book] = this.buttons;
+    all.hidden = this.busy;
+    stop.hidden = !this.busy;
+    afresh.hidden = this.busy || !this.python;
+    book.hidden = this.busy || !this.cells.some((cell) => cell.edited);
+    document.documentElement.classList.toggle("live-busy", Boolean(this.busy));
+  }
+}
+
+export async function open(parts) {
+  const style = element("link");
+  style.rel = "stylesheet";
+  style.href = new URL("./live.css", import.meta.url);
+  document.head.append(style);
+  const page = new Page(parts);
+  await page.bring();
+  return page;
+}

@@ -1,0 +1,196 @@
+// On every page with code: the buttons, and a bar for what there is to say. All else is loaded when asked for.
+{
+  const data = JSON.parse(document.getElementById("live-data").textContent);
+  const place = new URL("../", document.currentScript.src).pathname;
+  const boxes = [...document.querySelectorAll("div.cell")].filter((box) => box.querySelector(".cell_input"));
+  const make = (tag, attributes, text = "") => Object.assign(document.createElement(tag), attributes, { textContent: text });
+
+  // What would only be good to know another time is not worth a failure: all sites of an address share one store, and it
+  // may be full. Returns whether the browser has kept it.
+  const note = (store, key, value) => {
+    try {
+      store.setItem(key, value);
+      return true;
+    } catch {
+      return false;
+    }
+  };
+
+  // The bar at the foot of the window: it lies over the page, so that no line moves.
+  const bar = make("section", { className: "live-bar", hidden: true });
+  bar.setAttribute("aria-label", "Python on this page");
+  const words = make("p", { id: "live-words" });
+  words.setAttribute("role", "status");
+  const choices = make("span", { className: "live-choices" });
+  const progress = make("progress", { hidden: true });
+  progress.setAttribute("aria-label", "Loading Python");
+  const bytes = make("span", { className: "live-bytes" });
+  bytes.setAttribute("aria-hidden", "true"); // the words are said once; the numbers change all the time
+  const keys = make("p", { id: "live-keys" }, "Shift+Enter runs a cell, Escape leaves it.");
+  const close = make("button", { type: "button", className: "live-close", title: "Close this bar" }, "×");
+  close.setAttribute("aria-label", "Close this bar");
+  close.addEventListener("click", () => (bar.hidden = true));
+  bar.append(words, choices, bytes, progress, keys, close);
+  document.body.append(bar);
+  const button = (text, action) => {
+    const made = make("button", { type: "button" }, text);
+    made.addEventListener("click", action);
+    return made;
+  };
+  const tools = {
+    say(text) {
+      bar.hidden = false;
+      words.textContent = text;
+      choices.replaceChildren();
+    },
+    ask(text, actions) {
+      tools.say(text);
+      choices.append(...Object.entries(actions).map(([name, action]) => button(name, action)));
+      choices.firstChild.focus();
+    },
+    progress(loaded, all) {
+      progress.hidden = loaded === null;
+      bytes.textContent = loaded === null ? "" : `${Math.round(loaded / 1e6)} of ${Math.round(all / 1e6)} MB`;
+      if (loaded !== null) Object.assign(progress, { max: all, value: loaded });
+    },
+    fetched() {
+      note(localStorage, `book ${place} fetched`, data.pyodide);
+      tellSize();
+    },
+    buttons: (actions) => Object.entries(actions).map(([text, action]) => {
+      const made = button(text, action);
+      close.before(made);
+      return made;
+    }),
+  };
+
+  const fromDisk = location.protocol === "file:";
+  const FROM_DISK = "A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints.";
+  document.querySelector("a.open-notebook")?.addEventListener("click", (event) => {
+    if (!fromDisk) return;
+    event.preventDefault();
+    tools.say(FROM_DISK);
+  });
+
+  // Only an isolated page shares memory with its Python, which can then be stopped and keeps its names. Where the
+  // server does not isolate the pages, a service worker does, from the moment when the page is loaded once more.
+  const RUN = `book ${place} run`; // in this tab: "tried", or what to run when the page is there again
+  const isolate = async (number) => {
+    const able = isSecureContext && "serviceWorker" in navigator && self === top && !window.keepsNothing;
+    // What the browser had no room for would be gone (see answers.js).
+    if (crossOriginIsolated || !able || sessionStorage.getItem(RUN) || globalThis.unkeptAnswers?.size) return false;
+    if (!note(sessionStorage, RUN, "tried")) return false;
+    try {
+      await navigator.serviceWorker.register(`${place}service-worker.js`);
+      const late = new Promise((_, reject) => setTimeout(reject, 5000, new Error("it does not start")));
+      await Promise.race([navigator.serviceWorker.ready, late]);
+    } catch (error) {
+      console.info(`The page is not isolated: ${error.message}`);
+      return false;
+    }
+    const figures = [...document.querySelectorAll("figure.moving")].map(({ model }) => model?.moved);
+    if (!note(sessionStorage, RUN, JSON.stringify({ page: data.page, number, line: scrollY, figures }))) return false;
+    location.reload();
+    return true;
+  };
+
+  let page;
+  // A browser remembers a script that has not come as long as the page is open: it is asked for by another name then.
+  let tries = 0;
+  const script = async (name) => {
+    try {
+      return await import(new URL(`${data.scripts}${name}${tries ? `?again=${tries}` : ""}`, location.href));
+    } catch (error) {
+      tries += 1;
+      throw Object.assign(error, { isLost: true });
+    }
+  };
+  // What has not worked, and where a script has not come, why: a page that was open while others took its place asks for
+  // what is no longer there.
+  tools.explain = async (error, what = "That did not work") => {
+    if (!error.isLost) return tools.say(`${what}: ${error.message}.`);
+    const now = await fetch(location.pathname, { cache: "no-cache", signal: AbortSignal.timeout(5000) }).then((answer) => answer.ok && answer.text(), () => "");
+    if (now && !now.includes(data.scripts.split("/").at(-2))) {
+      return tools.ask("This page has been published anew since you opened it, and its code runs after a reload. What you wrote here is kept.", {
+        "Reload": () => location.reload(),
+      });
+    }
+    tools.say(now ? `${what}: ${error.message}.` : `${what}: the place of these pages does not answer. Try once more when you have a network.`);
+  };
+  const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
+  const ask = async (number) => {
+    if (fromDisk) return tools.say(FROM_DISK);
+    if (number !== undefined && (await isolate(number))) return;
+    try {
+      const opened = await open();
+      if (number !== undefined) opened.run(opened.cells[number]);
+    } catch (error) {
+      page = undefined;
+      await tools.explain(error);
+    }
+  };
+
+  boxes.forEach((box, number) => {
+    const run = button("Run", () => ask(number));
+    run.className = "run-cell";
+    run.dataset.label = `Run cell ${number + 1}`;
+    box.querySelector(".cell_input").append(run);
+  });
+  const runPage = document.querySelector("button.run-page");
+  runPage.addEventListener("click", () => ask(-1));
+
+  // What Python weighs is told before it is fetched; once it has come, the browser has it.
+  function tellSize() {
+    const told = localStorage.getItem(`book ${place} fetched`) === data.pyodide ? "" : `${Math.round(data.bytes / 1e6)} MB`;
+    for (const run of [runPage, ...document.querySelectorAll("button.run-cell")]) {
+      if (told) run.dataset.size = told;
+      else delete run.dataset.size;
+      run.setAttribute("aria-label", `${run.dataset.label}${told && `, which first fetches ${told}`}`);
+    }
+  }
+  runPage.dataset.label = "Run this page";
+  tellSize();
+
+  // The book, kept for reading without a network.
+  document.querySelector("button.keep-book").addEventListener("click", async () => {
+    document.querySelector("details.take-away").open = false;
+    if (fromDisk) return tools.say("This copy of the book is on your disk: it needs no network.");
+    try {
+      await (await script("keep.js")).keep(tools);
+    } catch (error) {
+      await tools.explain(error);
+    }
+  });
+
+  // Take away and bring back: the page's answers as a notebook, all answers of the book as one file.
+  const originals = boxes.map((box) => box.querySelector(".cell_input pre").textContent.trimEnd());
+  for (const choice of document.querySelectorAll("button[data-answers]")) {
+    choice.addEventListener("click", async () => {
+      if (fromDisk) return tools.say(FROM_DISK);
+      try {
+        const { [choice.dataset.answers]: act } = await script("take-away.js");
+        tools.say(await act(data, originals));
+        if (/load|restore/.test(choice.dataset.answers)) (await open()).reread();
+      } catch (error) {
+        await tools.explain(error);
+      }
+    });
+  }
+
+  // What the reader has written here before comes back, also from another tab; see answers.js for the keys.
+  const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`];
+  const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));
+  const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
+  if (again.page) note(sessionStorage, RUN, "tried");
+  // The service worker has made a newer edition whole.
+  navigator.serviceWorker?.addEventListener("message", ({ data: { edition } }) =>
+    edition && script("keep.js").then(({ tellOfRenewal }) => tellOfRenewal(tools)).catch(() => {}));
+  if (again.page === data.page) {
+    addEventListener("load", () => scrollTo(0, again.line));
+    // What the reader has moved before stands there again; the scripts of the figures have run by now.
+    document.querySelectorAll("figure.moving").forEach(({ model }, place) => model?.move(again.figures?.[place]));
+    ask(again.number);
+  }
+  else if (Object.keys(localStorage).some(isOwn)) ask();
+  else addEventListener("storage", ({ key }) => page || (isOwn(key) && ask()));
+}

@@ -1,0 +1,52 @@
+"""The scripts of the page, put together by esbuild: a small one for every page with code, and what it loads."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from orientation_figures.moving.bundle import FOLDER as FIGURES
+
+from ..paths import NODE, NODE_MODULES, fingerprint
+from .cells import PYTHON, write_python
+from .runtime import FOLDER, HERE
+
+JS = HERE / "js"
+MODEL = FIGURES / "js" / "model.js"  # the figures of the build and those of the page's Python have one
+ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
+
+
+def folder_name():
+    """Its scripts have the same names in every version of the book: the folder tells them apart."""
+    return f"{FOLDER}/scripts-{fingerprint(JS, MODEL, PYTHON, NODE_MODULES.parent / 'package-lock.json')}"
+
+
+def esbuild(*arguments):
+    command = [NODE, ESBUILD, "--minify", "--log-level=warning", "--legal-comments=none", *arguments]
+    subprocess.run(command, check=True, env=os.environ | {"NODE_PATH": str(NODE_MODULES)})
+
+
+def write(site):
+    """Write the scripts into the folder ``site``."""
+    target = site / folder_name()
+    for outdated in (site / FOLDER).glob("scripts-*"):
+        if outdated != target:
+            shutil.rmtree(outdated)
+    target.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        workshop = Path(folder)
+        shutil.copytree(JS, workshop / "js")
+        shutil.copy(MODEL, workshop / "js")
+        write_python(workshop / "python")
+        esbuild(
+            *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")),
+            "--bundle", "--format=esm", "--loader:.py=text", f"--outdir={target}",
+        )  # fmt: skip
+    shutil.copyfile(JS / "live.css", target / "live.css")
+    static = site / "_static"
+    static.mkdir(exist_ok=True)
+    esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
+    shutil.copyfile(JS / "page.css", static / "live.css")
+    # A service worker may act for the pages below it only.
+    esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")

@@ -1,0 +1,126 @@
+"""The page *My progress*: what there is to do in each chapter, filled in by the reader's own browser.
+
+The build counts; `progress.js` keeps what the reader does, and `my-progress.js` shows it. Without a script the page
+still says what there is to read, to predict, to answer and to solve.
+"""
+
+import re
+from html import escape
+from pathlib import Path
+
+import nbformat
+from docutils import nodes
+from sphinx.util.docutils import SphinxDirective
+from sphinx_exercise.nodes import exercise_enumerable_node, exercise_node
+
+from .paths import parts
+from .questions import question
+
+CHECK = re.compile(r"^check\(\s*[\"']([^\"']+)", re.MULTILINE)
+# What is counted, in the order of the columns: heading, and the explanation in the foot of the table.
+COLUMNS = {
+    "read": "Sections read",
+    "predictions": "Predictions",
+    "recap": "Recap",
+    "done": "Exercises",
+    "checked": "Checked questions",
+}
+
+
+class progress_table(nodes.General, nodes.Element):
+    """The table of all chapters."""
+
+
+class ProgressDirective(SphinxDirective):
+    def run(self):
+        self.env.metadata[self.env.docname]["shows progress"] = True
+        return [progress_table()]
+
+
+def questions_in(notebook):
+    """The names of the questions that the notebook at this path hands to the checker."""
+    if not notebook.is_file():
+        return []
+    cells = nbformat.read(notebook, as_version=4).cells
+    return [name for cell in cells if cell.cell_type == "code" for name in CHECK.findall(cell.source)]
+
+
+def companion(page):
+    """The notebook of sealed questions that belongs to a chapter."""
+    return Path("exercises") / f"{Path(page).name}.ipynb"
+
+
+def count(app, doctree):
+    """Note what there is to do on a page: names by column, as `progress.js` keeps them."""
+    page = app.env.docname
+    whole = next(doctree.findall(nodes.section), [])
+    sections = [section for section in whole if isinstance(section, nodes.section)]
+    boxes = list(doctree.findall(question))
+    exercises = [node for node in doctree.findall() if isinstance(node, (exercise_node, exercise_enumerable_node))]
+    app.env.metadata[page]["to do"] = {
+        "read": [section["ids"][0] for section in sections],
+        "predictions": [box["ids"][0] for box in boxes if box["predicts"]],
+        "recap": [box["ids"][0] for box in boxes if not box["predicts"]],
+        "done": [exercise["ids"][0] for exercise in exercises if exercise["ids"]],
+        "checked": questions_in(Path(f"{page}.ipynb")),
+    }
+
+
+def chapters(env):
+    """The chapters of the book, which are the pages with a number, in the order of the contents."""
+    return [page for _, pages in parts() for page in pages if env.toc_secnumbers.get(page, {}).get("")]
+
+
+def visit_table(translator, node):
+    env = translator.builder.env
+    here = translator.builder.current_docname
+    rows = []
+    for page in chapters(env):
+        found = dict(env.metadata[page]["to do"])
+        found["checked"] = found["checked"] + questions_in(companion(page))
+        number = env.toc_secnumbers[page][""][0]
+        address = translator.builder.get_relative_uri(here, page)
+        cells = "".join(
+            f'<td data-kind="{kind}" data-heading="{heading}" data-names="{escape(" ".join(found[kind]), quote=True)}">'
+            f"{len(found[kind]) or '–'}</td>"
+            for kind, heading in COLUMNS.items()
+        )
+        title = escape(env.titles[page].astext())
+        companions = f' data-companion="{companion(page).with_suffix("")}"'
+        rows.append(
+            f'<tr data-page="{page}"{companions}>'
+            f'<th scope="row">{number}. <a href="{address}">{title}</a></th>{cells}</tr>'
+        )
+    heads = "".join(f'<th scope="col">{heading}</th>' for heading in COLUMNS.values())
+    translator.body.append(
+        '<div class="pst-scrollable-table-container" tabindex="0" role="group" aria-label="Progress by chapter">'
+        f'<table class="table my-progress"><thead><tr><th scope="col">Chapter</th>{heads}</tr></thead>'
+        f"<tbody>{''.join(rows)}</tbody></table></div>\n"
+    )
+    raise nodes.SkipNode
+
+
+def write_again(app, env):
+    """The table counts what stands on other pages: it is written at every build."""
+    return [page for page, facts in env.metadata.items() if "shows progress" in facts]
+
+
+def add_scripts(app, pagename, templatename, context, doctree):
+    if doctree is None:
+        return
+    has_table = next(doctree.findall(progress_table), None) is not None
+    if has_table or str(app.env.doc2path(pagename)).endswith(".ipynb") and pagename != app.config.root_doc:
+        app.add_js_file("progress.js", loading_method="defer", priority=400)  # before what uses it
+    if pagename.startswith("chapters/"):
+        context["lecture"] = True
+        app.add_js_file("lecture.js", loading_method="defer")
+    if has_table:
+        app.add_js_file("my-progress.js", loading_method="defer")
+
+
+def setup(app):
+    app.add_directive("progress", ProgressDirective)
+    app.add_node(progress_table, html=(visit_table, None))
+    app.connect("doctree-read", count)
+    app.connect("env-updated", write_again)
+    app.connect("html-page-context", add_scripts)

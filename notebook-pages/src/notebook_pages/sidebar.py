@@ -1,0 +1,36 @@
+"""The contents at the side, in parts that open and close: the part of this page stands open, or else the first."""
+
+from bs4 import BeautifulSoup
+
+
+def fold(soup):
+    """Make each caption and the list below it one fold; a title does not repeat the caption of its part.
+
+    Of *Exercises: Gimbal lock*, in the part *Exercises*, the sidebar shows *Gimbal lock*.
+    """
+    captions = soup.select("p.caption")
+    current = [caption for caption in captions if caption.find_next_sibling("ul").select(".current")]
+    for caption in captions:
+        pages, beginning = caption.find_next_sibling("ul"), f"{caption.get_text(strip=True)}: "
+        for link in pages.select("a"):
+            if link.get_text().startswith(beginning):
+                words = link.get_text().removeprefix(beginning)
+                link.string = words[0].upper() + words[1:]
+        part, summary = soup.new_tag("details"), soup.new_tag("summary")
+        if caption in (current or captions)[:1]:
+            part["open"] = ""
+        caption.insert_before(part)
+        summary.append(caption.extract())
+        part.extend([summary, pages.extract()])
+    return soup
+
+
+def fold_contents(app, pagename, templatename, context, doctree):
+    if generate := context.get("generate_toctree_html"):
+        context["generate_toctree_html"] = lambda *given, **named: fold(
+            BeautifulSoup(str(generate(*given, **named)), "html.parser")
+        )
+
+
+def setup(app):
+    app.connect("html-page-context", fold_contents, priority=960)  # after the theme has put its function there

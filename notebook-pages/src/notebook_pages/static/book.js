@@ -1,0 +1,103 @@
+// What lies below the first view (see first_view.py) is laid out when that stands: a few blocks at a time, from the top
+// down, so that the page answers meanwhile. Whoever needs the page whole before, takes the class "in-parts" away.
+{
+  const root = document.documentElement;
+  const later = root.classList.contains("in-parts") ? [...document.querySelectorAll(".later")] : [];
+  const SLICE = 6; // milliseconds
+  const whole = () => root.classList.remove("in-parts");
+  const whenIdle = window.requestIdleCallback?.bind(window) ?? ((work) => setTimeout(work)); // not every browser tells when it is
+  const goOn = () => {
+    const start = performance.now();
+    while (later.length && performance.now() - start < SLICE) {
+      const block = later.shift();
+      block.classList.remove("later");
+      block.getBoundingClientRect(); // lays it out
+    }
+    if (later.length && root.classList.contains("in-parts")) whenIdle(goOn, { timeout: 200 });
+    else whole();
+  };
+  // The typefaces of the whole page come first: each that came later would have its text laid out once more.
+  const faces = () => Promise.all(allFaces.map((face) => document.fonts.load(face))).catch(() => {});
+  const aWhile = () => new Promise((resolve) => setTimeout(resolve, 3000));
+  const frame = () => new Promise(requestAnimationFrame);
+  const begin = async () => {
+    while (root.classList.contains("settling")) await frame();
+    // The frame that shows the first view is drawn before anything is asked for that it does not need.
+    await frame();
+    await frame();
+    await Promise.race([faces(), aWhile()]);
+    whenIdle(goOn, { timeout: 200 });
+  };
+  if (later.length) begin();
+  else whole();
+  for (const name of ["hashchange", "beforeprint"]) addEventListener(name, whole);
+  document.addEventListener("click", ({ target }) => target.closest("a[href*='#']") && whole(), true);
+}
+
+// Boxes that scroll can be reached by keyboard, but only while they overflow. They are looked at when they have been
+// laid out, never before: to measure a box that nobody sees yet would lay out the page.
+const watch = new ResizeObserver((entries) => {
+  const found = entries.map(({ target }) => {
+    const wide = target.scrollWidth > target.clientWidth + 1;
+    return [target, wide || (!target.matches(".math-box, figure") && target.scrollHeight > target.clientHeight)];
+  });
+  for (const [target, scrolls] of found) {
+    const words = target.matches(".math-box") ? "Wide equation" : target.matches("figure") && "Wide figure";
+    for (const [name, value] of Object.entries({ tabindex: "0", ...(words && { role: "group", "aria-label": words }) })) {
+      if (scrolls) target.setAttribute(name, value);
+      else if (name === "role" && target.matches("figure")) target.setAttribute(name, "none"); // its drawing has a name
+      else target.removeAttribute(name);
+    }
+  }
+});
+window.watchWidth = (box) => watch.observe(box); // also for the theme's boxes, and what a page puts out later
+document.querySelectorAll(".math-box, figure.orientation-figure").forEach(watchWidth);
+
+// Who reports a mistake tells where: the section that is being read.
+const report = document.querySelector("a.report-mistake");
+report?.addEventListener("click", () => {
+  const above = [...document.querySelectorAll(".bd-article :is(h1, h2, h3)")].filter((h) => h.getBoundingClientRect().top < innerHeight / 2);
+  const address = new URL(report.href);
+  const section = above.at(-1)?.cloneNode(true);
+  section?.querySelectorAll(".headerlink").forEach((link) => link.remove());
+  const body = address.searchParams.get("body").replace(/^Section: .*$/m, `Section: ${section?.textContent.trim() ?? ""}`);
+  address.searchParams.set("body", body);
+  report.href = address;
+});
+
+// The take-away menu closes like any menu: by Escape, or by a press elsewhere.
+const menu = document.querySelector("details.take-away");
+if (menu) {
+  document.addEventListener("click", (event) => {
+    if (!menu.contains(event.target)) menu.open = false;
+  });
+  menu.addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && menu.open) {
+      menu.open = false;
+      menu.querySelector("summary").focus();
+    }
+  });
+}
+
+// Numbers that stand below each other stay so: on a narrow screen their lines scroll. As in live/js/output.js.
+for (const text of document.querySelectorAll("div.cell_output .output pre")) {
+  text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|\S {2,}\S/m.test(text.textContent));
+}
+
+document.querySelector("button.print-page")?.addEventListener("click", () => print());
+
+// A page opened from disk may not read other pages: the search then shows titles alone.
+if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined") {
+  DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
+}
+
+// The theme brings the contents back to where they stood on the page before; the entry of this page is to be seen.
+{
+  const entry = document.querySelector(".bd-sidebar-primary li.current > a.current");
+  const side = entry?.closest(".bd-sidebar-primary");
+  const show = () => {
+    const [box, line] = [side.getBoundingClientRect(), entry.getBoundingClientRect()];
+    if (line.top < box.top || line.bottom > Math.min(box.bottom, innerHeight)) side.scrollTop += line.top - box.top - side.clientHeight / 3;
+  };
+  if (entry) addEventListener("load", show);
+}

@@ -1,0 +1,65 @@
+// Fills in the table of My progress, and lets the reader take the record away, bring it back and clear it.
+{
+  const table = document.querySelector("table.my-progress");
+  const record = (page) => progress.all()[page] ?? { read: [], done: [], checked: [], answers: {} };
+  const fill = () => {
+    for (const row of table.tBodies[0].rows) {
+      const { read, done, checked, answers } = record(row.dataset.page);
+      const all = { read, done, checked: [...checked, ...record(row.dataset.companion).checked], predictions: Object.keys(answers), recap: Object.keys(answers) };
+      for (const cell of row.querySelectorAll("td")) {
+        const names = cell.dataset.names.split(" ").filter(Boolean);
+        const reached = names.filter((name) => all[cell.dataset.kind].includes(name));
+        if (names.length) cell.textContent = `${reached.length} of ${names.length}`; // else there is nothing to do
+        if (cell.dataset.kind === "recap" && reached.length)
+          cell.textContent += `, ${reached.filter((name) => answers[name].rightAtFirst).length} right at once`;
+        cell.classList.toggle("whole", names.length > 0 && reached.length === names.length);
+      }
+    }
+  };
+
+  const make = (tag, attributes) => Object.assign(document.createElement(tag), attributes);
+  const words = make("p", { className: "said" });
+  words.setAttribute("role", "status");
+  const say = (text) => (words.textContent = text);
+  const take = make("button", { type: "button", textContent: "Export" });
+  take.addEventListener("click", () => {
+    const address = URL.createObjectURL(new Blob([JSON.stringify({ pages: progress.all() }, null, 1)], { type: "application/json" }));
+    make("a", { href: address, download: "my-progress.json" }).click();
+    URL.revokeObjectURL(address);
+    say("Saved as my-progress.json.");
+  });
+  const file = make("input", { type: "file", accept: ".json,application/json", hidden: true });
+  const bring = make("button", { type: "button", textContent: "Import" });
+  bring.addEventListener("click", () => file.click());
+  file.addEventListener("change", async () => {
+    try {
+      const found = JSON.parse(await file.files[0].text());
+      if (typeof found?.pages !== "object") throw new Error("no pages");
+      progress.replace(found);
+      fill();
+      say("Imported: your record is back.");
+    } catch {
+      say("That file was not exported from this page, so nothing has changed.");
+    }
+    file.value = "";
+  });
+  const clear = make("button", { type: "button", textContent: "Clear" });
+  let asked = false;
+  clear.addEventListener("click", () => {
+    if (!asked) {
+      asked = true;
+      clear.textContent = "Yes, clear everything";
+      return say("This erases everything in the table. Export it first if you would like to keep it.");
+    }
+    asked = false;
+    clear.textContent = "Clear";
+    progress.replace({});
+    fill();
+    say("Cleared.");
+  });
+  const actions = make("p", { className: "actions" });
+  actions.append(take, bring, file, clear);
+  table.parentElement.after(actions, words);
+  fill();
+  if (!progress.isKept()) say("This browser does not let the page store anything, so your record lasts only as long as the page is open.");
+}
