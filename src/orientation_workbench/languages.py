@@ -5,8 +5,10 @@ Here the namespace records: what comes out is the formula itself, which SymPy's 
 formula stands here a second time.
 """
 
+import math
 from unittest import mock
 
+import numpy as np
 import sympy as sm
 
 import orientation
@@ -32,7 +34,8 @@ class _Recorder:
     """The namespace that a formula is given: it records.
 
     Each result of ``atan2`` becomes a part of its own: SymPy would turn the sine of such an angle into a quotient,
-    which has no value where the angle is undecided, at gimbal lock.
+    which has no value where the angle is undecided, at gimbal lock. So does each choice, which would be written anew
+    wherever it is used.
     """
 
     sin, cos, largest = sm.sin, sm.cos, sm.Max
@@ -40,41 +43,39 @@ class _Recorder:
     def __init__(self):
         self.parts = []
 
-    def atan2(self, sine, cosine):
-        part = sm.Symbol(f"angle{len(self.parts)}", real=True)
-        self.parts.append((part, sm.atan2(sine, cosine)))
+    def _part(self, value):
+        part = sm.Symbol(f"step{len(self.parts)}", real=True)
+        self.parts.append((part, value))
         return part
+
+    def atan2(self, sine, cosine):
+        return self._part(sm.atan2(sine, cosine))
 
     def norm(self, *components):
         return sm.sqrt(sum(entry**2 for entry in components))
 
     def where(self, condition, yes, no):
-        return sm.Piecewise((yes, condition), (no, True))
+        return self._part(sm.Piecewise((yes, condition), (no, True)))
 
     def pick(self, scores, rows):
         """The row whose score is the largest, entry by entry."""
+        scores = [self._part(score) for score in scores]
         best = [sm.And(*(score >= other for other in scores if other is not score)) for score in scores]
-        return [sm.Piecewise(*zip(entries[:-1], best[:-1]), (entries[-1], True)) for entries in zip(*rows)]
-
-
-class _Recorded(Exception):
-    """Carries a formula's components out of the function that holds it."""
+        return [self._part(sm.Piecewise(*zip(entries[:-1], best[:-1]), (entries[-1], True))) for entries in zip(*rows)]
 
 
 def recorded(function, *arguments):
     """What a function of ``orientation`` computes: parts, each a symbol and its expression, and the results."""
+    recorder = _Recorder()
 
     def record(formula, shape, *given, guard=None, symbols=True):
-        recorder = _Recorder()
         components = [entry for _, value, _ in given for entry in sm.flatten([value])]
-        raise _Recorded(recorder.parts, [sm.sympify(entry) for entry in formula(recorder, *components)])
+        return np.array([sm.sympify(entry) for entry in formula(recorder, *components)], object).reshape(shape)
 
+    # The function looks its helper up among the names of its module: there it finds this one, and goes on.
     with mock.patch.dict(function.__globals__, evaluate=record):
-        try:
-            function(*arguments)
-        except _Recorded as done:
-            return done.args
-    raise ValueError(f"{function.__name__} is not written as one formula")
+        results = function(*arguments)
+    return recorder.parts, list(results.ravel())
 
 
 def _in_convention(kind, components, convention):
@@ -100,7 +101,7 @@ def expressions(name, sequence=None, **convention):
         needs = "needs a sequence, such as 'zxy'" if sequence is None else "takes no sequence"
         raise ValueError(f"{name} {needs}")
     takes, gives = FORMULAS[name]
-    degree = sm.pi / 180 if convention.get("unit") == "degrees" else 1
+    degree = sm.Float(math.pi / 180, 17) if convention.get("unit") == "degrees" else 1
     symbols, values = {}, []
     for argument, kind in takes.items():
         names = [sm.Symbol(f"{argument}_{k}", real=True) for k in range(SIZES[kind])]
@@ -227,7 +228,7 @@ def _shared(parts, results, known):
 def _with_floats(value):
     """The same with ``1.0`` for ``1``, but in exponents and signs: Rust and GLSL do not add the one to the other."""
     if value.is_Integer:
-        return sm.Float(value, 2)
+        return sm.Float(value)
     if not value.args or value.is_Rational:
         return value
     if value.is_Pow:

@@ -6,12 +6,13 @@ import subprocess
 
 import numpy as np
 import pytest
+from places import REPOSITORY
 from test_mismatch import BAD, QUATERNIONS, SPELLINGS, both_sides, known, printed, random_chain
 
+from notebook_pages.paths import NODE
 from orientation import quaternion_from_dcm, random_orientations, simple_dcm
 from orientation_workbench import explain
 from orientation_workbench.mismatch import mend, table
-from website.paths import NODE, REPOSITORY
 
 SCRIPTS = REPOSITORY / "src" / "orientation_figures" / "moving" / "js"
 PROGRAM = """
