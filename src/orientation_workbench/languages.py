@@ -130,7 +130,7 @@ LANGUAGES = {
             "#include <array>\n#include <cmath>\n\nstd::array<double, {count}> {function}({arguments})\n{{\n"
             "    std::array<double, {count}> result;\n{body}\n    return result;\n}}",
             "const std::array<double, {count}>& {name}"),
-    "Rust": (sm.rust_code, "{name}[{index}]", 0, "    let {part} = {value};", "    result[{index}] = {value};",
+    "Rust": (sm.rust_code, "{name}[{index}]", 0, "    let {part}: {rust} = {value};", "    result[{index}] = {value};",
              "fn {function}({arguments}) -> [f64; {count}] {{\n    let mut result = [0.0; {count}];\n{body}\n"
              "    result\n}}",
              "{name}: &[f64; {count}]"),
@@ -146,6 +146,9 @@ LANGUAGES = {
     "GLSL": (sm.glsl_code, "{name}[{index}]", 0, "    {kind} {part} = {value};", "    result[{index}] = {value};",
              "void {function}({arguments}, out float result[{count}])\n{{\n{body}\n}}", "in float {name}[{count}]"),
 }  # fmt: skip
+
+#: In languages that want to be told: what a number is called, and what is true or false.
+TYPES = {"kind": ("float", "bool"), "rust": ("f64", "bool")}
 
 
 def formula_in(
@@ -203,7 +206,9 @@ def formula_in(
         return printer(_with_floats(value.xreplace(written)))
 
     lines = [
-        part_line.format(part=part, value=write(value), kind="bool" if value.is_Boolean else "float")
+        part_line.format(
+            part=part, value=write(value), **{name: types[value.is_Boolean] for name, types in TYPES.items()}
+        )
         for part, value in parts
     ]
     lines += [result_line.format(index=k + start, value=write(value)) for k, value in enumerate(results)]
