@@ -70,7 +70,7 @@ def measure(path):
 
 def controls(pages):
     """Controls that can be seen in the article of each built page."""
-    from website.browser import open_browser
+    from notebook_pages.browser import open_browser
 
     found = {}
     with open_browser() as browser:
