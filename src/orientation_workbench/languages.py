@@ -10,6 +10,7 @@ from unittest import mock
 
 import numpy as np
 import sympy as sm
+from sympy.logic.boolalg import Boolean
 
 import orientation
 
@@ -207,7 +208,7 @@ def formula_in(
 
     lines = [
         part_line.format(
-            part=part, value=write(value), **{name: types[value.is_Boolean] for name, types in TYPES.items()}
+            part=part, value=write(value), **{name: types[isinstance(value, Boolean)] for name, types in TYPES.items()}
         )
         for part, value in parts
     ]
