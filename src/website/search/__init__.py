@@ -1,0 +1,218 @@
+"""The search: an index of places, made from the built pages, and the palette that asks it (``js``).
+
+Nothing is written for it but ``synonyms.yml``, the words of readers for what the book calls otherwise: the places, with
+their numbers, first sentences and characteristic words, are those of the pages.
+"""
+
+import json
+import math
+import os
+import re
+import subprocess
+from collections import Counter
+from pathlib import Path
+
+import yaml
+from bs4 import BeautifulSoup
+
+from ..finish import pages_of
+from ..paths import NODE, NODE_MODULES, parts
+
+HERE = Path(__file__).parent
+ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
+SCRIPT = Path("_static") / "search.js"
+WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
+FIELDS = ("kind", "page", "anchor", "number", "title", "about", "words", "tex", "weight")
+SYNONYMS = Path("synonyms.yml")
+MOST_WORDS = 18  # of a section, beyond its title and its first sentence: those that others have least
+LONGEST_SENTENCE = 100
+#: Sections of every chapter: nobody looks for them by their name.
+EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
+REST = "script, style, svg, pre, .eqno, table, .admonition-title"
+
+
+def text_of(element, left_out=()):
+    """The words of an element, without those of the elements ``left_out``."""
+    parts, waiting = [], [element]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, str):
+            parts.append(one)
+        elif id(one) not in left_out:
+            waiting += reversed(one.contents)
+    return re.sub(r" (?=[,.;:)])", "", " ".join(" ".join(parts).split()))
+
+
+def first_sentence(element, left_out=()):
+    """The first words that stand as text in ``element``: a sentence, or as much of it as a line shows."""
+    paragraph = element if element.name in ("dd", "p") else element.find("p", recursive=False)
+    words = text_of(paragraph, left_out) if paragraph else ""
+    sentence = re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0]
+    return sentence if len(sentence) <= LONGEST_SENTENCE else sentence[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
+
+
+def title_of(heading):
+    """The number and the words of a heading."""
+    number = heading.select_one(".section-number")
+    words = number.extract().get_text().strip().rstrip(".") if number else ""
+    return words, text_of(heading)
+
+
+def captions():
+    """The part of the book in which a page stands."""
+    return {page: caption for caption, pages in parts() for page in pages}
+
+
+def entries_of_page(page, article):
+    """The places of one page, with the text of each in ``text``, from which its words are chosen."""
+    tex = {
+        box["id"]: " ".join(one["data-tex"] for one in box.select("[data-tex]"))
+        for box in article.select("div.math[id]")
+    }
+    numbers = {
+        box["id"]: text_of(box.select_one(".eqno")).strip("()# ") for box in article.select("div.math[id]:has(.eqno)")
+    }
+    for rest in article.select(".headerlink, .katex-html, annotation"):
+        rest.extract()
+    rest = {id(one) for one in article.select(REST)}
+    inner = rest | {id(one) for one in article.select("section")}
+    for section in article.select("section[id]"):
+        heading = section.find(["h1", "h2", "h3", "h4"], recursive=False)
+        if heading is None:
+            continue
+        number, title = title_of(BeautifulSoup(str(heading), "lxml").find(heading.name))
+        if title in EVERYWHERE and heading.name != "h1":
+            continue
+        kind = "page" if heading.name == "h1" else "example" if title.startswith("Worked example") else "section"
+        anchor = "" if kind == "page" else section["id"]
+        own = " ".join(
+            text_of(part, inner) for part in section.contents if id(part) not in inner and part is not heading
+        )
+        yield {
+            "kind": kind, "title": title, "number": number, "anchor": anchor, "about": first_sentence(section, rest),
+            "text": own,
+            "stressed": " ".join(text_of(one) for one in section.select("em, strong, .std-term")),
+        }  # fmt: skip
+        for box in section.select("div.math[id]"):
+            if box.find_parent("section") is section and box["id"] in numbers:
+                number = numbers[box["id"]]
+                called = {"kind": "equation", "title": f"Equation {number}: {title}", "number": number}
+                yield called | {"anchor": box["id"], "tex": tex[box["id"]]}
+    for exercise in article.select(".admonition.exercise[id]"):
+        number, _, title = text_of(exercise.select_one(".admonition-title")).partition("(")
+        body = exercise.select_one("section, div") or exercise
+        called = {"kind": "exercise", "title": title.rstrip(" )") or number, "number": number.strip()}
+        yield called | {"anchor": exercise["id"], "about": first_sentence(body), "text": text_of(body)}
+    for name in article.select("dl.glossary > dt[id]"):
+        yield {
+            "kind": "term",
+            "title": text_of(name),
+            "anchor": name["id"],
+            "about": first_sentence(name.find_next("dd")),
+        }
+    for name in article.select("dl.py > dt.sig[id]"):
+        words = name["id"].partition(".")[2]
+        if name["id"].count(".") <= 2 and "_figures" not in name["id"]:
+            yield {
+                "kind": "function",
+                "title": words,
+                "anchor": name["id"],
+                "about": first_sentence(name.find_next("dd")),
+            }
+
+
+def characteristic(entries):
+    """For each entry, the words of its text by which it is known, sorted.
+
+    They are words of some title or term of the book, or that the text stresses somewhere: most others tell nothing.
+    """
+    found = re.compile(r"[a-z][a-z-]*[a-z]")
+    telling = {
+        word for one in entries for field in ("title", "stressed") for word in found.findall(one.get(field, "").lower())
+    }
+    split = [Counter(word for word in found.findall(one.get("text", "").lower()) if word in telling) for one in entries]
+    spread = Counter(word for words in split for word in words)
+    for one, words in zip(entries, split, strict=True):
+        shown = set(found.findall(f"{one['title']} {one.get('about', '')}".lower()))
+        weight = {
+            word: (count**0.5 + (word in one.get("stressed", "").lower())) * math.log(len(entries) / spread[word])
+            for word, count in words.items()
+            if word not in shown
+        }
+        yield sorted(sorted(weight, key=weight.get, reverse=True)[:MOST_WORDS])
+
+
+def weight_of(page):
+    """What a page counts beside the others: chapters explain, and others hold what belongs to them."""
+    if page.rpartition("/")[2].startswith("solutions"):
+        return 0.3
+    if page.startswith("exercises/"):
+        return 0.5
+    return 0.8 if page.startswith("appendix/reference") else 1
+
+
+def index(site):
+    """What the palette asks: pages, places and synonyms, as plain data."""
+    caption, pages, entries = captions(), [], []
+    for path in pages_of(site):
+        page = path.relative_to(site).with_suffix("").as_posix()
+        if page in ("search", "404", "appendix/subject-index"):
+            continue
+        # Drawings and programs are most of a page, and say nothing to the search.
+        text = re.sub(r"<(svg|pre|script)\b.*?</\1>", "", path.read_text("utf8"), flags=re.DOTALL)
+        if (article := BeautifulSoup(text, "lxml").article) is None:
+            continue
+        found = list(entries_of_page(page, article))
+        if not found:
+            continue
+        pages.append([page, found[0]["title"], caption.get(page, "")])
+        weight = weight_of(page)
+        for entry in found:
+            entries.append(entry | {"page": len(pages) - 1} | ({"weight": weight} if weight != 1 else {}))
+    for entry, words in zip(entries, list(characteristic(entries)), strict=True):
+        entry["words"] = " ".join(words)
+    synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else []
+    found = {"pages": pages, "fields": FIELDS, "entries": [row(one) for one in entries], "synonyms": synonyms}
+    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {})
+
+
+def row(entry):
+    """An entry without the names of its fields, and without what is empty at its end."""
+    values = [entry.get(field, "") for field in FIELDS]
+    while values[-1] == "":
+        values.pop()
+    return values
+
+
+def write(site):
+    """Write the palette with its index as one script: it answers from a disk, too, where pages may fetch nothing."""
+    flags = ["--bundle", "--minify", "--format=iife", "--legal-comments=none", "--log-level=warning"]
+    command = [NODE, ESBUILD, HERE / "js" / "palette.js", *flags]
+    environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
+    done = subprocess.run(command, check=True, env=environment, stdout=subprocess.PIPE)
+    data = json.dumps(index(site), ensure_ascii=False, separators=(",", ":"))
+    (site / SCRIPT).write_text(f"self.searchIndex={data};\n{done.stdout.decode()}", "utf8")
+
+
+def begin(app):
+    app.builder.search = False  # Sphinx's own, which finds the words of a page and leads to its top
+
+
+def add_page(app):
+    yield "search", {"title": "Search"}, "search.html"
+
+
+def add_address(app, pagename, templatename, context, doctree):
+    context["search_script"] = context["pathto"](SCRIPT.as_posix(), 1)
+
+
+def finish(app, exception):
+    if not exception and app.builder.format == "html":
+        write(Path(app.outdir))
+
+
+def setup(app):
+    app.connect("builder-inited", begin)
+    app.connect("html-collect-pages", add_page)
+    app.connect("html-page-context", add_address)
+    app.connect("build-finished", finish, priority=970)  # when all pages are written, before they name its version
