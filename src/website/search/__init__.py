@@ -16,7 +16,7 @@ import yaml
 from bs4 import BeautifulSoup
 
 from ..finish import pages_of
-from ..paths import NODE, NODE_MODULES, parts
+from ..paths import NODE, NODE_MODULES, is_solutions, parts
 
 HERE = Path(__file__).parent
 ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
@@ -24,8 +24,9 @@ SCRIPT = Path("_static") / "search.js"
 WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
 FIELDS = ("kind", "page", "anchor", "number", "title", "about", "words", "tex", "weight")
 SYNONYMS = Path("synonyms.yml")
-MOST_WORDS = 18  # of a section, beyond its title and its first sentence: those that others have least
+MOST_WORDS = 16  # of a section, beyond its title and its first sentence: those that others have least
 LONGEST_SENTENCE = 100
+LITTLE = 0.5  # what counts no more than this, is found by its title alone
 #: Sections of every chapter: nobody looks for them by their name.
 EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
 REST = "script, style, svg, pre, .eqno, table, .admonition-title"
@@ -144,10 +145,10 @@ def characteristic(entries):
 
 def weight_of(page):
     """What a page counts beside the others: chapters explain, and others hold what belongs to them."""
-    if page.rpartition("/")[2].startswith("solutions"):
+    if is_solutions(page):
         return 0.3
     if page.startswith("exercises/"):
-        return 0.5
+        return LITTLE
     return 0.8 if page.startswith("appendix/reference") else 1
 
 
@@ -170,7 +171,10 @@ def index(site):
         for entry in found:
             entries.append(entry | {"page": len(pages) - 1} | ({"weight": weight} if weight != 1 else {}))
     for entry, words in zip(entries, list(characteristic(entries)), strict=True):
-        entry["words"] = " ".join(words)
+        if entry.get("weight", 1) > LITTLE:
+            entry["words"] = " ".join(words)
+        else:
+            entry["about"] = ""
     synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else []
     found = {"pages": pages, "fields": FIELDS, "entries": [row(one) for one in entries], "synonyms": synonyms}
     return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {})

@@ -19,8 +19,8 @@ export function stem(word) {
 // The words of a text; a name of the software is one word, and each of its parts is one, too.
 export function words(text) {
   const found = plain(text).replace(/[’']s\b/g, "").match(/[a-z0-9]+(?:[_.][a-z0-9]+)*/g) ?? [];
-  return found.flatMap((word) => (/[_.]/.test(word) ? [word, ...word.split(/[_.]/)] : [word]))
-    .filter((word) => !LEFT_OUT.has(word)).map((word) => (/[_.]/.test(word) ? word : stem(word)));
+  return found.flatMap((word) => word.split(".")).flatMap((word) => (word.includes("_") ? [word, ...word.split("_")] : [word]))
+    .filter((word) => !LEFT_OUT.has(word)).map((word) => (word.includes("_") ? word : stem(word)));
 }
 
 // The signs of a formula, as TeX has them or as they are typed: what only shapes them is left out.
@@ -46,9 +46,13 @@ export function finder({ pages, fields, entries: rows, synonyms = [] }) {
   const entries = rows.map((row) => Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined])));
   for (const entry of entries) entry.page ??= 0;
   const concepts = synonyms.map((group) => group.map((phrase) => words(phrase)));
-  const within = (list, phrase) => list.findIndex((_, k) => phrase.every((word, j) => list[k + j] === word));
+  // Where in a list of words a phrase stands; the last word may still be on its way, from the third letter on.
+  const begun = (word, whole) => word === whole || (word?.length > 2 && whole.startsWith(word));
+  const within = (list, phrase, typed) => list.findIndex((_, k) => phrase.every((word, j) =>
+    (typed && k + j === list.length - 1 ? begun(list[k + j], word) : list[k + j] === word)));
   // Each word, or run of words, that names a concept, replaced by the concept.
-  const named = (list) => concepts.flatMap((group, number) => group.filter((phrase) => phrase.length && within(list, phrase) >= 0)
+  const named = (list, typed) => concepts.flatMap((group, number) => group.filter((phrase) => phrase.length && within(list, phrase, typed) >= 0)
+    .sort((one, other) => other.length - one.length)
     .slice(0, 1).map((phrase) => [number, phrase]));
   const index = new MiniSearch({
     idField: "id", fields: ["title", "concepts", "chapter", "about", "words"], tokenize: (text) => text.split(" ").filter(Boolean), processTerm: (term) => term,
@@ -91,8 +95,8 @@ export function finder({ pages, fields, entries: rows, synonyms = [] }) {
     const formula = isFormula(query);
     const list = words(query).filter((word) => !formula || word.length > 1);
     take(byWords(list, list.join(" ")), formula ? 0.4 : 1);
-    for (const [number, phrase] of named(list)) {
-      const place = within(list, phrase);
+    for (const [number, phrase] of named(list, true)) {
+      const place = within(list, phrase, true);
       const all = phrase.reduce((sum, word) => sum + worth(word), 0);
       const asked = [...list.slice(0, place), `§${number}`, ...list.slice(place + phrase.length)];
       take(byWords(asked, "", (term) => (term[0] === "§" ? all : worth(term))), 0.8 + 0.15 * phrase.length);

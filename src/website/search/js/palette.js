@@ -18,7 +18,7 @@ const KIND = { page: "", section: "", example: "", term: "Glossary", function: "
 function shown(entry) {
   const [, title, part] = index.pages[entry.page];
   const number = entry.number && !/^[A-Z]/.test(entry.number) ? `${entry.number} ` : "";
-  const place = [KIND[entry.kind], entry.anchor ? title : part].filter(Boolean).join(" · ");
+  const place = [KIND[entry.kind], !entry.anchor ? part : entry.kind === "term" ? "" : title].filter(Boolean).join(" · ");
   return make("li", {}, make("a", { href: address(entry) },
     make("b", { textContent: `${number}${entry.title}` }), make("small", { textContent: place }),
     make("span", { textContent: entry.about ?? "" })));
