@@ -5,11 +5,11 @@ their numbers, first sentences and characteristic words, are those of the pages.
 """
 
 import json
-import math
 import os
 import re
 import subprocess
 from collections import Counter
+from hashlib import sha256
 from pathlib import Path
 
 import yaml
@@ -20,11 +20,11 @@ from ..paths import NODE, NODE_MODULES, is_solutions, parts
 
 HERE = Path(__file__).parent
 ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
-SCRIPT = Path("_static") / "search.js"
+SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
+WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
 WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
-FIELDS = ("kind", "page", "anchor", "number", "title", "about", "words", "tex", "weight")
+FIELDS = ("kind", "page", "anchor", "number", "title", "about", "tex", "weight")
 SYNONYMS = Path("synonyms.yml")
-MOST_WORDS = 16  # of a section, beyond its title and its first sentence: those that others have least
 LONGEST_SENTENCE = 100
 LITTLE = 0.5  # what counts no more than this, is found by its title alone
 #: Sections of every chapter: nobody looks for them by their name.
@@ -92,7 +92,6 @@ def entries_of_page(page, article):
         yield {
             "kind": kind, "title": title, "number": number, "anchor": anchor, "about": first_sentence(section, rest),
             "text": own,
-            "stressed": " ".join(text_of(one) for one in section.select("em, strong, .std-term")),
         }  # fmt: skip
         for box in section.select("div.math[id]"):
             if box.find_parent("section") is section and box["id"] in numbers:
@@ -122,25 +121,11 @@ def entries_of_page(page, article):
             }
 
 
-def characteristic(entries):
-    """For each entry, the words of its text by which it is known, sorted.
-
-    They are words of some title or term of the book, or that the text stresses somewhere: most others tell nothing.
-    """
-    found = re.compile(r"[a-z][a-z-]*[a-z]")
-    telling = {
-        word for one in entries for field in ("title", "stressed") for word in found.findall(one.get(field, "").lower())
-    }
-    split = [Counter(word for word in found.findall(one.get("text", "").lower()) if word in telling) for one in entries]
-    spread = Counter(word for words in split for word in words)
-    for one, words in zip(entries, split, strict=True):
-        shown = set(found.findall(f"{one['title']} {one.get('about', '')}".lower()))
-        weight = {
-            word: (count**0.5 + (word in one.get("stressed", "").lower())) * math.log(len(entries) / spread[word])
-            for word, count in words.items()
-            if word not in shown
-        }
-        yield sorted(sorted(weight, key=weight.get, reverse=True)[:MOST_WORDS])
+def words_of(entry):
+    """The words of an entry's text that its title and first sentence do not have; one that comes back counts twice."""
+    count = Counter(word for word in WORD.findall(entry.pop("text", "").lower()) if len(word) > 2)
+    shown = set(WORD.findall(f"{entry['title']} {entry.get('about', '')}".lower()))
+    return " ".join(word for word, number in count.items() if word not in shown for _ in range(1 + (number > 2)))
 
 
 def weight_of(page):
@@ -153,7 +138,7 @@ def weight_of(page):
 
 
 def index(site):
-    """What the palette asks: pages, places and synonyms, as plain data."""
+    """What the palette asks: pages, places and synonyms, as plain data; and the words of each place's text."""
     caption, pages, entries = captions(), [], []
     for path in pages_of(site):
         page = path.relative_to(site).with_suffix("").as_posix()
@@ -170,14 +155,13 @@ def index(site):
         weight = weight_of(page)
         for entry in found:
             entries.append(entry | {"page": len(pages) - 1} | ({"weight": weight} if weight != 1 else {}))
-    for entry, words in zip(entries, list(characteristic(entries)), strict=True):
-        if entry.get("weight", 1) > LITTLE:
-            entry["words"] = " ".join(words)
-        else:
+    words = [words_of(entry) if entry.get("weight", 1) > LITTLE else "" for entry in entries]
+    for entry in entries:
+        if entry.get("weight", 1) <= LITTLE:
             entry["about"] = ""
     synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else []
     found = {"pages": pages, "fields": FIELDS, "entries": [row(one) for one in entries], "synonyms": synonyms}
-    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {})
+    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), words
 
 
 def row(entry):
@@ -189,12 +173,19 @@ def row(entry):
 
 
 def write(site):
-    """Write the palette with its index as one script: it answers from a disk, too, where pages may fetch nothing."""
+    """Write the palette with its index as one script: it answers from a disk, too, where pages may fetch nothing.
+
+    The words of the text, which weigh more than all the rest, come after the first answer, as another script.
+    """
     flags = ["--bundle", "--minify", "--format=iife", "--legal-comments=none", "--log-level=warning"]
     command = [NODE, ESBUILD, HERE / "js" / "palette.js", *flags]
     environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
     done = subprocess.run(command, check=True, env=environment, stdout=subprocess.PIPE)
-    data = json.dumps(index(site), ensure_ascii=False, separators=(",", ":"))
+    found, words = index(site)
+    text = f"self.searchWords={json.dumps(words, ensure_ascii=False, separators=(',', ':'))};"
+    (site / WORDS).write_text(text, "utf8")
+    found["words"] = f"{WORDS.as_posix()}?v={sha256(text.encode()).hexdigest()[:8]}"
+    data = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
     (site / SCRIPT).write_text(f"self.searchIndex={data};\n{done.stdout.decode()}", "utf8")
 
 

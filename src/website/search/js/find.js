@@ -40,11 +40,15 @@ function overlap(one, other) {
 }
 
 // What a reader looks for is rather one than another of these, where both answer as well.
-const KINDS = { page: 1.8, section: 1.25, term: 1.15, function: 0.75, exercise: 0.7, example: 0.8, figure: 0.55, equation: 0.45 };
+const KINDS = { page: 1.6, section: 1.25, term: 1.15, function: 0.75, exercise: 0.7, example: 0.8, figure: 0.55, equation: 0.45 };
 
-export function finder({ pages, fields, entries: rows, synonyms = [] }) {
+const READ = { page: true, section: true }; // those of the chapters have numbers
+
+// ``texts`` are the words of each entry's text, once they are there.
+export function finder({ pages, fields, entries: rows, synonyms = [] }, texts = []) {
   const entries = rows.map((row) => Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined])));
   for (const entry of entries) entry.page ??= 0;
+  const cut = texts.map(words);
   const concepts = synonyms.map((group) => group.map((phrase) => words(phrase)));
   // Where in a list of words a phrase stands; the last word may still be on its way, from the third letter on.
   const begun = (word, whole) => word === whole || (word?.length > 2 && whole.startsWith(word));
@@ -60,18 +64,18 @@ export function finder({ pages, fields, entries: rows, synonyms = [] }) {
   index.addAll(entries.map((entry, id) => {
     const title = words(entry.title);
     return {
-      id, title: title.join(" "), chapter: entry.anchor ? words(pages[entry.page][1]).join(" ") : "", about: words(entry.about ?? "").join(" "), words: words(entry.words ?? "").join(" "),
+      id, title: title.join(" "), chapter: entry.anchor ? words(pages[entry.page][1]).join(" ") : "", about: words(entry.about ?? "").join(" "), words: (cut[id] ?? []).join(" "),
       concepts: named(title).map(([number]) => `§${number}`).join(" "),
     };
   }));
   const spread = new Map(); // in how many entries each word stands
-  for (const entry of entries) {
-    for (const word of new Set(words(`${entry.title} ${entry.about ?? ""} ${entry.words ?? ""}`))) spread.set(word, (spread.get(word) ?? 0) + 1);
+  for (const [id, entry] of entries.entries()) {
+    for (const word of new Set([...words(`${entry.title} ${entry.about ?? ""}`), ...cut[id] ?? []])) spread.set(word, (spread.get(word) ?? 0) + 1);
   }
   const worth = (term) => Math.log(1 + entries.length / (1 + (spread.get(term) ?? 0)));
   const formulas = entries.map(({ tex }, id) => tex && { id, signs: pairs(signs(tex)) }).filter(Boolean);
   const OPTIONS = {
-    boost: { title: 6, concepts: 6, chapter: 1.2, about: 1.4, words: 1.2 }, weights: { fuzzy: 0.3, prefix: 0.5 },
+    boost: { title: 6, concepts: 6, chapter: 1.2, about: 1.4, words: 0.4 }, weights: { fuzzy: 0.3, prefix: 0.5 },
     prefix: (term) => term.length > 2 && term[0] !== "§", fuzzy: (term) => (term[0] !== "§" && term.length > 3 ? (term.length > 7 ? 0.25 : 0.2) : false),
   };
 
@@ -83,7 +87,7 @@ export function finder({ pages, fields, entries: rows, synonyms = [] }) {
       const same = there === whole ? 2.5 : entry.kind === "page" && there.startsWith(`${whole} `) ? 2.2 : 1;
       const sum = (of) => [...new Set(of)].reduce((all, term) => all + worthOf(term), 0);
       const part = sum(queryTerms) / sum(list); // rare words tell more than common ones
-      return [id, score / list.length * part ** 2 * same * (KINDS[entry.kind] ?? 1) * (entry.weight ?? 1)];
+      return [id, score / list.length * part ** 2 * same * (KINDS[entry.kind] ?? 1) * (entry.weight ?? 1) * (entry.number || !READ[entry.kind] ? 1 : 0.8)];
     });
   }
 

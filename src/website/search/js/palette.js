@@ -4,7 +4,8 @@ import { finder } from "./find.js";
 import { pasted } from "./pasted.js";
 
 const index = self.searchIndex;
-const find = finder(index);
+let find = finder(index);
+const fields = [];
 const root = new URL(document.documentElement.dataset.content_root || "./", location.href);
 const make = (tag, properties, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
@@ -33,7 +34,7 @@ function numbersFirst(query) {
     make("b", { textContent: `Open the workbench with this ${given}` }), make("small", { textContent: "Workbench" })))];
 }
 
-export function attach(form) {
+function attach(form) {
   const field = form.querySelector("input");
   const list = make("ul", { className: "found" });
   const count = make("p", { className: "found-count" });
@@ -48,6 +49,7 @@ export function attach(form) {
     list.replaceChildren(...found);
     count.textContent = query.length < 3 ? "" : found.length ? `${found.length} ${found.length === 1 ? "place" : "places"}` : "Nothing in this book. Try another word for it.";
   };
+  fields.push(answer);
   field.addEventListener("input", answer);
   field.addEventListener("paste", () => setTimeout(answer));
   form.addEventListener("submit", (event) => {
@@ -69,3 +71,9 @@ export function attach(form) {
 }
 
 for (const form of document.querySelectorAll("form.bd-search")) attach(form);
+const more = make("script", { src: new URL(index.words, root).href });
+more.addEventListener("load", () => {
+  find = finder(index, self.searchWords);
+  for (const answer of fields) answer();
+});
+document.head.append(more);
