@@ -1,0 +1,598 @@
+"""What an author writes of a question, and what is sealed of it.
+
+In the notebook with the solutions, the cell that checks an answer goes on, between nbgrader's marks for
+hidden tests, with a call of :func:`question`:
+
+.. code-block:: python
+
+    check('simple-orientations/about-x', A_C_N)
+    ### BEGIN HIDDEN TESTS
+    question('simple-orientations/about-x', kind='direction cosine matrix', frames=('A', 'N'),
+             symbols='theta', turns=[('x', theta)], worth=2,
+             solution='The shared axis is $x$, so ...')
+    ### END HIDDEN TESTS
+
+CONTRIBUTING.md explains each argument with an example.
+"""
+
+import difflib
+import hashlib
+import html
+import inspect
+import itertools
+import json
+import re
+from typing import NamedTuple
+
+from ..checking import sealing
+from ..checking.evaluate import MP
+from ..checking.kinds import (
+    PARTS,
+    Blank,
+    Fault,
+    Undecidable,
+    calls_for,
+    canonical,
+    edges_near,
+    fingerprint,
+    fingerprints,
+    read,
+    sign_limit,
+    within,
+)
+from ..checking.mistakes import GENERAL, Mistake, by_short_name, short_name
+from ..checking.mistakes import mistakes as catalogued_mistakes
+from ..checking.plain import NotPlain, to_plain
+from ..checking.plugins import kind_of_values, kinds
+from ..checking.points import ANGLES
+from ..checking.questions import CODE_LETTERS, NEARLY, OUTCOMES, code_text, compare, rung_key
+from ..checking.units import UnknownUnit
+
+#: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
+TOLERANCE = 5e-4
+#: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may cross.
+REACH = 0.5
+#: Edges of cells that an answer may be near: beyond each there is another locker, and one for every combination.
+MOST_EDGES = 6
+
+
+class AuthorError(ValueError):
+    """A question is not well posed; the message says which and why."""
+
+
+class Entry(NamedTuple):
+    """What one fingerprint stands for: as a rule one case, and one such answer.
+
+    A case is a dictionary: its outcome; its notes, each with details; its hints; and, where the fingerprint is
+    shared by several or the answer is the right one, its numbers.
+    """
+
+    cases: list
+    plain: dict
+
+    @property
+    def outcome(self):
+        return self.cases[0]["outcome"]
+
+    @property
+    def notes(self):
+        return self.cases[0]["notes"]
+
+
+class _Known(NamedTuple):
+    """An answer that is known, with all mistakes that lead to it."""
+
+    outcome: str
+    notes: list
+    plain: dict
+    reading: object
+    numbers: list
+
+
+class Question:
+    """A question with everything its author knows of it.
+
+    Attributes
+    ----------
+    name : str
+    public : dict
+        What a student's computer may know.
+    answer : object
+        The right answer.
+    worth : int
+    credit : dict
+        Share of the worth for a mistake, by its note.
+    partial : bool
+        Whether an answer in several words earns the share of them that is right, beyond what a guess would earn.
+    rubric : list of str
+        What a person looks for who reads the answers.
+    entries : dict
+        :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
+    no_mistakes : list of str
+        What the author says of mistakes that give the right answer.
+    near : list
+        Fingerprints of answers that agree with an exact one to about three digits.
+    """
+
+    def __init__(
+        self,
+        name,
+        public,
+        answer,
+        *,
+        variable=None,
+        worth=1,
+        credit=None,
+        partial=False,
+        rubric=None,
+        hints=None,
+        ladder=None,
+        after=None,
+        solution="",
+        title="",
+        turns=(),
+        turned=None,
+        authored=None,
+        exam=False,
+    ):
+        self.name, self.public, self.answer, self.variable = name, public, answer, variable
+        self.worth, self.credit, self.title = (
+            worth,
+            dict(credit or {}),
+            title or name.partition("/")[2].replace("-", " "),
+        )
+        self.partial, self.rubric = partial, list(rubric or [])
+        self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
+        self.ladder = ladder_of(public, ladder, turns)
+        self.turns, self.turned = list(turns), turned
+        if exam:
+            self.public["exam"] = True
+        self.plain = self.to_plain(answer)
+        self.public.setdefault("salt", None)
+        held = {node[1] for node in self.plain["nodes"] if node[0] == "symbol"}
+        if self.public.get("symbols") and held >= set(self.public["symbols"]):
+            self.public["every symbol"] = True
+        self._settle_points()
+        self._demand_turns()
+        # What the author says of a mistake is closer to the question than what the catalogue says of it.
+        self.mistakes = [
+            *(Mistake("authored", {"text": text}, wrong) for text, wrong in (authored or {}).items()),
+            *self._catalogued(),
+        ]
+        self._demand_notes()
+        self.near, self.no_mistakes = [], []
+        self.entries = {} if kinds()[public["kind"]].by_a_person else self._entries()
+
+    def to_plain(self, answer):
+        return to_plain(answer, calls_for(self.public))
+
+    def fingerprint_of(self, plain):
+        return fingerprint(self.public, read(self.public, plain))
+
+    def find(self, text):
+        """What is known of a fingerprint, as a locker holds it; or ``None``."""
+        if text in self.entries:
+            return {"cases": self.entries[text].cases}
+        return {"cases": []} if text in self.near else None
+
+    def reply_to(self, plain):
+        """The reply to an answer, as plain data: the one that a student gets, found without the slow hash."""
+        return compare(self.name, self.public, plain, self.find)
+
+    def _settle_points(self):
+        """Choose the salt, and with it the points: at them each entry takes every sign that it can take.
+
+        What is asked of a salt is so weak that nearly every answer would be content with nearly every salt: the
+        choice tells nothing of the answer.
+        """
+        # Each variant has a salt of its own, so that a guess is worth nothing for the others.
+        number = self.public.get("variant", 0)
+        seed = f"{self.name} variant {number}" if number else self.name
+        varying = None
+        for attempt in range(50):
+            self.public["salt"] = hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16]
+            try:
+                reading = read(self.public, self.plain)
+                numbers = canonical(self.public, reading) if reading.text is None else []
+                if varying is None:
+                    varying = self._varying()
+            except (Blank, Fault, Undecidable) as error:
+                raise AuthorError(f"{self.name}: the right answer cannot be read. {error}") from None
+            if not varying <= _varying_in(reading.numbers):
+                continue
+            if self.public.get("either sign") and any(
+                sign_limit(self.public) * 0.4 < abs(number) < sign_limit(self.public) * 1.6 for number in numbers
+            ):
+                continue
+            if len(edges_near(self.public, numbers)) <= MOST_EDGES:
+                return
+        raise AuthorError(f"{self.name}: no points were found at which the answer is well placed.")
+
+    def _varying(self):
+        """Which entries of the answer take both signs at some values of the symbols."""
+        if not self.public.get("symbols"):
+            return set()
+        readings = (read({**self.public, "salt": f"{self.name} {number}"}, self.plain).numbers for number in range(8))
+        return _varying_in([numbers for reading in readings for numbers in reading])
+
+    def _demand_turns(self):
+        if not self.turns:
+            return
+        build = kinds()[self.public["kind"]].build
+        if build is None:
+            raise AuthorError(f"{self.name}: an answer of the kind {self.public['kind']!r} is not made of turns.")
+        built = self.to_plain(build(self.turns))
+        if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
+            raise AuthorError(f"{self.name}: the turns do not give the right answer.")
+
+    def _demand_notes(self):
+        """Hints and credit belong to mistakes that the question knows: for another one they would never be given."""
+        notes = dict.fromkeys(mistake.note for mistake in self.mistakes)
+        texts = [mistake.details["text"] for mistake in self.mistakes if mistake.note == "authored"]
+        for argument, keys, known in (
+            ("hints", self.hints, [*notes, *texts]),
+            ("credit", self.credit, [*notes, "help"]),
+        ):
+            for key in keys:
+                if key not in known:
+                    raise AuthorError(
+                        f"{self.name}: `{argument}` names {key!r}, and this question knows no such mistake. It knows "
+                        f"{', '.join(repr(one) for one in known)}."
+                    )
+
+    def _catalogued(self):
+        if self.public["kind"] != "function":
+            return catalogued_mistakes(self.public, self.answer, self.turns, self.turned)
+        inner = {**self.public, "kind": self.public["result"]}
+        results = [self.answer(*arguments) for arguments in calls_for(self.public)]
+        columns = [
+            {(found.note, json.dumps(found.details)): found.answer for found in catalogued_mistakes(inner, result)}
+            for result in results
+        ]
+        shared = [known for known in columns[0] if all(known in column for column in columns)]
+        return [
+            Mistake(note, json.loads(details), _replay([column[note, details] for column in columns]))
+            for note, details in shared
+        ]
+
+    def _entries(self):
+        known = self._known()
+        right = known[0]
+        by_text = {}
+        for one in known:
+            exact = self.public.get("tolerance") is None
+            reach = REACH if one is not right else 1 if exact else NEARLY
+            for text in fingerprints(self.public, one.reading, reach, most=MOST_EDGES if one is right else 3):
+                by_text.setdefault(text, []).append(one)
+        self.near = []
+        if right.numbers and self.public.get("tolerance") is None:
+            self.near = fingerprints(self.public, right.reading, near=True)
+        return {
+            text: Entry([self._case(one, alone=len(ones) == 1) for one in ones], ones[0].plain)
+            for text, ones in by_text.items()
+        }
+
+    def _known(self):
+        """The right answer, and then every other answer that a mistake leads to."""
+        known, self.no_mistakes = [self._one("correct", [], self.plain)], []
+        for mistake in self.mistakes:
+            try:
+                one = self._one("mistake", [[mistake.note, mistake.details]], self.to_plain(mistake.answer))
+            except (Fault, Undecidable, NotPlain):
+                continue  # such an answer is refused for its form, which is a message of its own
+            same = next((other for other in known if self._same(one, other)), None)
+            if same is None:
+                known.append(one)
+            elif same is not known[0] and one.notes[0] not in same.notes and mistake.note not in GENERAL:
+                same.notes.append(one.notes[0])
+            elif same is known[0] and mistake.note == "authored":
+                self.no_mistakes.append(mistake.details["text"])
+        return known
+
+    def _one(self, outcome, notes, plain):
+        reading = read(self.public, plain)
+        numbers = canonical(self.public, reading) if reading.text is None else []
+        return _Known(outcome, notes, plain, reading, numbers)
+
+    def _same(self, one, other):
+        if one.reading.text is not None or other.reading.text is not None:
+            return one.reading.text == other.reading.text
+        # What differs from the right answer by no more than its tolerance is the right answer.
+        return within(self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1)
+
+    def _case(self, one, alone):
+        case = {"outcome": one.outcome, "notes": one.notes}
+        steps = [
+            step
+            for note, details in one.notes
+            # Those for one mistake of the author's are named by what it says; `authored` is for all of them.
+            for key in dict.fromkeys((details.get("text") if note == "authored" else note, note))
+            for step in self.hints.get(key, [])
+        ]
+        if steps:
+            case["hints"] = steps
+        if self.public.get("tolerance") is not None and one.numbers and (one.outcome == "correct" or not alone):
+            case["numbers"] = [MP.nstr(number, 17) for number in one.numbers]
+        return case
+
+    def sealed(self, code=None, first=None):
+        """What a student receives of the question: its public part, its lockers and its pages.
+
+        Parameters
+        ----------
+        code : str, optional
+            What opens the worked solution for those who give up.
+        first : Pages, optional
+            The pages of the first variant, :attr:`pages` of its question when it was sealed: what stands there is
+            not sealed once more.
+
+        Of a question of an exam nothing is sealed: what a student receives would be the same with another answer.
+        """
+        if self.public.get("exam"):
+            self.pages = first or Pages(b"")
+            told = {name: value for name, value in self.public.items() if name not in ("every symbol", "scale")}
+            salt = hashlib.sha256(f"{self.name} {self.public.get('variant', 0)}".encode()).hexdigest()[:16]
+            return {**told, "salt": salt, "lockers": "", "worth": self.worth}
+        pages = self.pages = Pages(
+            sealing.slow_key(self.public["salt"], f"pages {self.fingerprint_of(self.plain)}"), first
+        )
+        catalogue = by_short_name(self.public)
+        solution = pages.add_solution(to_page(self.solution), self.public.get("variants")) if self.solution else None
+        wanted = []
+        for text, entry in self.entries.items():
+            names = [short_name(*found) for found in entry.notes[:2]]
+            known = all(name in catalogue for name in names)  # what the author says of a mistake is not
+            plain = len(entry.cases) == 1 and set(entry.cases[0]) == {"outcome", "notes"} and known
+            about = {"cases": [{**case, "notes": case["notes"][:2]} for case in entry.cases]}
+            if entry.outcome == "correct":
+                plain = plain and not solution and not self.after
+                about |= {"after": self.after} if self.after else {}
+            wanted.append((text, entry.outcome, names if plain else [], None if plain else about))
+        chosen = [
+            (text, outcome, names, about and pages.add(about, solution if outcome == "correct" else None))
+            for text, outcome, names, about in wanted
+        ]
+        chosen += [(text, "mistake", [], None) for text in self.near]
+        if solution and code:
+            chosen.append((code_text(code), "mistake", [], solution))
+        sealed = {**self.public}
+        places = pages.seal()
+        if pages.sealed:
+            sealed["pages"] = pages.sealed
+        lockers = []
+        for text, outcome, names, page in chosen:
+            place = (places[page], page) if page else ()
+            key = sealing.slow_key(self.public["salt"], text)
+            lockers.append(sealing.locker(key, OUTCOMES.index(outcome), names, *place))
+        sealed["lockers"] = sealing.pack(lockers)
+        sealed["worth"] = self.worth
+        if self.ladder:
+            sealed["ladder"] = [
+                sealing.seal(step, rung_key(self.public, number)) for number, step in enumerate(self.ladder)
+            ]
+        return sealed
+
+
+def ladder_of(public, authored, turns):
+    """The steps of a ladder: its author's, or where to begin, and what the answer is built of.
+
+    No secret locks them, so nothing of the solution is among them: its first sentence is often the answer.
+    """
+    if authored is not None:
+        return list(authored)
+    begin = (kinds()[public["kind"]].begin, kind_of_values(public).begin)
+    steps = [step for step in dict.fromkeys(begin) if step]
+    if len(turns) > 1:
+        steps.append(f"It is built of {len(turns)} turns, one after another. Check each of them alone.")
+    return steps
+
+
+class Pages:
+    """The pages of a question; each has a key of its own, which nobody can make who does not know the answer.
+
+    Parameters
+    ----------
+    secret : bytes
+        What keys are made with. It follows from the answer by the slow hash: who guesses at a page has to spend one
+        for each guess, as for a locker.
+    first : Pages, optional
+        Those of the first variant of the question, which all variants share.
+    """
+
+    def __init__(self, secret, first=None):
+        self.secret, self.first, self.contents, self.sealed, self.words = secret, first, {}, [], None
+
+    def _key(self, text):
+        return hashlib.blake2b(text.encode("utf8"), key=self.secret, digest_size=sealing.PAGE_KEY).digest()
+
+    def add(self, content, solution=None):
+        """Add a page, once; gives its key. The page of the right answer tells where the worked solution stands."""
+        text = json.dumps(content, ensure_ascii=False, sort_keys=True)
+        if self.first:
+            shared = self.first._key(text)
+            if self.first.contents.get(shared) == (content, solution):
+                return shared
+        key = self._key(text)
+        self.contents[key] = (content, solution)
+        return key
+
+    def add_solution(self, text, variants):
+        """Add the worked solution, in variants as what differs from words that stand beside the first one."""
+        if self.first and self.first.words:
+            place = self.first.places()[self.first.words]
+            short = sealing.shorten(text, self.first.contents[self.first.words][0]["words"])
+            return self.add({"solution": [place, self.first.words.hex(), short]})
+        if variants:
+            # No number: they are what differs, and those of the first variant are not for everybody.
+            self.words = self.add({"words": re.sub(r"\d+", "", text)})
+        return self.add({"solution": text})
+
+    def places(self):
+        """The place of each page by its key: in an order that tells nothing, after those of the first variant."""
+        before = self.first.places() if self.first else {}
+        return before | {key: place for place, key in enumerate(sorted(self.contents), start=len(before))}
+
+    def seal(self):
+        """Seal all pages that are not sealed with the first variant; gives the place of each by its key."""
+        places = self.places()
+        if len(places) >= sealing.NO_PAGE:
+            raise AuthorError("A question has more mistakes and hints of its own than there is room for.")
+        for key in sorted(self.contents):
+            content, solution = self.contents[key]
+            if solution:
+                content = {**content, "solution": [places[solution], solution.hex()]}
+            self.sealed.append(sealing.seal(content, key))
+        return places
+
+
+def solution_code(notebook):
+    """The code that opens the worked solutions of a notebook: it follows from its source, so only who has that has it.
+
+    The variants of its questions have the same code.
+    """
+    texts = json.dumps([cell["source"] for cell in notebook["cells"]], ensure_ascii=False)
+    digest = hashlib.sha256(f"code {texts}".encode()).digest()
+    letters = "".join(CODE_LETTERS[byte % len(CODE_LETTERS)] for byte in digest[:12])
+    return "-".join(letters[start : start + 4] for start in (0, 4, 8))
+
+
+def _varying_in(rows):
+    """Places of the entries that are above zero in one row and below it in another."""
+    return {
+        place
+        for place in range(len(rows[0]) if rows else 0)
+        if min(row[place] for row in rows) < -1e-6 and max(row[place] for row in rows) > 1e-6
+    }
+
+
+def _replay(results):
+    """A function that gives prepared results, one for each call: what a mistaken function would return."""
+    following = iter(itertools.cycle(results))
+    return lambda *arguments: next(following)
+
+
+def to_page(markdown, formula=None):
+    """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is otherwise left to whoever shows it."""
+    from markdown_it import MarkdownIt
+    from mdit_py_plugins.dollarmath import dollarmath_plugin
+
+    def written(content, options):
+        if formula is not None:
+            return formula(content)
+        mark = "$$" if options["display_mode"] else "$"
+        return f"{mark}{html.escape(content, quote=False)}{mark}"
+
+    return MarkdownIt().use(dollarmath_plugin, renderer=written).render(markdown)
+
+
+def _demand_arguments(name, given):
+    """What a question may say beside the arguments of :func:`question`."""
+    known = [
+        parameter.name
+        for function in (question, Question.__init__)
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.kind is parameter.KEYWORD_ONLY
+    ]
+    for one in sorted(given - set(known)):
+        close = difflib.get_close_matches(one, known, 1)
+        raise AuthorError(f"{name}: a question has no `{one}`." + (f" Did you mean `{close[0]}`?" if close else ""))
+
+
+def _demand_forms(name, mistakes, hints, credit, worth):
+    """What an author says of a question has the form that the manual shows."""
+    for argument, value, example in (
+        ("mistakes", mistakes, "{'what the student is told': the_wrong_answer}"),
+        ("hints", hints, "{'opposite': ['the first step', 'the second']}"),
+        ("credit", credit, "{'opposite': 0.5}"),
+    ):
+        if value is not None and not (isinstance(value, dict) and all(isinstance(key, str) for key in value)):
+            raise AuthorError(f"{name}: `{argument}` is a dictionary with texts as its keys: {example}.")
+    for note, steps in (hints or {}).items():
+        if not isinstance(steps, (list, tuple)) or not all(isinstance(step, str) for step in steps):
+            raise AuthorError(f"{name}: the hints of {note!r} are a list of texts.")
+    for note, share in (credit or {}).items():
+        if not _is_number(share) or not 0 <= share <= 1:
+            raise AuthorError(f"{name}: the credit of {note!r} is a share from 0 to 1, and this is {share!r}.")
+    if worth is not None and (not _is_number(worth) or worth < 0):
+        raise AuthorError(f"{name}: `worth` is a number of points, and this is {worth!r}.")
+
+
+def _is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def question(
+    name,
+    kind,
+    answer,
+    *,
+    frames=None,
+    symbols=None,
+    unit=None,
+    shape=None,
+    length=None,
+    options=None,
+    tolerance=None,
+    relative=None,
+    calls=None,
+    takes="lists",
+    result=None,
+    quantity=None,
+    either_sign=None,
+    unit_vector=None,
+    mistakes=None,
+    variant=None,
+    **rest,
+):
+    """Build a :class:`Question` from what its author wrote.
+
+    Raises
+    ------
+    AuthorError
+        The question is not well posed.
+    """
+    if kind not in kinds():
+        raise AuthorError(f"{name}: the kind {kind!r} is none of {', '.join(sorted(kinds()))}.")
+    known, values = kinds()[kind], kinds()[result or kind]
+    _demand_arguments(name, {*rest} - {*values.arguments})
+    _demand_forms(name, mistakes, **{key: rest.get(key) for key in ("hints", "credit", "worth")})
+    try:
+        public = {"kind": kind, **(variant or {}), **(known.public(answer) if known.public else {})}
+    except (TypeError, LookupError, AttributeError, UnknownUnit) as error:
+        what = f"`{error}` is no unit that is known here." if isinstance(error, UnknownUnit) else f"This is {answer!r}."
+        raise AuthorError(
+            f"{name}: the right answer cannot be read. The solution of a question of kind {kind!r} is a number with "
+            f"its unit, such as `(3.2, 'kN m')`. {what}"
+        ) from None
+    if rest.get("rubric") and not known.by_a_person:
+        raise AuthorError(f"{name}: a rubric is for answers that a person reads, of the kind 'free text'.")
+    if rest.get("partial") and kind not in PARTS:
+        raise AuthorError(f"{name}: only answers of the kinds {', '.join(PARTS)} are right in part.")
+    if isinstance(symbols, str):
+        symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
+    symbols = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}
+    if tolerance is None and not symbols and not known.text:
+        tolerance = TOLERANCE
+    for key, value in {
+        "frames": list(frames) if frames else None,
+        "symbols": symbols,
+        "unit": unit,
+        "shape": shape and list(shape),
+        "length": length,
+        **{argument: rest.pop(argument, None) for argument in values.arguments},
+        "options": options and list(options),
+        "tolerance": tolerance,
+        "relative": relative,
+        "calls": calls,
+        "takes": takes if kind == "function" else None,
+        "result": result,
+        "quantity": quantity,
+        "either sign": either_sign if either_sign is not None else values.either_sign or None,
+        "unit vector": unit_vector,
+    }.items():
+        if value not in (None, {}, []):
+            public[key] = value
+    for needed in known.needs:
+        if needed not in public:
+            raise AuthorError(f"{name}: a question of kind {kind!r} needs {needed!r}.")
+    return Question(name, public, answer, authored=mistakes, **rest)

@@ -1,0 +1,295 @@
+"""The numbers that an answer stands for, at given values of its symbols.
+
+Two forms of one expression have the same values, so values are compared and forms are not: nothing is
+simplified, which could take a minute or not come back at all. They are worked out with 40 digits, of
+which a check compares nine, so no two ways of writing an answer are told apart by rounding.
+
+This reads the plain data of :mod:`coursework.checking.plain` only. It never builds a SymPy object from it, and
+whatever the data holds, its work is bounded.
+"""
+
+import mpmath
+
+MP = mpmath.MPContext()
+MP.dps = 40
+#: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
+ROUNDING = MP.mpf(10) ** -25
+LARGEST = MP.mpf(10) ** 60
+#: Below ten to this power a number is not worked with: what is done with it takes memory in the size of the exponent.
+SMALLEST = -1_000_000
+#: The smaller part of a complex number of which the larger one is this many powers of two larger is taken for nothing:
+#: no digit depends on it, and some functions would write out every place between the two.
+APART = 20_000
+#: A decimal exponent beyond which a number is not read by writing it out.
+LONG_EXPONENT = 400
+#: Work on one answer at one point, in additions of real numbers; others cost as many as they take. An
+#: honest answer of thousands of nodes stays far below; a hostile one would take a minute.
+MOST_WORK = 100_000
+
+
+class Undefined(ArithmeticError):
+    """An expression has no finite value at a point: a division by zero, say."""
+
+
+class TooLarge(ArithmeticError):
+    """A value grows beyond all bounds that an answer can need."""
+
+
+class NotSupported(ValueError):
+    """An expression holds an operation that has no value here, so the answer cannot be decided."""
+
+
+class UnknownSymbol(ValueError):
+    """An expression holds a symbol that the question does not have; its name is the argument."""
+
+
+def values(nodes, point):
+    """Give the value of every node: real or complex numbers, truth values, or the error each has.
+
+    Parameters
+    ----------
+    nodes : list
+        The nodes of a plain answer.
+    point : dict
+        A number for each symbol, by name.
+
+    An error is kept as the value of its node and is raised by :func:`number`, since a branch that is
+    not taken may be undefined.
+    """
+    results, work = [], 0
+    for node in nodes:
+        try:
+            work += _work(node, results)
+            if work > MOST_WORK:
+                raise TooLarge("it is made of too many operations")
+            results.append(_value(node, results, point))
+        except (Undefined, TooLarge, NotSupported, UnknownSymbol) as error:
+            results.append(error)
+        except ZeroDivisionError:
+            results.append(Undefined("division by zero"))
+        except (ValueError, TypeError, OverflowError, ArithmeticError, mpmath.libmp.NoConvergence) as error:
+            results.append(NotSupported(f"{node[0]} ({type(error).__name__})"))
+    return results
+
+
+def number(result):
+    """The number that one of the results of :func:`values` is, or raise the error that it is."""
+    if isinstance(result, Exception):
+        raise result
+    if isinstance(result, bool):
+        raise NotSupported("a truth value in place of a number")
+    return result
+
+
+def real(result, rest=0):
+    """The real number that a result is; raises ``ValueError`` where its imaginary part is more than ``rest``."""
+    result = number(result)
+    if result in (MP.inf, -MP.inf):
+        raise Undefined("infinite")
+    if isinstance(result, MP.mpc):
+        if abs(result.imag) > max(rest, ROUNDING * (1 + abs(result.real))):
+            raise ValueError("complex")
+        return result.real
+    return result
+
+
+def _work(node, results):
+    operation, *children = node
+    if operation in ("symbol", "constant", "integer", "rational", "float"):
+        return 4
+    complex_ones = sum(isinstance(results[child], MP.mpc) for child in children)
+    if operation in ("Add", "Mul"):
+        return 2 + len(children) + 7 * complex_ones
+    return 10 + len(children) + 90 * complex_ones
+
+
+def _value(node, results, point):
+    operation, rest = node[0], node[1:]
+    if operation == "symbol":
+        if rest[0] not in point:
+            raise UnknownSymbol(rest[0])
+        return point[rest[0]]
+    if operation == "integer":
+        return MP.mpf(int(rest[0]))
+    if operation == "rational":
+        return MP.mpf(int(rest[0])) / int(rest[1])
+    if operation == "float":
+        return _bounded(_float(rest[0]))
+    if operation == "constant":
+        if rest[0] in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero
+            raise Undefined("division by zero")
+        if rest[0] not in CONSTANTS:
+            raise NotSupported(rest[0])
+        return CONSTANTS[rest[0]]
+    if operation == "Piecewise":
+        return _first_that_holds([results[child] for child in rest])
+    arguments = [results[child] for child in rest]
+    if operation == "ExprCondPair":
+        return tuple(arguments)
+    for argument in arguments:
+        if isinstance(argument, Exception):
+            raise argument
+    if operation in CONDITIONS:
+        if operation not in ("And", "Or", "Not"):
+            arguments = [_ordered(argument) for argument in arguments]
+        return bool(CONDITIONS[operation](arguments))
+    if operation not in FUNCTIONS:
+        raise NotSupported(operation)
+    return _bounded(FUNCTIONS[operation](*map(number, arguments)))
+
+
+def _float(text):
+    """The number that digits with a point and an exponent stand for."""
+    digits, _, exponent = text.lower().partition("e")
+    if len(exponent.lstrip("+-0")) <= 3 and abs(int(exponent or 0)) <= LONG_EXPONENT:
+        return MP.mpf(text)
+    number = MP.mpf(digits)
+    if number and not exponent.startswith("-") and int(exponent) > 2 * LONG_EXPONENT:
+        raise TooLarge("the value is beyond 10^60")
+    if number and int(exponent) < 2 * SMALLEST:
+        raise NotSupported(SMALL)
+    return number * MP.power(10, int(exponent)) if number else number
+
+
+SMALL = "a number below 10^-1000000"
+
+
+def _bounded(result):
+    if isinstance(result, MP.mpc) and result.real and result.imag:
+        between = MP.mag(result.real) - MP.mag(result.imag)
+        if abs(between) > APART:
+            result = MP.mpc(result.real, 0) if between > 0 else MP.mpc(0, result.imag)
+    if MP.isnan(result):
+        raise Undefined("no number")
+    if MP.isinf(result):
+        raise Undefined("infinite")
+    if abs(result) > LARGEST:
+        raise TooLarge("the value is beyond 10^60")
+    if result and MP.mag(result) < SMALLEST * 10 // 3:
+        raise NotSupported(SMALL)
+    return result
+
+
+def _first_that_holds(pairs):
+    for pair in pairs:
+        value, condition = number(pair) if isinstance(pair, Exception) else pair
+        if isinstance(condition, Exception):
+            raise condition
+        if condition:
+            return number(value)
+    raise Undefined("no case of the Piecewise holds")
+
+
+def _ordered(argument):
+    try:
+        return real(argument)
+    except ValueError:
+        raise NotSupported("a comparison of complex numbers") from None
+
+
+def _power(base, exponent):
+    if base == 0:
+        if MP.re(exponent) > 0:
+            return MP.zero
+        if exponent == 0:
+            return MP.one
+        raise Undefined("division by zero")
+    # Judged before it is worked out: a power of a power of ten would fill the memory.
+    if abs(exponent) > 10_000 or MP.re(exponent * MP.log(base)) > 150:
+        raise TooLarge("a power is beyond 10^60")
+    return MP.power(base, exponent)
+
+
+def _exponential(argument):
+    if MP.re(argument) > 150 or abs(argument) > 10**6:
+        raise TooLarge("an exponential is beyond 10^60")
+    return MP.exp(argument)
+
+
+def _moderate(function, largest=10**6):
+    def bounded(argument):
+        if abs(argument) > largest:
+            raise TooLarge("an argument is beyond a million")
+        return function(argument)
+
+    return bounded
+
+
+def _real_only(function):
+    return lambda *arguments: function(*map(_ordered, arguments))
+
+
+def _sinc(argument):
+    return MP.one if argument == 0 else MP.sin(argument) / argument
+
+
+def _sign(argument):
+    argument = _ordered(argument)
+    return MP.mpf((argument > 0) - (argument < 0))
+
+
+CONSTANTS = {
+    "Pi": +MP.pi,
+    "Exp1": +MP.e,
+    "ImaginaryUnit": MP.mpc(0, 1),
+    "GoldenRatio": +MP.phi,
+    "Infinity": +MP.inf,
+    "NegativeInfinity": -MP.inf,
+    "BooleanTrue": True,
+    "BooleanFalse": False,
+}
+
+FUNCTIONS = {
+    "Add": lambda *terms: sum(terms, MP.zero),
+    "Mul": lambda *factors: MP.fprod(factors),
+    "Pow": _power,
+    "exp": _exponential,
+    "log": lambda argument, base=None: MP.log(argument) if base is None else MP.log(argument) / MP.log(base),
+    "sin": _moderate(MP.sin),
+    "cos": _moderate(MP.cos),
+    "tan": _moderate(MP.tan),
+    "cot": _moderate(MP.cot),
+    "sec": _moderate(MP.sec),
+    "csc": _moderate(MP.csc),
+    "sinc": _moderate(_sinc),
+    "asin": MP.asin,
+    "acos": MP.acos,
+    "atan": MP.atan,
+    "acot": MP.acot,
+    "asec": MP.asec,
+    "acsc": MP.acsc,
+    "atan2": _real_only(MP.atan2),
+    "sinh": _moderate(MP.sinh, 150),
+    "cosh": _moderate(MP.cosh, 150),
+    "tanh": _moderate(MP.tanh, 150),
+    "coth": _moderate(MP.coth, 150),
+    "sech": _moderate(MP.sech, 150),
+    "csch": _moderate(MP.csch, 150),
+    "asinh": MP.asinh,
+    "acosh": MP.acosh,
+    "atanh": MP.atanh,
+    "Abs": abs,
+    "sign": _sign,
+    "re": MP.re,
+    "im": MP.im,
+    "conjugate": MP.conj,
+    "arg": MP.arg,
+    "Min": _real_only(min),
+    "Max": _real_only(max),
+    "floor": _real_only(MP.floor),
+    "ceiling": _real_only(MP.ceil),
+    "Mod": _real_only(lambda argument, modulus: argument - modulus * MP.floor(argument / modulus)),
+    "Heaviside": lambda argument, middle=MP.mpf(1) / 2: {1: MP.one, -1: MP.zero, 0: middle}[int(_sign(argument))],
+}
+
+CONDITIONS = {
+    "StrictGreaterThan": lambda pair: pair[0] > pair[1],
+    "GreaterThan": lambda pair: pair[0] >= pair[1],
+    "StrictLessThan": lambda pair: pair[0] < pair[1],
+    "LessThan": lambda pair: pair[0] <= pair[1],
+    "Equality": lambda pair: abs(pair[0] - pair[1]) < ROUNDING,
+    "Unequality": lambda pair: abs(pair[0] - pair[1]) >= ROUNDING,
+    "And": all,
+    "Or": any,
+    "Not": lambda only: not only[0],
+}

@@ -1,0 +1,664 @@
+"""An answer as plain data: what a check reads, and all that ever leaves a student's process.
+
+An answer may be a SymPy expression, a matrix, a reference frame, a vector, a NumPy array, a list or a
+text. Here it becomes a table of numbers, names and operations that JSON can hold:
+
+``{'value': value, 'nodes': [node, ...]}``
+
+``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``,
+``['matrix', rows, columns, [k, ...]]``, ``['list', [value, ...]]``,
+``['frame', name, {other: value, ...}]`` (its direction cosine matrix with respect to each frame it is
+connected to), ``['frames', {target: {source: value, ...}, ...}]``, ``['vector', {frame: value, ...}]`` (its
+components in each frame) or ``['function', [value or ['raised', t] or ['printed', t], ...], b]``, where ``b`` says
+whether its body works anything out. Each ``k`` counts into ``nodes``; a node is
+``['integer', digits]``, ``['rational', p, q]``, ``['float', digits]``, ``['symbol', name]``,
+``['constant', name]`` or ``[operation, k, ...]``, and refers only to nodes before itself.
+
+A subexpression that occurs often is written once, so the table is as large as the work that made the
+answer and not as the tree that would be printed. Nothing is simplified. Reading such a table, unlike
+unpickling or ``sympify``, runs no code that a student wrote.
+"""
+
+import contextlib
+import dis
+import functools
+import io
+import numbers
+import re
+import sys
+import unicodedata
+
+import sympy
+from mpmath import libmp
+from sympy.core.function import AppliedUndef
+
+from .units import BASE
+
+#: Largest number of nodes of one answer, and of parts of a list.
+MOST_NODES = 60_000
+MOST_PARTS = 400
+#: Longest text, longest integer (in digits) and deepest list that are read.
+LONGEST_TEXT = 2_000
+LONGEST_INTEGER = 400
+DEEPEST = 6
+
+#: Calls of functions that working out one part of an answer (a derivative, an integral) may take: about a second.
+#: Calls are counted, and no clock is read, so that every machine decides alike, the one in a browser too.
+MOST_CALLS = 400_000
+
+VALUES = (
+    "blank",
+    "text",
+    "truth",
+    "expression",
+    "matrix",
+    "list",
+    "frame",
+    "frames",
+    "vector",
+    "function",
+    "raised",
+    "printed",
+)
+
+
+class NotPlain(ValueError):
+    """An answer cannot be read; the message says why, in the student's terms."""
+
+
+class TooMuchWork(BaseException):
+    """Working out a part took more calls than it may; no Exception, so that SymPy does not catch it."""
+
+
+@contextlib.contextmanager
+def limited_work(most=MOST_CALLS):
+    """Stop what takes too long by counting the calls it makes: it needs no signal and no thread.
+
+    Raises
+    ------
+    TooMuchWork
+    """
+    left = most
+
+    def count(frame, event, argument):
+        nonlocal left
+        left -= 1
+        if left < 0:
+            raise TooMuchWork
+
+    before = sys.gettrace()
+    sys.settrace(count)
+    try:
+        yield
+    finally:
+        sys.settrace(before)
+
+
+def to_plain(answer, calls=None):
+    """Give an answer as plain data.
+
+    Parameters
+    ----------
+    answer : object
+        What the student bound to the name. ``...`` and ``None`` are blanks.
+    calls : list of lists, optional
+        For a question that asks for a function: the arguments of each call, already of the type that
+        the function is to be given. The results, and errors, of the calls are the answer.
+
+    Raises
+    ------
+    NotPlain
+        The answer is of a kind that no question asks for, or too large to read.
+    """
+    try:
+        return _to_plain(answer, calls)
+    except NotPlain:
+        raise
+    except RecursionError:
+        raise NotPlain("The answer is nested too deeply to be read. Simplify it.") from None
+    except Exception as error:
+        raise NotPlain(
+            f"An answer of type `{type(answer).__name__[:40]}` could not be read ({type(error).__name__}). "
+            "Give a SymPy expression, a matrix, a list of numbers or a text."
+        ) from None
+
+
+def _to_plain(answer, calls):
+    writer = _Writer()
+    if calls is None or _is_blank(answer):
+        value = writer.value(answer, 0)
+    elif not callable(answer):
+        raise NotPlain("A function is asked for: give its name, without calling it.")
+    else:
+        value = ["function", [writer.result(answer, arguments) for arguments in calls], _works_something_out(answer)]
+    return {"value": value, "nodes": writer.nodes}
+
+
+#: What the body of a function that is still blank is compiled to.
+IDLE = {"RESUME", "NOP", "CACHE", "POP_TOP", "LOAD_CONST", "RETURN_CONST", "RETURN_VALUE", "COPY_FREE_VARS"}
+
+
+def _works_something_out(function):
+    code = getattr(function, "__code__", None)
+    return code is None or any(step.opname not in IDLE for step in dis.get_instructions(code))
+
+
+def _is_blank(answer):
+    return answer is None or answer is Ellipsis or answer is NotImplemented
+
+
+class _Writer:
+    """Writes one answer; the memory of what was written already is what keeps shared parts shared."""
+
+    def __init__(self):
+        self.nodes = []
+        self.written = {}
+        self.put_off = set()
+        self.gave_up = 0
+
+    def value(self, answer, depth):
+        if depth > DEEPEST:
+            raise NotPlain(f"The answer is nested more than {DEEPEST} deep.")
+        if _is_blank(answer):
+            return ["blank"]
+        if isinstance(answer, bool):
+            return ["truth", answer]
+        if isinstance(answer, str):
+            return ["text", _text(answer)]
+        if isinstance(answer, numbers.Number):
+            return ["expression", self.number(answer)]
+        origin = _module(type(answer)).partition(".")[0]
+        if origin == "numpy":
+            return self.numpy(answer, depth)
+        if origin == "mpmath":
+            return self.mpmath(answer, depth)
+        if origin == "orientation" and hasattr(answer, "reference_frames"):
+            return self.frames(answer, depth)
+        if isinstance(answer, dict) and len(answer) == 1:
+            # What `solve` gives for one unknown: {theta: pi/4}.
+            return self.value(next(iter(answer.values())), depth)
+        if isinstance(answer, (list, tuple, set, frozenset)):
+            return self.parts(_in_order(answer), depth)
+        return self.sympy(answer, depth)
+
+    def parts(self, answer, depth):
+        if len(answer) == 2 and _has_unit(answer[1]) and not _has_unit(answer[0]):
+            return self.value(sympy.sympify(answer[0]) * answer[1], depth)  # (3.2, newton * meter)
+        if len(answer) > MOST_PARTS:
+            raise NotPlain(f"The answer has {len(answer)} parts; no question asks for that many.")
+        return ["list", [self.value(part, depth + 1) for part in answer]]
+
+    def numpy(self, answer, depth):
+        size = getattr(answer, "size", 1)
+        if size > MOST_PARTS:
+            raise NotPlain(f"The array has {size} entries; no question asks for that many.")
+        return self.value(answer.tolist(), depth)
+
+    def mpmath(self, answer, depth):
+        if hasattr(answer, "tolist"):
+            if answer.rows * answer.cols > MOST_PARTS:
+                raise NotPlain(f"The matrix is {answer.rows} × {answer.cols}; no question asks for one that large.")
+            return [
+                "matrix",
+                answer.rows,
+                answer.cols,
+                [self.number(entry) for row in answer.tolist() for entry in row],
+            ]
+        return ["expression", self.number(answer)]
+
+    def frames(self, answer, depth):
+        """The frames of the book's own graph: the matrix of every pair that is connected."""
+        names = sorted({name for edge in answer._edges for name in (edge.frame, edge.reference)})
+        if len(names) > 12:
+            raise NotPlain("More than 12 frames are given: bind the matrix that is asked for.")
+        found = {}
+        for target in names:
+            for source in names:
+                with contextlib.suppress(ValueError, KeyError):
+                    if target != source:
+                        found.setdefault(_text(target), {})[_text(source)] = self.value(
+                            answer.dcm(target, source), depth + 1
+                        )
+        return ["frames", found]
+
+    def sympy(self, answer, depth):
+        if _module(type(answer)).startswith("scipy.spatial"):
+            raise NotPlain(
+                "This is a SciPy Rotation, which holds no matrix of two named frames. "
+                "Turn it into one: `dcm_from_scipy_rotation` of the module does that."
+            )
+        if not any(_module(base).partition(".")[0] == "sympy" for base in type(answer).__mro__):
+            raise NotPlain(
+                f"An answer of type `{type(answer).__name__[:40]}` cannot be read. "
+                "Give a SymPy expression, a matrix, a list of numbers or a text."
+            )
+        # Mechanics is slow to import; whoever has a frame or a vector has imported it.
+        mechanics = sys.modules.get("sympy.physics.vector")
+        if mechanics and isinstance(answer, mechanics.ReferenceFrame):
+            return [
+                "frame",
+                _text(answer.name),
+                {_text(other.name): self.value(answer.dcm(other), depth + 1) for other in _connected([answer])},
+            ]
+        if mechanics and isinstance(answer, mechanics.Vector):
+            frames = _connected([frame for _, frame in answer.args])
+            try:
+                return [
+                    "vector",
+                    {_text(frame.name): self.value(answer.to_matrix(frame), depth + 1) for frame in frames},
+                ]
+            except ValueError:
+                raise NotPlain(
+                    "The parts of this vector belong to frames that are not connected: orient one of "
+                    "them with respect to another first."
+                ) from None
+        if isinstance(answer, sympy.Quaternion):
+            return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
+        if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(answer, sympy.MatrixBase):
+            return ["matrix", *self.matrix(answer)]
+        if isinstance(answer, sympy.MatrixBase):
+            rows, columns = answer.shape
+            if rows * columns > MOST_PARTS:
+                raise NotPlain(f"The matrix is {rows} × {columns}; no question asks for one that large.")
+            return ["matrix", rows, columns, [self.expression(entry) for entry in answer.flat()]]
+        if isinstance(answer, (sympy.Tuple, sympy.FiniteSet)):
+            return self.parts(list(answer), depth)
+        if isinstance(answer, sympy.NDimArray):
+            return self.parts(answer.tolist(), depth) if answer.rank() else self.value(answer[()], depth)
+        if isinstance(answer, sympy.Eq):
+            # `Eq(theta, pi/4)`: what stands beside the one symbol that is solved for.
+            sides = [side for side in answer.args if not isinstance(side, (sympy.Symbol, AppliedUndef))]
+            if len(sides) == 1:
+                return self.value(sides[0], depth)
+            raise NotPlain("An equation is no value: give the side of it that is asked for.")
+        if answer in (sympy.true, sympy.false):
+            return ["truth", bool(answer)]
+        if _has_unit(answer):
+            number, unit = _number_and_unit(answer, sys.modules["sympy.physics.units"])
+            return ["list", [["expression", self.expression(number)], ["text", unit]]]
+        if isinstance(answer, sympy.Expr):
+            return ["expression", self.expression(answer)]
+        raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
+
+    def result(self, function, arguments):
+        printed = io.StringIO()
+        try:
+            with contextlib.redirect_stdout(printed):
+                returned = function(*arguments)
+            if _is_blank(returned) and printed.getvalue().strip():
+                return ["printed", printed.getvalue()[:300]]
+            return self.value(returned, 0)
+        except NotPlain:
+            raise
+        except (Exception, SystemExit) as error:
+            return ["raised", _text(f"{type(error).__name__}: {error}"[:300])]
+
+    def node(self, *parts):
+        if len(self.nodes) >= MOST_NODES:
+            raise NotPlain(
+                f"The answer is made of more than {MOST_NODES} different parts, so it is not "
+                "read. Simplify it, or build it in fewer steps."
+            )
+        self.nodes.append(list(parts))
+        return len(self.nodes) - 1
+
+    def matrix(self, answer):
+        """The rows, columns and entries of a matrix expression, whose products and inverses are worked out here.
+
+        SymPy's own inverse of a product of three turns takes half a minute; written as cofactors over a
+        determinant it is a few more nodes.
+        """
+        if not all(sympy.sympify(size).is_Integer for size in answer.shape):
+            raise NotPlain("The matrix has no definite size.")
+        rows, columns = map(int, answer.shape)
+        if rows * columns > MOST_PARTS:
+            raise NotPlain(f"The matrix is {rows} × {columns}; no question asks for one that large.")
+        if isinstance(answer, sympy.MatrixBase):
+            return rows, columns, [self.expression(entry) for entry in answer.flat()]
+        if isinstance(answer, sympy.MatMul):
+            factors = [
+                self.matrix(part) if getattr(part, "is_Matrix", False) else (0, 0, [self.expression(part)])
+                for part in answer.args
+            ]
+            return functools.reduce(self._product, factors)
+        if isinstance(answer, sympy.MatAdd):
+            terms = [self.matrix(part)[2] for part in answer.args]
+            return rows, columns, [self.node("Add", *entries) for entries in zip(*terms)]
+        if isinstance(answer, sympy.Transpose):
+            return self._transposed(self.matrix(answer.arg))
+        if isinstance(answer, sympy.matrices.expressions.matpow.MatPow) and answer.exp.is_Integer:
+            power = int(answer.exp)
+            if 0 < abs(power) <= 12:
+                base = self.matrix(answer.base)
+                base = self._inverse(base) if power < 0 else base
+                return functools.reduce(self._product, [base] * abs(power))
+        try:
+            with limited_work():
+                explicit = answer.doit().as_explicit()
+        except TooMuchWork:
+            raise NotPlain("The matrix takes too long to be worked out: call `.doit()` on it first.") from None
+        return rows, columns, [self.expression(entry) for entry in explicit.flat()]
+
+    def _product(self, first, second):
+        (rows, inner, left), (_, columns, right) = first, second
+        if not rows or not columns:  # one of the two is a number
+            (_, _, (factor,)), (rows, columns, entries) = (first, second) if not rows else (second, first)
+            return rows, columns, [self.node("Mul", factor, entry) for entry in entries]
+        entries = [
+            self.node(
+                "Add",
+                *(self.node("Mul", left[i * inner + k], right[k * columns + j]) for k in range(inner)),
+            )
+            for i in range(rows)
+            for j in range(columns)
+        ]
+        return rows, columns, entries
+
+    def _transposed(self, matrix):
+        rows, columns, entries = matrix
+        return columns, rows, [entries[i * columns + j] for j in range(columns) for i in range(rows)]
+
+    def _inverse(self, matrix):
+        size, _, entries = matrix
+        if size > 4:
+            raise NotPlain("The inverse of a matrix of this size is not worked out here: call `.doit()` on it first.")
+        minus = self.node("integer", "-1")
+        numbers_left = tuple(range(size))
+        cofactors = {
+            (i, j): self._minor(
+                entries,
+                size,
+                numbers_left[:i] + numbers_left[i + 1 :],
+                numbers_left[:j] + numbers_left[j + 1 :],
+                minus,
+            )
+            for i in range(size)
+            for j in range(size)
+        }
+        cofactors = {
+            (i, j): self.node("Mul", minus, found) if (i + j) % 2 else found for (i, j), found in cofactors.items()
+        }
+        terms = [self.node("Mul", entries[j], cofactors[0, j]) for j in range(size)]
+        reciprocal = self.node("Pow", self.node("Add", *terms), minus)
+        return size, size, [self.node("Mul", reciprocal, cofactors[j, i]) for i in range(size) for j in range(size)]
+
+    def _minor(self, entries, size, rows, columns, minus):
+        """The determinant of some rows and columns."""
+        if not rows:
+            return self.node("integer", "1")
+        terms = []
+        for place, column in enumerate(columns):
+            rest = self._minor(entries, size, rows[1:], columns[:place] + columns[place + 1 :], minus)
+            factors = [entries[rows[0] * size + column], rest] + [minus] * (place % 2)
+            terms.append(self.node("Mul", *factors))
+        return self.node("Add", *terms)
+
+    def number(self, number):
+        if _module(type(number)).partition(".")[0] == "mpmath":
+            if hasattr(number, "_mpc_"):
+                real, imaginary = (self.number(part) for part in (number.real, number.imag))
+                return self.node("Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary))
+            return self.node("float", libmp.to_str(number._mpf_, 40))
+        if isinstance(number, complex):
+            real, imaginary = (self.number(part) for part in (number.real, number.imag))
+            unit = self.node("constant", "ImaginaryUnit")
+            return self.node("Add", real, self.node("Mul", unit, imaginary))
+        if isinstance(number, numbers.Rational):
+            return self.rational(int(number.numerator), int(number.denominator))
+        return self.node("float", repr(float(number)))
+
+    def rational(self, numerator, denominator):
+        for part in (numerator, denominator):
+            # Compared as powers of two: writing a huge integer out can itself take minutes.
+            if part.bit_length() > LONGEST_INTEGER * 3:
+                raise NotPlain(
+                    f"The answer holds an integer of about {int(part.bit_length() * 0.30103)} "
+                    "digits. No question needs one."
+                )
+        if denominator == 1:
+            return self.node("integer", str(numerator))
+        return self.node("rational", str(numerator), str(denominator))
+
+    def expression(self, root):
+        """Write an expression, children first, without recursion: a chain may be very deep."""
+        todo = [root]
+        while todo:
+            part = todo[-1]
+            if part in self.written:
+                todo.pop()
+                continue
+            if len(todo) > MOST_NODES:
+                self.node()  # says that it is too large
+            children = self.children(part)
+            missing = [child for child in children if child not in self.written]
+            if missing:
+                todo.extend(missing)
+                continue
+            self.written[part] = self.operation(part, children)
+            todo.pop()
+        return self.written[root]
+
+    def worked_out(self, part):
+        """A part that SymPy has put off, worked out; or itself, which has no value, where that takes too long."""
+        if self.gave_up < 2:
+            try:
+                with limited_work():
+                    return part.doit()
+            except TooMuchWork:
+                self.gave_up += 1
+            except Exception:
+                pass  # what SymPy cannot work out has no value here
+        return part
+
+    def children(self, part):
+        if isinstance(part, (sympy.Number, sympy.NumberSymbol, sympy.Symbol, AppliedUndef)) or part is sympy.I:
+            return ()
+        if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
+            return ()
+        if part.is_Atom and part.args:
+            return self.without_unit(part)
+        if isinstance(part, PUT_OFF) and part not in self.put_off:
+            worked_out = self.worked_out(part)
+            if type(worked_out) is not type(part):
+                return (worked_out,)
+            self.put_off.add(part)
+        if part in self.put_off:
+            return ()
+        return part.args
+
+    def without_unit(self, unit):
+        """What stands for a unit in a list or matrix of numbers: a radian is none."""
+        units = sys.modules.get("sympy.physics.units")
+        if not units or not isinstance(unit, units.Quantity):
+            return unit.args
+        if unit == units.radian:
+            return (sympy.S.One,)
+        raise NotPlain(f"The answer holds the unit `{unit}`. Give numbers alone, in the unit that the question names.")
+
+    def operation(self, part, children):
+        if isinstance(part, sympy.Rational):
+            return self.rational(int(part.p), int(part.q))
+        if isinstance(part, sympy.Float):
+            return self.node("float", libmp.to_str(part._mpf_, 40))
+        if isinstance(part, sympy.Symbol):
+            return self.node("symbol", _name_of(part.name))
+        if isinstance(part, AppliedUndef):
+            return self.node("symbol", _name_of(part.func.__name__))
+        if isinstance(part, sympy.Derivative):
+            if isinstance(part.expr, AppliedUndef):
+                return self.node("symbol", _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9))
+            return self.written[children[0]]
+        if isinstance(part, sympy.UnevaluatedExpr) or children and (part.is_Atom or isinstance(part, PUT_OFF)):
+            return self.written[children[0]]
+        if not children:
+            return self.node("constant", type(part).__name__[:60])
+        return self.node(type(part).__name__[:60], *(self.written[child] for child in children))
+
+
+#: What SymPy may have put off and would work out by ``.doit()``.
+PUT_OFF = (sympy.Derivative, sympy.Integral, sympy.Subs)
+
+
+def _name_of(symbol):
+    """The name of a symbol in the letters of a keyboard: ``θ`` is ``theta``, ``θ_1`` is ``theta_1``."""
+    name = unicodedata.normalize("NFKC", _text(symbol)) if not symbol.isascii() else symbol
+    return _text(re.sub(r"[^\x00-\x7f]", lambda letter: _spelled(letter[0]), name))
+
+
+def _spelled(letter):
+    words = unicodedata.name(letter, "").lower().split()
+    if words[:1] == ["greek"] and words[2:3] == ["letter"]:
+        # Unicode spells one letter in another way than everybody else.
+        word = words[-1].replace("lamda", "lambda")
+        return word.capitalize() if words[1] == "capital" else word
+    return letter
+
+
+def _text(text):
+    text = str(text)
+    if len(text) > LONGEST_TEXT:
+        raise NotPlain(f"A text of {len(text)} characters is longer than any answer.")
+    return text
+
+
+def _module(kind):
+    # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no module.
+    return kind.__module__ or ""
+
+
+def _has_unit(part):
+    units = sys.modules.get("sympy.physics.units")  # slow to import; whoever has a quantity has imported it
+    if not units or not isinstance(part, sympy.Expr):
+        return False
+    # Each shared part is looked at once: SymPy's own `has` goes through the tree that would be printed.
+    seen, waiting = set(), [part]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, units.Quantity):
+            return True
+        if id(one) not in seen:
+            seen.add(id(one))
+            waiting += one.args
+    return False
+
+
+def _number_and_unit(answer, units):
+    """Write an expression with quantities of :mod:`sympy.physics.units` as a number and a text in base units."""
+    base = {getattr(units, name): sympy.Dummy(name, positive=True) for name in BASE}
+    pure = {units.radian: sympy.S.One, units.degree: sympy.pi / 180, units.percent: sympy.Rational(1, 100)}
+    try:
+        with limited_work():
+            plain = answer.xreplace({prefix: prefix.scale_factor for prefix in answer.atoms(units.prefixes.Prefix)})
+            for quantity in sorted(answer.atoms(units.Quantity), key=str):
+                size = pure.get(quantity)
+                if size is None:
+                    size = units.convert_to(quantity, list(base)).xreplace(base)
+                if size.has(units.Quantity):
+                    raise NotPlain(f"`{quantity}` is made of no units of the International System.")
+                plain = plain.xreplace({quantity: size})
+            found = {}
+            for term in sympy.Add.make_args(sympy.expand_mul(plain)):
+                number, rest = term.as_independent(*base.values(), as_Add=False)
+                found.setdefault(rest, []).append(number)
+    except TooMuchWork:
+        raise NotPlain("The unit takes too long to be worked out. Give a pair: `(number, 'N m')`.") from None
+    if len(found) > 1:
+        raise NotPlain("The terms of this sum have different units.")
+    [(rest, terms)] = found.items()
+    powers = rest.as_powers_dict() if rest != 1 else {}
+    if not all(part in base.values() and power.is_Integer for part, power in powers.items()):
+        raise NotPlain("The unit of this answer is no product of whole powers of base units.")
+    unit = " ".join(f"{symbol.name}^{powers[symbol]}" for symbol in base.values() if symbol in powers)
+    return sympy.Add(*terms), unit or "1"
+
+
+def _in_order(parts):
+    return list(parts) if isinstance(parts, (list, tuple)) else sorted(parts, key=str)
+
+
+def _connected(frames):
+    """All frames that are connected with those given, found through SymPy's own record of neighbours."""
+    found = list(dict.fromkeys(frames))
+    for frame in found:
+        found.extend(other for other in frame._dcm_dict if other not in found)
+        if len(found) > 30:
+            raise NotPlain("More than 30 frames are connected with this one.")
+    return found
+
+
+_DIGITS = re.compile(rf"-?[0-9]{{1,{LONGEST_INTEGER + 10}}}")
+_FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,40})?|[-+]?inf|[-+]?nan", re.I)
+_NAME = re.compile(r"\w{1,60}", re.ASCII)
+
+
+def read_plain(data):
+    """Check data that came out of a student's process, and give it back.
+
+    Raises
+    ------
+    NotPlain
+        The data is not what :func:`to_plain` makes.
+    """
+
+    def demand(condition):
+        if not condition:
+            raise NotPlain("The data of this answer is damaged.")
+
+    demand(isinstance(data, dict) and set(data) == {"value", "nodes"} and isinstance(data["nodes"], list))
+    nodes = data["nodes"]
+    demand(len(nodes) <= MOST_NODES)
+    for position, node in enumerate(nodes):
+        demand(isinstance(node, list) and node and isinstance(node[0], str) and len(node) <= MOST_NODES)
+        operation, rest = node[0], node[1:]
+        if operation in ("integer", "rational"):
+            demand(len(rest) == (1 if operation == "integer" else 2))
+            demand(all(isinstance(digits, str) and _DIGITS.fullmatch(digits) for digits in rest))
+            demand(operation == "integer" or int(rest[1]) > 0)
+        elif operation == "float":
+            demand(len(rest) == 1 and isinstance(rest[0], str) and _FLOAT.fullmatch(rest[0]))
+        elif operation in ("symbol", "constant"):
+            demand(len(rest) == 1 and isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
+        else:
+            demand(_NAME.fullmatch(operation))
+            demand(all(type(child) is int and 0 <= child < position for child in rest))
+
+    def count(number):
+        demand(type(number) is int and 0 <= number < len(nodes))
+
+    def value(part, depth):
+        demand(depth <= DEEPEST + 2 and isinstance(part, list) and part and part[0] in VALUES)
+        kind, rest = part[0], part[1:]
+        demand(len(rest) == {"blank": 0, "matrix": 3, "frame": 2, "function": 2}.get(kind, 1))
+        if kind in ("text", "raised", "printed"):
+            demand(isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
+        elif kind == "truth":
+            demand(isinstance(rest[0], bool))
+        elif kind == "expression":
+            count(rest[0])
+        elif kind == "matrix":
+            rows, columns, entries = rest
+            demand(type(rows) is int and type(columns) is int and isinstance(entries, list))
+            demand(0 <= rows <= MOST_PARTS and 0 <= columns <= MOST_PARTS and len(entries) == rows * columns)
+            demand(len(entries) <= MOST_PARTS)
+            for entry in entries:
+                count(entry)
+        elif kind == "frames":
+            demand(isinstance(rest[0], dict) and len(rest[0]) <= 12)
+            for name, others in rest[0].items():
+                demand(len(name) <= LONGEST_TEXT and isinstance(others, dict) and len(others) <= 12)
+                for inner in others.values():
+                    value(inner, depth + 1)
+        elif kind in ("list", "function"):
+            demand(kind == "list" or isinstance(rest[1], bool))
+            demand(isinstance(rest[0], list) and len(rest[0]) <= MOST_PARTS)
+            for inner in rest[0]:
+                value(inner, depth + 1)
+        elif kind in ("frame", "vector"):
+            demand(isinstance(rest[-1], dict) and len(rest[-1]) <= 30)
+            demand(all(isinstance(name, str) and len(name) <= LONGEST_TEXT for name in rest[-1]))
+            demand(kind == "vector" or isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
+            for inner in rest[-1].values():
+                value(inner, depth + 1)
+
+    value(data["value"], 0)
+    return data

@@ -1,0 +1,176 @@
+"""The folder of results: every file whole or not there at all, and one run at a time.
+
+``records/student/assignment.json`` is written the moment a student's work is graded and holds all that came of
+it; every other file is made from the records and can be made again.
+"""
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import re
+import secrets
+from pathlib import Path
+
+FORMAT = 3
+REFUSED = "refused.json"
+
+
+class InUse(RuntimeError):
+    """Another run works on the same folder."""
+
+
+class Store:
+    """The results of a class.
+
+    Parameters
+    ----------
+    folder : path
+    """
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.records = self.folder / "records"
+
+    @contextlib.contextmanager
+    def locked(self):
+        """Keep other runs away; what a run that was killed left half done is removed."""
+        self.records.mkdir(parents=True, exist_ok=True)
+        with open(self.folder / "lock", "w") as self.lock:
+            try:
+                fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise InUse(f"Another run is at work in {self.folder}.") from None
+            for path in self.folder.rglob(".half-*"):
+                path.unlink()
+            yield
+
+    def in_copy_of_process(self):
+        """Leave the lock to the process that has it: when that one ends, nobody is kept away any more."""
+        self.lock.close()
+
+    def place(self, student, assignment):
+        return self.records / file_name(student) / f"{file_name(assignment)}.json"
+
+    def read(self, student, assignment):
+        """A student's record, or ``None``."""
+        try:
+            return json.loads(self.place(student, assignment).read_text("utf8"))
+        except FileNotFoundError:
+            return None
+
+    def save(self, record):
+        write(self.place(record["student"], record["assignment"]), as_text(record))
+
+    def keep_work(self, digest, sources):
+        """Keep the code of a notebook, for people to look at beside its answers."""
+        self._keep_beside(f"{digest}.json", sources)
+
+    def keep_pictures(self, digest, pictures):
+        """Keep the pictures of a notebook, by the numbers of their cells, for people to judge."""
+        if pictures:
+            self._keep_beside(f"{digest}.pictures.json", pictures)
+
+    def pictures(self, digest):
+        """The pictures of a notebook, by the number of the cell that drew them."""
+        kept = self._kept_beside(f"{digest}.pictures.json")
+        return {int(number): shown for number, shown in kept.items()} if kept else {}
+
+    def work(self, digest):
+        """The code cells of a notebook, or nothing if they were not kept."""
+        return self._kept_beside(f"{digest}.json") or []
+
+    def _keep_beside(self, name, value):
+        """Keep for people what nothing that is graded depends on; what is there already stays."""
+        place = self.folder / "work" / name
+        if not place.exists():
+            write(place, json.dumps(value, ensure_ascii=False), lasting=False)
+
+    def _kept_beside(self, name):
+        place = self.folder / "work" / name
+        return self.json_in(place) if place.exists() else None
+
+    @staticmethod
+    def json_in(path):
+        return json.loads(path.read_text("utf8"))
+
+    def put_aside(self, student, assignment):
+        """Move a record, and the page made of it, to where it counts no more; give its new place."""
+        place = self.place(student, assignment)
+        aside = self.folder / "put-aside" / place.relative_to(self.records)
+        aside.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(place, aside)
+        page = self.folder / "feedback" / file_name(student) / f"{file_name(assignment)}.html"
+        page.unlink(missing_ok=True)
+        return aside
+
+    def all(self):
+        """All records, by student and assignment, one at a time."""
+        # Names of folders alone, and not all paths: a class may have a hundred thousand.
+        for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
+            for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
+                record = json.loads(path.read_text("utf8"))
+                # Not what lies where it would not be written: a copy, or what another version called so.
+                if path == self.place(record["student"], record["assignment"]):
+                    yield record
+
+    def log(self, line):
+        """Write a line of what happened, with its time; nothing that is graded depends on it."""
+        import datetime
+
+        now = datetime.datetime.now().isoformat(" ", "milliseconds")
+        with open(self.folder / "run.log", "a", encoding="utf8") as file:
+            file.write(f"{now}  {line}\n")
+
+
+def as_text(value):
+    """JSON with a line for each entry of the outermost list or object: short, and still to be read."""
+    if isinstance(value, dict):
+        lines = [
+            f"{json.dumps(name, ensure_ascii=False)}: {json.dumps(inner, ensure_ascii=False)}"
+            for name, inner in value.items()
+        ]
+        return "{\n" + ",\n".join(lines) + "\n}\n"
+    return "[\n" + ",\n".join(json.dumps(inner, ensure_ascii=False) for inner in value) + "\n]\n"
+
+
+#: What Windows keeps for itself, whatever follows a dot: folders of it are what containers there write to.
+RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")
+
+
+def file_name(name):
+    """A name for a file that a student's name cannot lead astray; different names stay different."""
+    plain = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip(".-")[:60]
+    # The letter's case counts too: some file systems do not tell a from A. And what looks like a name with a
+    # digest gets one as well, or somebody could call himself what another is called here. It is as long as it is
+    # because a name of the same digest could be searched for.
+    if RESERVED.fullmatch(plain.lower()):
+        plain = ""
+    if plain and plain == name == name.lower() and not re.search(r"-[0-9a-f]{20}$", name):
+        return plain
+    return f"{plain.lower() or 'student'}-{hashlib.sha256(name.encode('utf8', 'surrogatepass')).hexdigest()[:20]}"
+
+
+def write(path, text, lasting=True, private=False):
+    """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down.
+
+    ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds right answers:
+    nobody else who works on this machine may read it.
+    """
+    path = Path(path)
+    path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
+    half = path.with_name(f".half-{secrets.token_hex(8)}")
+    with open(os.open(half, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600 if private else 0o666), "wb") as file:
+        for piece in (text,) if isinstance(text, (str, bytes)) else text:
+            file.write(piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece)
+        if lasting:
+            file.flush()
+            os.fsync(file.fileno())
+    os.replace(half, path)
+    if lasting:
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
