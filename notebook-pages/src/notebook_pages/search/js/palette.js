@@ -28,10 +28,10 @@ function shown(entry) {
 function numbersFirst(query) {
   const given = index.workbench && pasted(query);
   if (!given) return [];
-  const data = btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify({ a: query.trim() }))));
+  const data = btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify({ first: query.trim() }))));
   const fragment = `#workbench=1.${data.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "")}`;
   return [make("li", {}, make("a", { href: new URL(index.workbench + fragment, root).href },
-    make("b", { textContent: `Open the workbench with this ${given}` }), make("small", { textContent: "Workbench" })))];
+    make("b", { textContent: `Compare this ${given} with what another program gives` }), make("small", { textContent: "Workbench" })))];
 }
 
 function attach(form) {
