@@ -141,7 +141,8 @@ LANGUAGES = {
             "    std::array<double, {count}> result;\n{body}\n    return result;\n}}",
             "const std::array<double, {count}>& {name}"),
     "Rust": (_RustPrinter().doprint, "{name}[{index}]", 0, "    let {part}: {rust} = {value};",
-             "    result[{index}] = {value};", "fn {function}({arguments}) -> [f64; {count}] {{\n    let mut result = [0.0; {count}];\n{body}\n"
+             "    result[{index}] = {value};",
+             "fn {function}({arguments}) -> [f64; {count}] {{\n    let mut result = [0.0; {count}];\n{body}\n"
              "    result\n}}",
              "{name}: &[f64; {count}]"),
     "Julia": (sm.julia_code, "{name}[{index}]", 1, "    {part} = {value}", "    result[{index}] = {value}",
