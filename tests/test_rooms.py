@@ -15,7 +15,7 @@ from notebook_pages.paths import PACKAGES
 #: What the modules of a room may import of this repository's packages, the room itself not named.
 MAY_IMPORT = {
     "orientation": (),
-    "orientation_figures": ("orientation",),
+    "orientation_figures": ("orientation", "orientation_workbench"),
     "orientation_recordings": (),
     "orientation_workbench": ("orientation",),
     "coursework.checking": (),
