@@ -26,8 +26,9 @@ def add_commands(commands):
     )
     grade.add_argument("--workers", type=int, help="how many notebooks are run at a time (one for each processor)")
     grade.add_argument(
-        "--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead, such as tcp://host:8786"
+        "--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead, such as tls://host:8786"
     )
+    grade.add_argument("--keys", metavar="FOLDER", help="the keys of that cluster, as `coursework cluster` made them")
     grade.add_argument(
         "--allow-weak-isolation",
         action="store_true",
@@ -107,6 +108,14 @@ def add_commands(commands):
     gradescope.add_argument("--solutions", help="folder of the notebooks with solutions")
     gradescope.add_argument("--assignment", required=True, metavar="NAME[=NOTEBOOK,...]")
     gradescope.add_argument("--roster", metavar="FILE.csv", help="who is in the course, with their addresses")
+    cluster = commands.add_parser("cluster", help="start the scheduler of a cluster, or a machine that works for it")
+    cluster.add_argument("--keys", required=True, metavar="FOLDER", help="its keys; they are made if there are none")
+    cluster.add_argument("--host", help="the address of this machine at which the others reach the scheduler")
+    cluster.add_argument("--port", type=int, default=8786)
+    cluster.add_argument(
+        "--worker", metavar="ADDRESS", help="work for the scheduler at this address, such as tls://..."
+    )
+    cluster.add_argument("--workers", type=int, help="how many notebooks at a time (one for each processor)")
     sample = commands.add_parser("sample-class", help="make a class to try grading on")
     sample.add_argument("--out", required=True, help="folder for the class")
     sample.add_argument("--students", type=int, default=200)
@@ -298,6 +307,39 @@ def gradescope(out, solutions, assignment, roster):
     print(f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and show it to nobody.")
 
 
+def cluster(keys, host, port, worker, workers):
+    import os
+    from pathlib import Path
+
+    from . import cluster_keys
+    from .workers import processors
+
+    keys = Path(keys).absolute()
+    try:
+        if worker:
+            command = cluster_keys.worker(keys, worker, workers or processors())
+        else:
+            if not host:
+                sys.exit(
+                    "coursework cluster: say at which address of this machine the others reach it: --host 192.0.2.7."
+                )
+            made = cluster_keys.make_keys(keys)
+            command = cluster_keys.scheduler(keys, host, port)
+            address = f"tls://{host}:{port}"
+            print(
+                f"{'New keys are' if made else 'The keys are'} in {keys}: whoever has them runs code on this cluster.\n"
+                f"On each machine that is to work, with a copy of that folder:\n"
+                f"  coursework cluster --keys {keys.name} --worker {address}\n"
+                f"Then, where the notebooks are:\n"
+                f"  coursework grade ... --scheduler {address} --keys {keys.name}\n"
+                "Stop it with Ctrl+C.",
+                flush=True,
+            )
+    except cluster_keys.NoKeys as error:
+        sys.exit(f"coursework cluster: {error}")
+    os.execv(command[0], command)
+
+
 def sample_class(out, students, seed, notebooks, solutions, layout):
     from .sample_class import make_class
 
@@ -326,6 +368,7 @@ COMMANDS = {
     "term": term,
     "export": export,
     "gradescope": gradescope,
+    "cluster": cluster,
     "sample-class": sample_class,
 }
 COMMANDS = {name: _told(name, command) for name, command in COMMANDS.items()}

@@ -23,6 +23,7 @@ from ..checking.variants import plain_identity
 from . import intake, marking
 from . import secret as in_secret
 from .cases import Contracts
+from .cluster_keys import demand_keys
 from .identity import BadRoster, Roster
 from .judging import Judge
 from .ledger import DECISIONS, Ledger, with_decisions
@@ -156,6 +157,7 @@ def grade(
     only_list=False,
     workers=None,
     scheduler=None,
+    keys=None,
     allow_weak_isolation=False,
     as_listed=False,
     limits=None,
@@ -180,6 +182,8 @@ def grade(
         How many notebooks run at a time; as many as there are processors if it is not said.
     scheduler : str, optional
         The address of a Dask cluster.
+    keys : path, optional
+        The folder of its keys.
     allow_weak_isolation : bool
     as_listed : bool
         Go on although many notebooks say that they are somebody else's.
@@ -204,6 +208,9 @@ def grade(
         raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
     if scheduler and importlib.util.find_spec("distributed") is None:
         raise ValueError("To give notebooks to a cluster, install what speaks to it: python -m pip install distributed")
+    keys = Path(keys) if keys else None
+    if scheduler:
+        demand_keys(scheduler, keys)
     store, limits, show = Store(out), limits or Limits(), show or sys.stderr
     roster = Roster(roster) if roster else None
     if student is not None and roster and student not in roster.people:
@@ -267,7 +274,7 @@ def grade(
 
         progress = _Progress(len(waiting), show)
         finished = (
-            _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store)
+            _on_cluster(jobs, finish, workers, scheduler, keys, limits, allow_weak_isolation, store)
             if scheduler
             else _here(jobs, finish, workers, limits, allow_weak_isolation, store)
         )
@@ -581,7 +588,7 @@ def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
         )
 
 
-def _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store):
+def _on_cluster(jobs, finish, workers, scheduler, keys, limits, allow_weak_isolation, store):
     """Run on a cluster and judge here: right answers do not leave this machine."""
     from .cluster import run_on_cluster
 
@@ -592,7 +599,9 @@ def _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, 
     def results():
         # Not before the processes are there, which are to have no part in the connection.
         if jobs.work:
-            yield from jobs.whole(run_on_cluster(jobs, scheduler, limits, allow_weak_isolation=allow_weak_isolation))
+            yield from jobs.whole(
+                run_on_cluster(jobs, scheduler, limits, keys=keys, allow_weak_isolation=allow_weak_isolation)
+            )
 
     def lost(task):
         return finish(task[0], jobs.given_up(task[0], MARKING_ENDED))
