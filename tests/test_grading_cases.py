@@ -12,11 +12,12 @@ import sympy as sm
 from grading_class import notebook, put
 
 from coursework.__main__ import main
+from coursework.authoring.author import AuthorError
 from coursework.checking import evaluate
 from coursework.checking.plain import read_plain, to_plain
-from coursework.checking.variants import siblings_of, variant_of
+from coursework.checking.variants import names_of_variants, numbers_of_variants, siblings_of, variant_of
 from coursework.grading import isolation, judging, marking, pictures, secret
-from coursework.grading.cases import Case, Contracts, variants_of
+from coursework.grading.cases import Case, Contracts, case_by_rule, variants_of
 from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.ledger import CUT, Collision, Ledger
 from coursework.grading.marking import questions_of
@@ -445,3 +446,58 @@ def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
     assert isolation.user_for_students(4242, "0 1000 1\n65534 100000 1\n") == isolation.OUTSIDER
     with pytest.raises(RuntimeError, match="no other user than root"):
         isolation.user_for_students(4242, "         0       1000          1\n")
+
+
+# --- variants by their names --------------------------------------------------------------------
+
+
+def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
+    names = names_of_variants([{"given": {"weight": weight}} for weight in WEIGHTS])
+    whole = {"names": names, "edition": "autumn"}
+    students = [f"student {number}" for number in range(300)]
+    before = {one: [names[k] for k in numbers_of_variants(one, NAME, whole, 8)] for one in students}
+    assert {order[0] for order in before.values()} == set(names)
+    for gone in (0, 3, 7):
+        left = names[:gone] + names[gone + 1 :]
+        for order in (left, left[::-1]):
+            about = {"names": order, "edition": "autumn"}
+            for one in students:
+                after = [order[k] for k in numbers_of_variants(one, NAME, about, 7)]
+                assert after == [name for name in before[one] if name != names[gone]]
+    # Another edition, another question, another student: another order. Capitals and spaces make none.
+    assert numbers_of_variants("ann", NAME, whole, 8) == numbers_of_variants(" Ann", NAME, whole, 8)
+    others = {**whole, "edition": ""}
+    assert (
+        sum(numbers_of_variants(one, NAME, whole, 8) != numbers_of_variants(one, NAME, others, 8) for one in students)
+        > 250
+    )
+    assert numbers_of_variants("", NAME, whole, 8) == list(range(8))
+
+
+def test_without_names_the_rule_is_that_of_before():
+    """Whoever holds sealed files of today keeps the own numbers."""
+    for one in STUDENTS:
+        first = variant_of(one, NAME, 8, "autumn")
+        assert numbers_of_variants(one, NAME, {"edition": "autumn"}, 8) == [(first + k) % 8 for k in range(8)]
+
+
+def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tmp_path):
+    sources = write_beams(tmp_path / "solutions", WEIGHTS)
+    (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by name"\n')
+    question = questions_of(sources / "beams.ipynb", b"any")[NAME]
+    names = question["public"]["names"]
+    assert list(variants_of(question)) == names and len(names) == 8
+    for one in STUDENTS:
+        order = numbers_of_variants(one, NAME, question["public"], 8)
+        case = case_by_rule(NAME, question, one)
+        assert case.own.variant == names[order[0]] and case.rule == "by name, of 8"
+        assert [place.variant for place in case.siblings.values()] == [names[k] for k in order[1:3]]
+    left = write_beams(tmp_path / "solutions", WEIGHTS[1:])
+    fewer = questions_of(left / "beams.ipynb", b"any")[NAME]
+    gone = (set(names) - set(fewer["public"]["names"])).pop()
+    for one in STUDENTS:
+        before, after = case_by_rule(NAME, question, one), case_by_rule(NAME, fewer, one)
+        assert before.own.variant in (gone, after.own.variant)
+    (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by chance"\n')
+    with pytest.raises(AuthorError, match="by name"):
+        questions_of(sources / "beams.ipynb", b"any")
