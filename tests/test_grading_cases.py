@@ -19,6 +19,7 @@ from coursework.checking.variants import names_of_variants, numbers_of_variants,
 from coursework.grading import isolation, judging, marking, pictures, secret
 from coursework.grading.cases import Case, Contracts, case_by_rule, variants_of
 from coursework.grading.grade import NothingToGrade, grade, regrade
+from coursework.grading.laboratory import BadPolicy, Policies
 from coursework.grading.ledger import CUT, Collision, Ledger
 from coursework.grading.marking import questions_of
 from coursework.grading.review import Class
@@ -51,9 +52,9 @@ def beams(weights, calls="[[1.5], [-2.0], [0.25]]"):
     )
 
 
-def write_beams(folder, *arguments):
+def write_beams(folder, *arguments, **more):
     folder.mkdir(exist_ok=True)
-    nbformat.write(beams(*arguments), folder / "beams.ipynb")
+    nbformat.write(beams(*arguments, **more), folder / "beams.ipynb")
     (folder / secret.FILE).write_text("5eed" * 16)
     return folder
 
@@ -501,3 +502,85 @@ def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tm
     (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by chance"\n')
     with pytest.raises(AuthorError, match="by name"):
         questions_of(sources / "beams.ipynb", b"any")
+
+
+# --- the regrade laboratory ---------------------------------------------------------------------
+
+
+def mended(folder, exchanged, weights=WEIGHTS, **more):
+    write_beams(folder, weights, **more)
+    path = folder / "beams.ipynb"
+    text = path.read_text()
+    assert exchanged[0] in text
+    path.write_text(text.replace(*exchanged))
+    return folder
+
+
+def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_path, capsys):
+    solutions = mended(tmp_path / "mended", ("2*beam.weight", "2*beam.weight if beam.weight > 50 else 1"))
+    losing = {student for student in STUDENTS if begun.own[student] < 50}
+    before = list(out.all())
+    found = regrade(out.folder, solutions=solutions, dry_run=True)
+    assert {one.student for one in found.lose} == losing and list(out.all()) == before
+    gaining = {one.student for one in found.gain}
+    assert gaining <= {"wrong"}
+    rows = (out.folder / "regrade.csv").read_text().splitlines()
+    page = (out.folder / "regrade.html").read_text()
+    assert len(rows) == 1 + len(found.changes) and all(f">{student}<" in page for student in losing)
+    # Without a yes nothing moves; with one what was said.
+    with pytest.raises(SystemExit, match="No mark has moved"):
+        main(["regrade", str(out.folder), "--solutions", str(solutions)])
+    assert list(out.all()) == before and f"{len(losing)} student" in capsys.readouterr().out
+    main(["regrade", str(out.folder), "--solutions", str(solutions), "--yes"])
+    assert f"{len(losing) + len(gaining)} moved." in capsys.readouterr().out
+    assert {one["student"] for one in out.all() if one["marks"][NAME]["points"] == 0} == losing | {"wrong"} - gaining
+    assert regrade(out.folder, solutions=solutions, dry_run=True).changes == []
+
+
+@pytest.mark.parametrize("policy", ["never lower", "full credit", "taken out", "void"])
+def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy):
+    gone = begun.own[STUDENTS[0]]
+    had = {student for student in STUDENTS if begun.own[student] == gone}
+    left = [weight for weight in WEIGHTS if weight != gone]
+    solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"), left)
+    policies = {
+        "never lower": Policies(never_lower=(NAME,)),
+        "full credit": Policies(full_credit=(NAME,)),
+        "taken out": Policies(full_credit=(f"{NAME}@taken-out",), never_lower=(NAME,)),
+        "void": Policies(void=(NAME,)),
+    }[policy]
+    before = marks_of(out, NAME)
+    regrade(out.folder, solutions=solutions, policies=policies)
+    after = marks_of(out, NAME)
+    for student, mark in after.items():
+        expected = {
+            "never lower": (before[student]["points"], 2),
+            "full credit": (2, 2),
+            "taken out": (2 if student in had else before[student]["points"], 2),
+            "void": (0, 0),
+        }[policy]
+        if student != "wrong" or policy != "taken out":
+            assert (mark["points"], mark["worth"]) == expected, student
+    # What was chosen holds from then on; and a person's decision stands above it.
+    records = list(out.all())
+    assert regrade(out.folder, solutions=solutions) == [] and list(out.all()) == records
+    Ledger(out.folder).add(out.read(STUDENTS[0], "beams"), NAME, 0.5, who="Ann")
+    regrade(out.folder, solutions=solutions)
+    assert out.read(STUDENTS[0], "beams")["marks"][NAME]["points"] == (0 if policy == "void" else 1)
+    with pytest.raises(BadPolicy, match="no question 'beams/lode'"):
+        regrade(out.folder, solutions=solutions, policies=Policies(void=("beams/lode",)))
+
+
+def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
+    """A mended solution is judged from what is stored; a mended call is run, for those who are asked it."""
+    said = io.StringIO()
+    options = {"limits": LIMITS, "show": said}
+    solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
+    assert grade(begun.place / "in", out.folder, solutions=solutions, **options)["graded"] == 0
+    assert {mark["points"] for mark in marks_of(out, NAME).values()} == {0}
+    calls = mended(tmp_path / "calls", ("2*x", "x + x"), calls="[[7.5], [1.5]]")
+    found = regrade(out.folder, solutions=calls, dry_run=True)
+    assert {one.student for one in found.again} == {*STUDENTS, "wrong"} and "runs just these" in found.lines()[-1]
+    few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
+    assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
+    assert out.read(STUDENTS[0], "beams")["marks"]["beams/twice"]["points"] == 3

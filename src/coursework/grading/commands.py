@@ -44,6 +44,20 @@ def add_commands(commands):
     )
     regrade.add_argument("out", metavar="DIR")
     regrade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    regrade.add_argument("--yes", action="store_true", help="go on without asking, whoever gains or loses")
+    regrade.add_argument(
+        "--never-lower", action="append", default=[], metavar="QUESTION", help="nobody loses by this question's mending"
+    )
+    regrade.add_argument(
+        "--full-credit",
+        action="append",
+        default=[],
+        metavar="QUESTION[@VARIANT]",
+        help="all have its points, or all with a variant: its name, or taken-out for those that the source has no more",
+    )
+    regrade.add_argument(
+        "--void", action="append", default=[], metavar="QUESTION", help="this question counts for nobody"
+    )
     review = commands.add_parser("review", help="judge answers on a page that this machine alone sees")
     review.add_argument("out", metavar="DIR")
     review.add_argument("--grader", help="your name, for the ledger; your user's if it is not said")
@@ -51,7 +65,6 @@ def add_commands(commands):
         "--share", default="1/1", metavar="K/N", help="the K-th of N shares, if several people judge: 2/3"
     )
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
-    review.add_argument("--solutions", help="folder of the notebooks with solutions")
     review.add_argument("--port", type=int, default=0, help="the port; any that is free if it is not said")
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
     merge.add_argument("out", metavar="DIR")
@@ -150,20 +163,28 @@ def grade(assignment, **options):
         print(f"The report: {options['out']}/report.html")
 
 
-def regrade(out, solutions):
+def regrade(out, solutions, yes, never_lower, full_credit, void):
+    from .grade import regrade as regrade_class
+    from .laboratory import PAGE, Policies
     from .store import InUse
 
+    policies = Policies(tuple(never_lower), tuple(full_credit), tuple(void))
     try:
-        _regrade(out, solutions)
-    except (InUse, ValueError) as error:  # NothingToGrade is such
+        laboratory = regrade_class(out, solutions=solutions, policies=policies, dry_run=True)
+        for line in laboratory.lines():
+            print(line)
+        if laboratory.changes and not yes:
+            print(f"Each of them: {out}/{PAGE}")
+            if not sys.stdin.isatty() or input("Shall these marks move? yes or no: ").strip().casefold() != "yes":
+                sys.exit("No mark has moved. To go on, say --yes.")
+        _say_moved(regrade_class(out, solutions=solutions, policies=policies))
+    except (InUse, ValueError) as error:  # NothingToGrade and BadPolicy are such
         sys.exit(f"coursework regrade: {error}")
 
 
-def _regrade(out, solutions):
-    from .grade import regrade as regrade_class
+def _say_moved(moved):
     from .tables import number
 
-    moved = regrade_class(out, solutions=solutions)
     for one in moved:
         print(
             f"{one.student!r}, {one.assignment}: {number(one.before)} -> {number(one.after)}  "
@@ -172,9 +193,10 @@ def _regrade(out, solutions):
     print(f"{len(moved)} moved.")
 
 
-def review(out, grader, share, hide_names, solutions, port):
+def review(out, grader, share, hide_names, port):
     import getpass
 
+    from .grade import bring_in_decisions
     from .review import review as serve
     from .store import InUse
 
@@ -193,7 +215,7 @@ def review(out, grader, share, hide_names, solutions, port):
     except KeyboardInterrupt:
         print("\nThe decisions are brought into the marks and pages.")
         try:
-            _regrade(out, solutions)
+            _say_moved(bring_in_decisions(out))
         except (InUse, ValueError) as error:
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 

@@ -13,6 +13,7 @@ import re
 import secrets
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 FORMAT = 3
 REFUSED = "refused.json"
@@ -125,7 +126,7 @@ class Store:
             file.write(f"{now}  {line}\n")
 
 
-def as_text(value):
+def as_text(value: Any) -> str:
     """JSON with a line for each entry of the outermost list or object: short, and still to be read."""
     if isinstance(value, dict):
         lines = [
