@@ -99,6 +99,12 @@ def add_commands(commands):
     export.add_argument(
         "--as-graded", action="store_true", help="hand on the points as graded, although the term has rules"
     )
+    export.add_argument(
+        "--as-of",
+        metavar="TIME",
+        type=_moment,
+        help="by what was decided and due then, such as 2026-12-01T12:00; now, if it is not said",
+    )
     export.add_argument("--dry-run", action="store_true", help="say what would be filled in, and write nothing")
     export.add_argument(
         "--overwrite",
@@ -140,6 +146,13 @@ def add_commands(commands):
     sample.add_argument(
         "--layout", default="folders", choices=("folders", "canvas", "moodle", "brightspace", "nbgrader")
     )
+
+
+def _moment(text):
+    """A time that a person typed, on the clocks of this machine if it names no zone."""
+    import datetime
+
+    return datetime.datetime.fromisoformat(text).astimezone()
 
 
 def _named(assignments):
@@ -279,6 +292,7 @@ def export(
     name,
     rules,
     as_graded,
+    as_of,
     dry_run,
     overwrite,
     assignment,
@@ -301,7 +315,7 @@ def export(
                 f"The term has rules, {known}, and these would be the points before them. Say --rules {known}, or "
                 "--as-graded."
             )
-        marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None)
+        marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None, as_of)
         if lms:
             names = dict(one.partition("=")[::2] for one in name)
             said = gradebooks.fill(lms, marks, column, filled, names, overwrite, dry_run)

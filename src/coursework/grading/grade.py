@@ -269,8 +269,13 @@ def grade(
             """Judge one student's work, and write its record."""
             one = waiting[order]
             asked = questions[one.assignment]
-            of_student, cases = marking.of_student(asked, one.student, before(one), contracts)
+            old = before(one)
+            of_student, cases = marking.of_student(asked, one.student, old, contracts)
             record = record_of(one, results, key(one), of_student, limits)
+            # By whose mending nobody is to lose, nobody loses who handed the same answer in again.
+            record["marks"] = {
+                name: mark for name, mark in (old or NONE)["marks"].items() if _is_same(old, record, name)
+            }
             record["cases"] = {name: case.answered(of_student[name]).as_json() for name, case in cases.items()}
             store.save(marked(record, judge, decisions, policies))
             return order, record["notebooks"][0]["isolation"]
@@ -478,6 +483,16 @@ def _is_done(store, one, key):
         and record["key"] == key
         and not any("given up" in notebook["isolation"] for notebook in record["notebooks"])
     )
+
+
+#: What was graded of a student of whom nothing was.
+NONE = {"marks": {}}
+
+
+def _is_same(record, other, name):
+    """Whether two records hold the same answer, in whatever cell."""
+    first, second = (one["answers"].get(name, {}).get("plain") for one in (record, other))
+    return first == second
 
 
 def key_of(work, asked, limits, weak):
