@@ -485,10 +485,6 @@ def _is_done(store, one, key):
     )
 
 
-#: What was graded of a student of whom nothing was.
-NONE = {"marks": {}}
-
-
 def _is_same(record, other, name):
     """Whether two records hold the same answer, in whatever cell."""
     first, second = (one["answers"].get(name, {}).get("plain") for one in (record, other))
