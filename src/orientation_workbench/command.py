@@ -1,4 +1,4 @@
-"""The command ``orientation``: ``orientation explain FIRST SECOND``."""
+"""The command ``orientation``: ``orientation explain FIRST SECOND`` and ``orientation recording FILE``."""
 
 import argparse
 import json
@@ -21,6 +21,7 @@ def main(arguments=None):
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_explain(commands)
+    _add_recording(commands)
     chosen = parser.parse_args(arguments)
     sys.exit(chosen.run(chosen))
 
@@ -45,6 +46,34 @@ def _add_explain(commands):
             f"'zyx', 'space fixed', 'degrees', 'xyzw'",
         )  # fmt: skip
     parser.set_defaults(run=_explain)
+
+
+def _add_recording(commands):
+    parser = commands.add_parser(
+        "recording",
+        help="what is in a recording of an instrument that turns, and whether a filter is honest on it",
+        description="Put a recording on the bench: what its columns are, their units, axes, signs and errors, the "
+        "convention of an orientation in it, and whether a filter tells the truth about itself on it.",
+        epilog="Exit code: 0 when the file could be judged, whatever was found, 3 when it cannot be read.",
+    )
+    parser.add_argument(
+        "files",
+        nargs="+",
+        metavar="FILE",
+        help="a table of numbers, a zip or a folder of them; several share a clock",
+    )
+    parser.add_argument("--rate", type=float, help="samples a second, where the file only counts them")
+    parser.add_argument("--html", type=Path, metavar="REPORT", help="write the report with its plots as one page")
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="write the corrected recording with an orientation")
+    parser.add_argument("--convention", default="wxyz", help="of that orientation: wxyz, xyzw, yaw-pitch-roll")
+    parser.add_argument("--quick", action="store_true", help="leave out the filter, which takes longest")
+    parser.set_defaults(run=_recording)
+
+
+def _recording(chosen):
+    from .recording.command import run  # loads NumPy, which explaining does without
+
+    return run(chosen)
 
 
 def _given(argument):

@@ -10,6 +10,8 @@ const COLOURS = { matrix: 'A', quaternion: 'D', angles: 'C' };
 const SPIN = 4, SECONDS = 20, FINER = 10, LARGEST = 1e4, SAMPLE = 0.1;
 const SIZE = 118, LONGEST = 1.25, LEFT = -128, RIGHT = 168;
 const FAULT = [24, 124, -16, 2], ERROR = [156, 256, -12, 1], MARGIN = [288, 324, 0, 90];
+// What is below it is the rounding of one processor, and is drawn here.
+const ROUNDING = 1e-15;
 
 // ---- the integration -----------------------------------------------------------------------------------
 
@@ -134,7 +136,7 @@ export class Run {
     const k = this.last;
     this.margin = Math.min(this.margin, this.marginAt(k));
     if (k % this.every) return;
-    const log = (value) => Math.log10(Math.max(value, 1e-30));
+    const log = (value) => Math.log10(Math.max(value, ROUNDING));
     for (const name of Object.keys(DESCRIPTIONS)) {
       this.extend(`fault ${name}`, FAULT, log(this.faultAt(k, name)));
       this.extend(`error ${name}`, ERROR, log(this.errorAt(k, name)));
@@ -208,7 +210,7 @@ function drawBlock(sheet, matrix, edges) {
 
 // '0.0023', '4.1 × 10⁻⁷': two digits.
 function power(value) {
-  if (!(value >= 1e-15)) return Number.isNaN(value) ? '–' : '< 10⁻¹⁵';
+  if (!(value >= ROUNDING)) return Number.isNaN(value) ? '–' : '< 10⁻¹⁵';
   if (value >= 0.001 && value < 1000) return String(Number(value.toPrecision(2)));
   const [mantissa, exponent] = value.toExponential(1).split('e');
   return `${mantissa}\u2009×\u200910${[...exponent.replace('+', '')].map((sign) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(sign)]).join('')}`;
@@ -407,7 +409,7 @@ export function render({ model, el }) {
       plot.marks.push({ kind: colour ? `axis ${colour}` : 'ink', data, depth: 1 });
     }
     for (const [part, value] of [[FAULT, run.faultAt(k, drawn)], [ERROR, run.errorAt(k, drawn)]]) {
-      const place = [now, down(part, Math.log10(Math.max(value, 1e-30)))];
+      const place = [now, down(part, Math.log10(Math.max(value, ROUNDING)))];
       plot.ellipse(place, [4.5, 0], [0, 4.5], `head ${COLOURS[drawn]}`, 2);
     }
   }

@@ -11,6 +11,7 @@ from ..tumbling import error_of, fault_of, matrices, momentum
 
 METHODS = {"Euler": "Euler", "Runge-Kutta": "Runge-Kutta", "exponential": "exponential (Magnus)"}
 SAMPLE = 0.1  # seconds between two points of a curve
+ROUNDING = 1e-15  # what is below it is the rounding of one processor, and is drawn here
 SIZE, REACH = 118, 1.25  # pixels to the unit, and how long an arrow may be drawn
 COLOURS = {"matrix": "A", "quaternion": "D", "angles": "C"}
 LEFT, RIGHT = -128, 168
@@ -101,7 +102,7 @@ def plot(figure):
     drawing.label((0, 0, 0), r"$t\ \mathrm{(s)}$", "ink", (_across(17.5), MARGIN[1] + 15), 16)
     for part, values in ((FAULT, faults), (ERROR, errors)):
         for name, colour in COLOURS.items():
-            _curve(drawing, times, np.log10(np.maximum(values[name], 1e-30)), part, f"axis {colour}")
+            _curve(drawing, times, np.log10(np.maximum(values[name], ROUNDING)), part, f"axis {colour}")
     _curve(drawing, times, margin, MARGIN, "ink")
     # What the figure says in its table, where curves only pass through on their way up.
     for name, words, place, middle in (
@@ -116,7 +117,7 @@ def plot(figure):
 
 
 def _words(value):
-    if value >= 1e-3 or value < 1e-15:
+    if value >= 1e-3 or value < ROUNDING:
         return f"{value:.2g}" if value >= 1e-3 else "less than 10 to the -15"
     mantissa, exponent = f"{value:.1e}".split("e")
     return f"{mantissa} times 10 to the {int(exponent)}"

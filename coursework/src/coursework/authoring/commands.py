@@ -1,0 +1,108 @@
+"""The commands of authors: ``coursework new``, ``release``, ``try``, ``selftest`` and ``wheels``."""
+
+import sys
+from pathlib import Path
+
+
+def add_commands(commands):
+    """Add these commands to those of ``coursework``."""
+    new = commands.add_parser("new", help="make a small course that works at once")
+    new.add_argument("course", metavar="COURSE", help="the folder to make; its name becomes that of the course")
+    release = commands.add_parser(
+        "release", help="make the exercises, the sealed questions and the archive for students"
+    )
+    release.add_argument("only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to make; all of them")
+    for name, says in (
+        ("sources", "folder of the notebooks with solutions"),
+        ("exercises", "where the exercise notebooks go"),
+        ("sealed", "where the sealed questions go"),
+    ):
+        release.add_argument(f"--{name}", type=Path, help=f"{says}, if not as course.toml says")
+    release.add_argument("--no-archive", action="store_true", help="leave the archive for students out")
+    trial = commands.add_parser("try", help="show a question as students will meet it, with every reply")
+    trial.add_argument("name", metavar="NOTEBOOK/QUESTION", help="a question, or a notebook for all of its questions")
+    wheels = commands.add_parser("wheels", help="write the packages of coursework, to be installed elsewhere")
+    wheels.add_argument("folder", type=Path)
+    selftest = commands.add_parser("selftest", help="try every question as students will, and look for leaks")
+    selftest.add_argument("only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to try; all of them")
+    selftest.add_argument(
+        "--sources", type=Path, help="folder of the notebooks with solutions, if not as course.toml says"
+    )
+    selftest.add_argument(
+        "--budget", type=int, default=2**16, help="slow hashes that the attack on one question may need"
+    )
+    for parser, page in ((trial, "try"), (selftest, "selftest")):
+        parser.add_argument("--page", help=f"where the page goes; {page}.html beside the archive")
+
+
+def _course(**folders):
+    from .course import find_course
+
+    return find_course()._replace(**{name: folder.resolve() for name, folder in folders.items() if folder})
+
+
+def new(course):
+    from .new import new as make
+
+    print(*make(course), sep="\n")
+
+
+def release(only, no_archive, **folders):
+    from .packing import archive
+    from .release import release as make
+
+    course = _course(**folders)
+    names = make(course, only)
+    print(f"{len(names)} {'notebook' if len(names) == 1 else 'notebooks'} released.")
+    if not no_archive:
+        print(f"For students: {archive(course)}")
+
+
+def wheels(folder):
+    from .packing import DISTRIBUTIONS, wheel
+
+    folder.mkdir(parents=True, exist_ok=True)
+    print(*(wheel(name, folder) for name in DISTRIBUTIONS), sep="\n")
+
+
+def trial(name, page):
+    from .trial import trial as show
+
+    course = _course()
+    print(f"The page: {show(course, name, page or course.archive.with_name('try.html'))}")
+
+
+def selftest(only, page, budget, **folders):
+    from .selftest import selftest as try_all
+
+    course = _course(**folders)
+    page = page or course.archive.with_name("selftest.html")
+    faults = try_all(course, page, budget, only)
+    print(f"The page: {page}")
+    if faults:
+        sys.exit("\n".join(faults))
+    print("Every question passed.")
+
+
+def _told(command, run):
+    def told(**options):
+        from .author import AuthorError
+
+        try:
+            run(**options)
+        except AuthorError as error:
+            sys.exit(f"coursework {command}: {error}")
+
+    return told
+
+
+COMMANDS = {
+    name: _told(name, run)
+    for name, run in (
+        ("new", new),
+        ("release", release),
+        ("try", trial),
+        ("selftest", selftest),
+        ("wheels", wheels),
+    )
+}

@@ -1,0 +1,348 @@
+"""From the notebooks with the solutions to the exercises that students get, and the questions sealed for them.
+
+The cells of each source are run, so that the right answers are what the solutions compute, and two things are
+made of it: the exercise notebook with blanks, and the file of sealed questions. The same sources give the same
+bytes. :mod:`coursework.authoring.packing` makes the archive that students download.
+"""
+
+import concurrent.futures
+import contextlib
+import copy
+import hashlib
+import json
+import os
+import platform
+import re
+import shutil
+import tempfile
+from importlib import metadata
+from pathlib import Path
+
+from ..checking import sealing
+from ..checking.questions import FORMAT, MOVED, beside
+from ..checking.variants import image
+from .author import AuthorError, solution_code
+from .selftest import try_question
+from .source import (
+    CHAPTERS,
+    answered_in,
+    checked_names,
+    declared_strengths,
+    digest_of_code,
+    notebooks_in,
+    posed,
+    read_source,
+    too_heavy,
+)
+from .variation import drawn_in
+
+#: The lockers of a question without variants are so many, or twice as many, and so on.
+TOGETHER = 8
+KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
+
+
+# --- the exercise notebook ----------------------------------------------------------------------
+
+
+def shows_variants(cells, number):
+    """Whether a cell is the text of a question with variants, which students are shown by the cell before."""
+    return number > 0 and cells[number].cell_type == "markdown" and drawn_in(cells[number - 1].source) is not None
+
+
+def exercise_notebook(source):
+    """The notebook that students get: no solution, no hidden test, and no code of a figure."""
+    import nbformat
+
+    checked = checked_names(source.notebook)
+    owners = {variable: name for name, variable in checked.items()}
+    cells = []
+    for number, cell in enumerate(source.notebook.cells):
+        cell = copy.deepcopy(cell)
+        cell.metadata = {}
+        if shows_variants(source.notebook.cells, number):
+            continue
+        elif number in source.figures:
+            cells.append(
+                nbformat.v4.new_markdown_cell(image(source.figures[number].picture(), source.figures[number].alt))
+            )
+        elif cell.cell_type == "markdown":
+            cells.append(nbformat.v4.new_markdown_cell(cell.source))
+        else:
+            blanks = answered_in(cell.source, owners)
+            code = nbformat.v4.new_code_cell(posed(cell.source, owners))
+            graded = [
+                source.questions[name]
+                for name, variable in checked.items()
+                if re.search(rf"check\(\s*['\"]{re.escape(name)}['\"]", code.source)
+            ]
+            if blanks:
+                code.metadata["nbgrader"] = _nbgrader(code, _identifier(owners[blanks[0]]), solution=True)
+            elif graded:
+                code.metadata["nbgrader"] = _nbgrader(
+                    code, f"check-{_identifier(graded[0].name)}", points=sum(question.worth for question in graded)
+                )
+            cells.append(code)
+    for number, cell in enumerate(cells):
+        cell["id"] = f"cell-{number}"
+    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
+
+
+def _identifier(name):
+    return name.replace("/", "-")
+
+
+def _nbgrader(cell, identifier, solution=False, points=None):
+    """Metadata of nbgrader's schema 3, as its own release step writes it."""
+    about = {
+        "schema_version": 3,
+        "grade": points is not None,
+        "grade_id": identifier,
+        "locked": points is not None,
+        "solution": solution,
+        "task": False,
+        "cell_type": cell.cell_type,
+    }
+    if points is not None:
+        about["points"] = points
+    about["checksum"] = _checksum(cell, about)
+    return about
+
+
+def _checksum(cell, about):
+    # As nbgrader.utils.compute_checksum; a test compares the two.
+    parts = [
+        cell.source,
+        cell.cell_type,
+        *(str(about[key]) for key in ("grade", "solution", "locked")),
+        about["grade_id"],
+    ]
+    if about["grade"]:
+        parts.append(str(float(about["points"])))
+    digest = hashlib.md5()
+    for part in parts:
+        digest.update(part.encode("utf8"))
+    return digest.hexdigest()
+
+
+def run_notebook(notebook, folder):
+    """Run an exercise notebook, blanks and all, and keep what it shows."""
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellExecutionError
+
+    client = NotebookClient(
+        notebook,
+        timeout=120,
+        kernel_name="python3",
+        resources={"metadata": {"path": str(folder)}},
+        extra_arguments=["--IPKernelApp.log_level=ERROR"],  # it warns of its own sockets, which are on this machine
+    )
+    try:
+        client.execute()
+    except CellExecutionError as error:
+        raise AuthorError(
+            f"The notebook for students does not run with its blanks as they are: {error.ename}: {error.evalue}. Does "
+            f"a cell that is no solution use an answer? {error.traceback.partition(chr(10) * 3)[0]}"
+        ) from None
+    for cell in notebook.cells:
+        cell.metadata.pop("execution", None)
+    notebook.metadata = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
+
+
+# --- all of it ----------------------------------------------------------------------------------
+
+
+def sealed_file(source, first=None, pages=None):
+    """The text of the file with the sealed questions of a notebook; of a variant, what differs from the ``first``.
+
+    ``pages`` are those of the first variant, by the name of the question.
+    """
+    code = solution_code(source.notebook)
+    questions = {
+        name: {"answer": question.variable, **question.sealed(code, pages and pages[name])}
+        for name, question in source.questions.items()
+    }
+    if first:
+        questions = {name: beside(one, first[name]) for name, one in questions.items()}
+    return _as_text({"format": FORMAT, "questions": questions})
+
+
+def _as_text(content):
+    return json.dumps(content, indent=0, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+def _release_one(path, course):
+    """Make a notebook and its sealed questions: its name, how many variants there are, the pages that these share."""
+    import nbformat
+
+    source, declared = read_source(path, edition=course.edition), declared_strengths(course.sources)
+    for name, question in source.questions.items():
+        fault = too_heavy(question, declared)
+        if fault:
+            raise AuthorError(f"{name}, in {path.name}: {fault}")
+        for text in question.no_mistakes:
+            raise AuthorError(f"{name}, in {path.name}: This authored mistake gives the right answer: {text}")
+    if source.rules and not source.asks_who and source.name != CHAPTERS:
+        raise AuthorError(
+            f"{path.name}: students say nowhere who they are, so all would get the same numbers. Near the top, write a "
+            'cell `me("")`, with `from coursework import check, hint, me, variant` above it.'
+        )
+    (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
+    if source.name != CHAPTERS:
+        nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")
+    pages = {name: source.questions[name].pages for name in source.rules}
+    return (
+        source.name,
+        max((rule.count for rule in source.rules.values()), default=1),
+        pages,
+        solution_code(source.notebook),
+    )
+
+
+def _release_variant(path, number, pages, course):
+    """Solve, try and seal one variant of a notebook's questions.
+
+    What came of it is kept beside the archive, under a name that follows from all that it was made with: the source,
+    our code, the versions of what computes the answers, and the pages of the first variant, to which its own point.
+    """
+    first = (course.sealed / f"{path.stem}.json").read_text("utf8")
+    digest = hashlib.sha256("\n".join([course.edition, str(number), digest_of_code(), *_versions(), first]).encode())
+    digest.update(path.read_bytes())
+    kept = course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
+    if not kept.exists():
+        source = read_source(path, number, course.edition)
+        for name, question in source.questions.items():
+            faults = try_question(question, budget=0, against_sealed=False).faults
+            if faults:
+                raise AuthorError(f"{name}, variant {number}, {question.public['given']}: {faults[0]}")
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
+            outdated.unlink()
+        kept.write_text(sealed_file(source, json.loads(first)["questions"], pages), "utf8")
+    target = course.sealed / "variants" / f"{path.stem}-{number}.json"
+    target.parent.mkdir(exist_ok=True)
+    shutil.copyfile(kept, target)
+
+
+def _versions():
+    """What computes the answers of a notebook, with its version, as far as it is installed."""
+    yield platform.python_version()
+    for name in ("mpmath", "sympy", "numpy", "scipy", "matplotlib"):
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            yield f"{name} {metadata.version(name)}"
+
+
+def _even_out(name, code, course):
+    """Give all variants of a question as many lockers as the one but most of them has, with empty ones.
+
+    How many there are follows from the answer: from what mistakes lead to the same, and how near to the edges of
+    their cells the numbers lie. Over sixteen variants that singles out a right formula with no slow hash at all.
+    """
+    first = course.sealed / f"{name}.json"
+    variants = sorted((course.sealed / "variants").glob(f"{name}-*.json"))
+    files = [first, *(path for path in variants if path.stem.removeprefix(f"{name}-").isdigit())]
+    contents = [json.loads(file.read_text("utf8")) for file in files]
+    for question in contents[0]["questions"]:
+        ones = [content["questions"].get(question, {}) for content in contents]
+        ones = [one for one in ones if one.get("lockers")]
+        if not ones:
+            continue  # of an exam, or a text that a person reads
+        counts = sorted(sealing.count_of(one["lockers"]) for one in ones)
+        # Up to the very most would make the file of every variant as large as the largest.
+        most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
+        for one in ones:
+            one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
+    for file, content in zip(files, contents, strict=True):
+        file.write_text(_as_text(content), "utf8")
+
+
+def _run_one(path, sealed):
+    import nbformat
+
+    notebook = nbformat.read(path, as_version=4)
+    with tempfile.TemporaryDirectory() as folder:
+        # The sealed questions stand beside the notebook, as they do where there is no package for them.
+        shutil.copytree(sealed, Path(folder, "sealed"))
+        run_notebook(notebook, folder)
+    nbformat.write(notebook, path)
+
+
+def release(course, only=(), run=True, variants=None):
+    """Make the exercise notebooks and the sealed questions.
+
+    Parameters
+    ----------
+    course : Course
+    only : sequence of str
+        Names of the notebooks to make; all of them if there is none.
+    run : bool
+        Whether to run the exercise notebooks, so that they show what an untouched notebook shows.
+    variants : collection of int, optional
+        Which variants to make; all of them if nothing is said.
+
+    Returns
+    -------
+    list of str
+        The names of the notebooks that were made.
+
+    Raises
+    ------
+    AuthorError
+        A question is not well posed, or the folders hold what these sources do not make. Nothing is ever deleted.
+    """
+    _demand_sources(course, {path.stem for path in notebooks_in(course.sources)})
+    paths = notebooks_in(course.sources, only)
+    for folder in (course.exercises, course.sealed):
+        folder.mkdir(parents=True, exist_ok=True)
+    if course.moved:
+        moved = {"format": FORMAT, "moved": course.moved, "questions": {}}
+        (course.sealed / MOVED).write_text(_as_text(moved), "utf8")
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+        made = list(pool.map(_release_one, paths, [course] * len(paths)))
+        names = [name for name, *_ in made]
+        wanted = [
+            (path, number, pages)
+            for path, (_, count, pages, _) in zip(paths, made, strict=True)
+            for number in range(1, count)
+            if variants is None or number in variants
+        ]
+        if wanted:
+            list(pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted)))
+        for name, count, _, code in made:
+            for path in (course.sealed / "variants").glob(f"{name}-*.json"):
+                if (
+                    re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))
+                    and int(path.stem.rpartition("-")[2]) >= count
+                ):
+                    path.unlink()  # this notebook made it when it had more variants
+            _even_out(name, code, course)
+        if run:
+            made = [course.exercises / f"{name}.ipynb" for name in names if name != CHAPTERS]
+            list(pool.map(_run_one, made, [course.sealed] * len(made)))
+    return names
+
+
+def _demand_sources(course, known):
+    """Whoever names the wrong folder must not lose another course's exercises."""
+    others = [
+        path
+        for folder, suffix in ((course.exercises, ".ipynb"), (course.sealed, ".json"))
+        for path in sorted(folder.glob(f"*{suffix}"))
+        if path.stem not in known and path.name != MOVED
+    ]
+    if others:
+        raise AuthorError(
+            f"{others[0]} is made of no notebook in {course.sources}"
+            + (f", and neither are {len(others) - 1} other files" if others[1:] else "")
+            + ". Nothing was changed: delete what is no longer wanted yourself, or name other folders."
+        )
+
+
+def differences(first, second, pattern):
+    """Names of the files of two folders that are not the same in both."""
+    names = {path.name for folder in (first, second) for path in Path(folder).glob(pattern)}
+    return sorted(
+        name
+        for name in names
+        if not (Path(first, name).is_file() and Path(second, name).is_file())
+        or Path(first, name).read_bytes() != Path(second, name).read_bytes()
+    )

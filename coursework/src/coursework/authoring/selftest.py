@@ -1,0 +1,499 @@
+"""Questions tried before students get them: right forms pass, each mistake has its message, nothing leaks.
+
+The result is a page for the author: what each question recognises, how hard it is to guess, and what is wrong
+with it, if anything is.
+"""
+
+import base64
+import concurrent.futures
+import hashlib
+import html
+import io
+import json
+import os
+import random
+import re
+import zipfile
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
+
+from ..checking.kinds import Fault, Undecidable
+from ..checking.mistakes import GENERAL, message
+from ..checking.plain import NotPlain
+from ..checking.plugins import kinds
+from ..checking.questions import in_variant, judge, notebook_questions
+from ..checking.reply import Reply, to_html
+from ..checking.variants import shown
+from .attack import BUDGET, Found, attack
+from .author import AuthorError
+from .forms import another_answer, equivalent_forms
+from .source import (
+    CHAPTERS,
+    DECLARED,
+    HIDDEN,
+    LIGHT,
+    SOLUTION,
+    blank,
+    declared_strengths,
+    digest_of_code,
+    notebooks_in,
+    read_source,
+    too_heavy,
+)
+
+#: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
+SECONDS_PER_TRY = 0.012
+#: Forms that a right answer is tried in, where algebra gives that many.
+FORMS = 6
+#: Variants of a question that are attacked beside the first one; which ones follows from the name of the notebook.
+ATTACKED = 2
+COLUMNS = (
+    "Question",
+    "Kind",
+    "Forms that pass",
+    "Mistakes named",
+    "Mistakes that change nothing here",
+    "To guess it",
+    "Faults",
+)
+#: On a narrow screen each question stands by itself, and each cell says what it is of.
+STYLE = """
+:root{color-scheme:light dark}
+body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;overflow-wrap:break-word}
+section{border-top:1px solid #8888;margin-top:2rem}
+img{background:#fff;height:auto;max-width:100%}
+pre,math[display=block]{overflow-x:auto}
+table{border-collapse:collapse;width:100%}
+th,td{border-bottom:1px solid #8888;padding:.4rem;text-align:left;vertical-align:top}
+td ul{margin:0;padding-left:1.2em}
+@media (max-width:60rem){
+thead{display:none}
+tr,th,td{display:block}
+th,td{border:0;padding:.2rem 0}
+tr{border-bottom:1px solid #8888;padding:.6rem 0}
+td::before{content:attr(data-of) ": ";font-weight:600}
+td details{display:inline-block;max-width:100%;vertical-align:top}
+}
+"""
+NO_LEAK = "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"
+
+
+class Finding(NamedTuple):
+    """What was found of one question; ``faults`` is empty if it is ready for students."""
+
+    name: str
+    kind: str
+    forms: list
+    mistakes: list
+    unmoved: list
+    attack: Found
+    worth: int
+    faults: list
+
+
+def try_question(question, text="", declared=None, budget=BUDGET, against_sealed=True, kept=None):
+    """Try one question as students will, right and wrong, and as somebody does who guesses.
+
+    Parameters
+    ----------
+    question : Question
+    text : str
+        What is asked, in words.
+    declared : int, optional
+        How many slow hashes the question withstands, where its author knows that it can be guessed.
+    budget : int
+        How many slow hashes the attack may need.
+    against_sealed : bool
+        Whether to try what was released of it too.
+    kept : path, optional
+        A folder in which what came of attacks is kept, since they take long.
+
+    Answers are compared with what is sealed before the slow hash locks it up: that the locks hold the same is
+    shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
+    """
+    faults = []
+    if kinds()[question.public["kind"]].by_a_person:
+        return _try_text(question)
+    forms = equivalent_forms(question.public, question.answer)
+    for form, answer in forms:
+        reply = _judge(question, answer)
+        if reply.outcome != "correct":
+            faults.append(f'The right answer in the form "{form}" gets "{reply.outcome}": {reply.messages}')
+    words = kinds()[question.public["kind"]].text or question.public["kind"] == "function"
+    if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
+        faults.append(f"The right answer was tried in {len(forms)} forms only.")
+    there = against_sealed and question.name in notebook_questions(question.name.partition("/")[0])
+    sealed = in_variant(question.name, question.public.get("variant", 0)) if there else None
+    expected = "recorded" if question.public.get("exam") else "correct"
+    if sealed and judge(question.name, sealed, question.plain)[0].outcome != expected:
+        faults.append("The right answer does not open what is sealed: make the release anew.")
+    named, unmoved = _try_mistakes(question, faults)
+    blank = _judge(question, ...)
+    if blank.outcome != "not attempted":
+        faults.append(f'The untouched blank gets "{blank.outcome}".')
+    others = (
+        question.to_plain(another_answer(question.public, question.answer, random.Random(seed))) for seed in range(9)
+    )
+    other = next((plain for plain in others if question.fingerprint_of(plain) not in question.entries), None)
+    other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
+    if other.outcome == "correct" or other.outcome == "wrong" and other.note:
+        faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
+    if question.public.get("exam"):
+        found = Found(0, "")  # there is nothing to try a guess on
+    else:
+        found = attack_kept(question, text, budget, kept) if kept else attack(question, text, budget)
+    if found.way and found.tries < min(declared or BUDGET, budget):
+        faults.append(
+            f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}, with "
+            f'{LIGHT} point at most: "{question.name}": {rounded_down(found.tries)}'
+        )
+    return Finding(
+        question.name,
+        question.public["kind"],
+        [form for form, _ in forms],
+        named,
+        unmoved,
+        found,
+        question.worth,
+        faults,
+    )
+
+
+def rounded_down(tries):
+    """As many tries as an author declares of a question that was found after some: not to the last one.
+
+    >>> rounded_down(8731), rounded_down(143), rounded_down(4)
+    (8000, 100, 4)
+    """
+    return int(str(tries)[0]) * 10 ** (len(str(tries)) - 1)
+
+
+def _try_text(question):
+    """A question whose answers a person reads: the untouched blank is none, and every text is put aside."""
+    outcomes = [_judge(question, answer).outcome for answer in (..., "", question.answer)]
+    faults = [] if outcomes == ["not attempted", "not attempted", "undecided"] else [f"Its answers get {outcomes}."]
+    if not question.rubric:
+        faults.append("Nothing says what a person looks for: give a `rubric`.")
+    name, kind = question.name, question.public["kind"]
+    return Finding(name, kind, [], [], [], Found(0, ""), question.worth, faults)
+
+
+def _judge(question, answer):
+    try:
+        return question.reply_to(question.to_plain(answer))
+    except NotPlain as error:
+        return Reply(question.name, "invalid", "unreadable", [str(error)])
+
+
+def _try_mistakes(question, faults):
+    named, unmoved = [], []
+    for mistake in question.mistakes:
+        said = message(question.public, mistake.note, mistake.details)
+        try:
+            plain = question.to_plain(mistake.answer)
+            reply = question.reply_to(plain)
+            if reply.outcome == "correct":
+                unmoved.append(mistake.note)
+                if mistake.note == "authored":
+                    faults.append(f"This authored mistake gives the right answer: {said}")
+                continue
+            entry = question.entries[question.fingerprint_of(plain)]
+        except (Fault, Undecidable, NotPlain) as refused:
+            named.append((mistake.note, f"(refused for its form) {refused}"))
+            continue
+        except KeyError:
+            faults.append(f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not known: {reply.messages}')
+            continue
+        known = [note for case in entry.cases for note in case["notes"]]
+        covered = mistake.note in GENERAL and known
+        if reply.outcome != "wrong" or not covered and [mistake.note, mistake.details] not in known:
+            faults.append(
+                f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its own message.'
+            )
+        elif not reply.messages:
+            faults.append(f'The mistake "{mistake.note}" has no message.')
+        named.append((mistake.note, said))
+    return named, unmoved
+
+
+# --- what must not be found in anything that a student receives ---------------------------------
+
+
+def secrets_of(source):
+    """Texts of a notebook with solutions that no student may receive, without spaces: what each is, and it."""
+    found = []
+    for cell in source.notebook.cells:
+        if cell.cell_type == "code":
+            for region in SOLUTION.findall(cell.source):
+                found += [("a line of a solution", line) for line in region.splitlines()]
+            for region in HIDDEN.findall(cell.source):
+                found += [("a line of a hidden test", line) for line in region.splitlines()]
+    for name, question in source.questions.items():
+        for line in question.solution.splitlines():
+            found.append((f"the worked solution of {name}", line))
+        for step in [step for steps in [*question.hints.values(), *question.after.values()] for step in steps]:
+            found.append((f"a hint of {name}", step))
+        if kinds()[question.public["kind"]].entries:
+            found += [(f"the answer of {name}", text) for text in _writings(question.answer)]
+    given = {
+        _dense(line)
+        for cell in source.notebook.cells
+        for line in HIDDEN.sub("", SOLUTION.sub("", cell.source)).splitlines()
+    }
+    # What stands in place of a solution is given too: the signature of a function and its docstring.
+    owners = {question.variable: name for name, question in source.questions.items()}
+    given |= {
+        _dense(line)
+        for cell in source.notebook.cells
+        for region in SOLUTION.findall(cell.source)
+        for line in blank(region, owners).splitlines()
+    }
+    # The arguments that a function is tried with are public: whoever checks it must call it.
+    given |= {_dense(json.dumps(question.public.get("calls", ""))) for question in source.questions.values()}
+    seen = {}
+    for what, text in found:
+        dense = _dense(text)
+        # Short lines stand anywhere, imports and marks tell nothing, and what the author gives openly
+        # elsewhere is no secret.
+        if len(dense) >= 14 and not _tells_nothing(text) and not any(dense.strip(",") in line for line in given):
+            seen.setdefault(dense, what)
+    return seen
+
+
+def _tells_nothing(line):
+    """Whether a line is an import, a mark, or the head of a function, a class or a loop over what has a name."""
+    return re.match(r"\s*(import |from \w[\w.]* import |def |### |class |for \w+ in \w+:$)", line) is not None
+
+
+def _writings(answer):
+    import sympy
+
+    if isinstance(answer, tuple) and isinstance(answer[-1], str):
+        answer = answer[0]  # of a number with its unit
+    try:
+        expression = sympy.Matrix(answer) if isinstance(answer, (list, tuple)) else sympy.sympify(answer)
+    except (TypeError, ValueError, sympy.SympifyError):
+        return []
+    if not hasattr(expression, "free_symbols"):
+        return []
+    writings = [str(expression), sympy.srepr(expression), sympy.latex(expression)]
+    if hasattr(expression, "tolist"):
+        writings.append(str(expression.tolist()))
+    return writings
+
+
+def _dense(text):
+    return re.sub(r"\s+", "", text).lower()
+
+
+def released_texts(exercises, sealed, archive):
+    """Everything that students receive, as texts by place: files, what is packed in them, and pictures."""
+    files = {
+        str(path): path.read_bytes()
+        for folder, pattern in ((exercises, "*.ipynb"), (sealed, "*.json"))
+        for path in sorted(Path(folder).rglob(pattern))
+    }
+    if Path(archive).exists():
+        files[str(archive)] = Path(archive).read_bytes()
+    texts = {}
+    while files:
+        name, data = files.popitem()
+        if name.endswith((".zip", ".whl")):
+            with zipfile.ZipFile(io.BytesIO(data)) as box:
+                files.update({f"{name}!{inner}": box.read(inner) for inner in box.namelist()})
+            continue
+        text = data.decode("utf8", "replace")
+        if name.endswith((".ipynb", ".json")):
+            text += "\n".join(_strings(json.loads(text)))
+        for picture in re.findall(r"base64,([A-Za-z0-9+/=]{40,})", text):
+            text += base64.b64decode(picture).decode("utf8", "replace")
+        texts[name] = _dense(text)
+    return texts
+
+
+def _strings(data):
+    """All texts in JSON data, as they are read and not as they are written."""
+    if isinstance(data, str):
+        yield data
+    elif isinstance(data, dict):
+        for key, value in data.items():
+            yield key
+            yield from _strings(value)
+    elif isinstance(data, list):
+        # A notebook may keep a text as a list of its lines.
+        if all(isinstance(part, str) for part in data):
+            yield "".join(data)
+        else:
+            for part in data:
+                yield from _strings(part)
+
+
+def leaks(sources, texts):
+    """Give every secret that stands in a released text: what it is, and where."""
+    return [leak for source in sources if source.name != CHAPTERS for leak in found_in(texts, secrets_of(source))]
+
+
+def found_in(texts, secrets):
+    """Each of some secrets that stands in a text: what it is, and where."""
+    return [(what, place) for secret, what in secrets.items() for place, text in texts.items() if secret in text]
+
+
+# --- the page -----------------------------------------------------------------------------------
+
+
+def selftest(course, page=None, budget=BUDGET, only=()):
+    """Try all questions of a course, or of the notebooks that are named, look for leaks, and write the page.
+
+    Returns
+    -------
+    list of str
+        All faults; empty if the exercises can be given to students.
+
+    Raises
+    ------
+    AuthorError
+        There is nothing to try, or a notebook cannot be read.
+    """
+    paths, declared = notebooks_in(course.sources, only), declared_strengths(course.sources)
+    if only:
+        declared = {name: tries for name, tries in declared.items() if name.partition("/")[0] in only}
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+        tried = list(pool.map(_try_notebook, paths, [course] * len(paths), [budget] * len(paths)))
+    findings = [finding for found, _ in tried for finding in found]
+    if not findings:
+        raise AuthorError(f"The notebooks in {course.sources} ask no question.")
+    texts = released_texts(course.exercises, course.sealed, course.archive)
+    found = [leak for _, secrets in tried for leak in found_in(texts, secrets)]
+    if page:
+        Path(page).parent.mkdir(parents=True, exist_ok=True)
+        Path(page).write_text(write_page(findings, found), "utf8")
+    unknown = sorted(set(declared) - {finding.name for finding in findings})
+    return (
+        [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults]
+        + [f"{what} stands in {place}" for what, place in found]
+        + [f"{name}: {DECLARED} names it, and there is no such question." for name in unknown]
+    )
+
+
+def _try_notebook(path, course, budget):
+    """What was found of the questions of a notebook, and its secrets."""
+    source, declared = read_source(path), declared_strengths(course.sources)
+    findings = [
+        try_question(
+            question, text_of(source, question), declared.get(name), budget, kept=course.archive.parent / "attacks"
+        )
+        for name, question in source.questions.items()
+    ]
+    weakest = {finding.name: finding.attack for finding in findings}
+    for number in _numbers_attacked(source):
+        for name, question in read_source(path, number, course.edition).questions.items():
+            if question.public.get("exam"):
+                continue
+            found = attack_kept(question, text_of(source, question), budget, course.archive.parent / "attacks")
+            if found.way and (not weakest[name].way or found.tries < weakest[name].tries):
+                weakest[name] = found
+    findings = [
+        finding._replace(
+            attack=weakest[finding.name],
+            faults=[
+                *finding.faults,
+                *_too_weak(finding, weakest, declared, budget),
+                *filter(None, [too_heavy(source.questions[finding.name], declared)]),
+            ],
+        )
+        for finding in findings
+    ]
+    return findings, {} if source.name == CHAPTERS else secrets_of(source)
+
+
+def _numbers_attacked(source):
+    """The numbers of the variants of a notebook that are attacked beside the first: always the same ones."""
+    count = max((rule.count for rule in source.rules.values()), default=1)
+    return sorted(random.Random(source.name).sample(range(1, count), min(ATTACKED, count - 1)))
+
+
+def _too_weak(finding, weakest, declared, budget):
+    """The fault of a question one of whose variants is guessed sooner than its author declared."""
+    found = weakest[finding.name]
+    if found == finding.attack or found.tries >= min(declared.get(finding.name) or BUDGET, budget):
+        return []
+    return [f"One of its variants can be guessed: {found}. {DECLARED} says how many tries it withstands."]
+
+
+def attack_kept(question, text, budget, folder):
+    """The attack on a question; what came of it is kept in a folder, for the same question and the same attack."""
+    known = {known: entry.outcome for known, entry in question.entries.items()}
+    asked = json.dumps([question.public, known, text, budget, digest_of_code()], sort_keys=True)
+    place = Path(folder, f"{hashlib.sha256(asked.encode()).hexdigest()[:24]}.json")
+    if not place.exists():
+        found = attack(question, text, budget)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(json.dumps(found), "utf8")
+    return Found(*json.loads(place.read_text("utf8")))
+
+
+def text_of(source, question):
+    """The text of a question: that of its variant, or the Markdown above the cell that its answer stands in."""
+    if "text" in question.public:
+        return shown(question.public["text"], question.public["shown"])
+    above = ""
+    for cell in source.notebook.cells:
+        if cell.cell_type == "markdown":
+            above = cell.source
+        elif f"check({question.name!r}" in cell.source.replace('"', "'"):
+            return above
+    return above
+
+
+def _share_of_guessable(findings):
+    worth = sum(finding.worth for finding in findings)
+    return f"{sum(finding.worth for finding in findings if finding.attack.way) / max(1, worth):.0%}"
+
+
+def write_page(findings, found, before=""):
+    rows = []
+    for finding in findings:
+        said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
+        mistakes = "".join(
+            f"<li><b>{html.escape(note)}</b>: {said}{f' ({times} of these)' if times > 1 else ''}</li>"
+            for (note, said), times in said_of.items()
+        )
+        faults = "".join(f"<li>{html.escape(fault)}</li>" for fault in finding.faults)
+        cells = (
+            html.escape(finding.kind),
+            _folded(len(finding.forms), html.escape(", ".join(finding.forms))),
+            _folded(len(finding.mistakes), f"<ul>{mistakes}</ul>"),
+            html.escape(", ".join(dict.fromkeys(finding.unmoved))) or "none",
+            html.escape(str(finding.attack)),
+            f"<ul>{faults}</ul>" if faults else "ready",
+        )
+        rows.append(
+            f'<tr><th scope="row">{html.escape(finding.name)}</th>'
+            + "".join(f'<td data-of="{head}">{cell}</td>' for head, cell in zip(COLUMNS[1:], cells, strict=True))
+            + "</tr>"
+        )
+    listed = "".join(f"<li>{html.escape(what)} stands in {html.escape(place)}</li>" for what, place in found or [])
+    # Where only a few questions are tried, nothing was looked for.
+    leaked = "" if found is None else f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title>'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{STYLE}</style>'
+        f"<h1>Exercises, tried</h1><p>{_of(len(findings), 'question')}; {sum(bool(f.faults) for f in findings)} with "
+        f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
+        "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
+        f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has needed to find the "
+        "answer. Not found means not found by this attack: somebody may have a better idea. An answer that can be "
+        f"guessed should not count much: here such answers carry {_share_of_guessable(findings)} of the points.</p>"
+        f"{before}{leaked}<h2>Questions</h2><table><thead><tr>"
+        + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
+        + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"
+    )
+
+
+def _of(count, what):
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def _folded(summary, inside):
+    return f"<details><summary>{summary}</summary>{inside}</details>" if summary else "none"

@@ -1,0 +1,486 @@
+"""A notebook with solutions: what its author wrote between nbgrader's marks, and what its cells compute.
+
+``### BEGIN SOLUTION`` and ``### BEGIN HIDDEN TESTS`` mark what students do not get.
+"""
+
+import ast
+import contextlib
+import functools
+import hashlib
+import io
+import itertools
+import json
+import re
+import textwrap
+from pathlib import Path
+from typing import NamedTuple
+
+import coursework
+from coursework.checking.plugins import folders_of, packages
+from coursework.checking.variants import Given, names_of_variants, packed, shown
+
+from . import author
+from .course import gives_by_name
+from .packing import VERSION
+from .variation import COUNT, VARIANTS, Rule, drawn_in, written
+
+#: The source whose questions stand inside the chapters: only its sealed file is made.
+CHAPTERS = "chapters"
+#: Where the code is that the seals of a question follow from.
+ROOMS = ("authoring", "checking")
+#: Characters of a parameter up to which it is a word, and not a part of the text.
+LONGEST_WORD = 40
+#: The file beside the sources in which an author declares what may be guessed.
+DECLARED = "guessable.json"
+#: The most points that a question carries which can be guessed.
+LIGHT = 1
+
+SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
+HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
+#: What is marked, and every line that was meant as a mark.
+MARKED = ("SOLUTION", "HIDDEN TESTS", "VARIANTS")
+MARK = re.compile(r"[ \t]*#+[ \t]*(BEGIN|END)[ \t]+((?:SOLUTION|HIDDEN|VARIANT).*)", re.I)
+
+
+class Drawing(NamedTuple):
+    """A plot of Matplotlib as the figure of a question: ``drawing(figure, alt)`` in a source.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+    alt : str
+        What it shows, for those who do not see it.
+    """
+
+    figure: object
+    alt: str
+
+    def picture(self):
+        """The same SVG each time, with its letters as outlines: nobody needs the typeface."""
+        import matplotlib
+
+        text = io.StringIO()
+        with matplotlib.rc_context({"svg.hashsalt": "coursework", "svg.fonttype": "path"}):
+            self.figure.savefig(text, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})
+        return re.sub(r"^.*?(?=<svg)", "", text.getvalue(), flags=re.S)
+
+
+class Source(NamedTuple):
+    """A notebook with solutions, after its cells were run."""
+
+    name: str
+    notebook: dict
+    questions: dict
+    figures: dict
+    rules: dict
+    asks_who: bool
+
+
+def notebooks_in(folder, only=()):
+    """The notebooks with solutions of a folder, or those of them that are named.
+
+    Raises
+    ------
+    AuthorError
+        There is none, or none of a name.
+    """
+    found = sorted(Path(folder).glob("*.ipynb"))
+    if not found:
+        raise author.AuthorError(
+            f"There is no notebook with solutions in {folder}. If the solutions are kept in a private repository, "
+            "get them first; without them everything builds, but nothing is released or graded."
+        )
+    unknown = sorted(set(only) - {path.stem for path in found})
+    if unknown:
+        known = ", ".join(path.stem for path in found)
+        raise author.AuthorError(f"There is no {unknown[0]}.ipynb in {folder}; there are {known}.")
+    return [path for path in found if not only or path.stem in only]
+
+
+@functools.cache
+def digest_of_code():
+    """A text that follows from the code that reads, attacks and seals questions, ours and that of plug-ins."""
+    digest = hashlib.sha256()
+    for folder in [*(Path(coursework.__file__).parent / room for room in ROOMS), *folders_of(packages())]:
+        for path in sorted(Path(folder).rglob("*.py")):
+            # A new version by itself is no reason to try everything again.
+            digest.update(path.name.encode() + VERSION.sub("", path.read_text("utf8")).encode())
+    return digest.hexdigest()
+
+
+def declared_strengths(sources):
+    """How many slow hashes each guessable question withstands, as its author declared in ``guessable.json``.
+
+    A question that is not named there is to withstand the whole attack.
+    """
+    file = Path(sources, DECLARED)
+    return json.loads(file.read_text("utf8")) if file.is_file() else {}
+
+
+def too_heavy(question, declared):
+    """The fault of a question that can be guessed and counts much all the same; or ``None``."""
+    if question.name not in declared or question.worth <= LIGHT:
+        return None
+    return (
+        f"{DECLARED} says that it can be guessed, after {declared[question.name]} tries, and it is worth "
+        f"{question.worth} points; {LIGHT} is the most for such a question. Make its answer richer, "
+        f"or say worth={LIGHT}."
+    )
+
+
+def read_source(path, variant=0, edition="", only=None, pictures=None):
+    """Run a notebook with solutions and give its questions.
+
+    Parameters
+    ----------
+    path : path
+    variant : int
+        For 0 all questions are given, in their first variant; for another number those that have that variant.
+    edition : str
+        Of a course: each edition draws afresh.
+    only : collection of str, optional
+        The questions that are wanted: cells that these do not need are not run.
+    pictures : bool, optional
+        Whether the pictures of variants are drawn; if nothing is said, where all questions are wanted.
+
+    Raises
+    ------
+    AuthorError
+        A question has no check, a check has no question, or a cell fails.
+    """
+    import nbformat
+
+    path = Path(path)
+    notebook = nbformat.read(path, as_version=4)
+    for number, cell in enumerate(notebook.cells):
+        cell.source = cell.source.replace("\r\n", "\n")  # as some editors of Windows write it
+        if cell.cell_type == "code":
+            _demand_marks(cell.source, f"{path.name}, cell {number}")
+    answers, questions, figures = {}, {}, {}
+    rules, given, texts, identities = {}, {}, _texts_of_variants(notebook), []
+    by_name = gives_by_name(path.parent)
+
+    def draw(name, count=COUNT, where=None, picture=None, **pools):
+        rules[name] = Rule(name, count, pools, where, picture)
+        given[name] = rules[name].parameters(variant if variant < count else 0, edition)
+        return Given(shown(texts[name], written(given[name])), given[name])
+
+    def record_check(name, answer):
+        answers[name] = answer
+
+    def record_question(name, **about):
+        if name not in answers:
+            raise author.AuthorError(
+                f"{name}: the question stands before its check"
+                + (f"; what is checked so far: {', '.join(answers)}." if answers else ".")
+            )
+        if name in questions:
+            raise author.AuthorError(f"{name}: there are two questions of this name.")
+        if name.partition("/")[0] != path.stem:
+            raise author.AuthorError(f"{name}: a question of this notebook is named '{path.stem}/...'.")
+        if only is not None and name not in only:
+            return
+        if "kind" not in about:
+            raise author.AuthorError(f"{name}: say of which kind it is: kind='expression', for example.")
+        if name not in rules:
+            if not variant:
+                questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
+        elif variant < rules[name].count:
+            about["variant"] = {
+                "variant": variant,
+                "variants": rules[name].count,
+                "text": texts[name],
+                **_said(given[name], texts[name]),
+            } | ({"edition": edition} if edition else {})
+            if by_name:
+                drawn = (rules[name].parameters(number, edition) for number in range(rules[name].count))
+                about["variant"]["names"] = names_of_variants(_said(one, texts[name]) for one in drawn)
+            if rules[name].picture and (only is None if pictures is None else pictures):
+                drawing = rules[name].picture(given[name])
+                about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
+            questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
+
+    def record_identity(identity=""):
+        identities.append(identity)
+
+    namespace = {"__name__": "__main__", "question": record_question, "draw": draw, "drawing": Drawing}
+    needed = range(len(notebook.cells)) if only is None else cells_needed(notebook, only)
+    with _replaced(coursework, "check", record_check), _replaced(coursework, "me", record_identity):
+        for number, cell in enumerate(notebook.cells):
+            if cell.cell_type != "code" or number not in needed:
+                continue
+            try:
+                value = _run(cell.source, namespace, f"{path.name}, cell {number}")
+            except author.AuthorError:
+                raise
+            except Exception as error:
+                raise author.AuthorError(f"{path.name}, cell {number}: {type(error).__name__}: {error}") from error
+            if "figure" in cell.metadata.get("tags", []):
+                figures[number] = value
+    unasked = sorted((set(answers) if not variant and only is None else set()) - set(questions))
+    if unasked:
+        raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
+    variables = checked_names(notebook)
+    if len(set(variables.values())) < len(variables):
+        raise author.AuthorError(f"{path.name}: two questions have an answer of the same name.")
+    for name, question in questions.items():
+        question.variable = variables[name]
+    if only is None and not variant:
+        _demand_hidden(path.name, notebook, variables)
+        _demand_shown(path.name, rules, given, texts, questions)
+    return Source(path.stem, notebook, questions, figures, rules, bool(identities))
+
+
+def _demand_marks(text, where):
+    """Marks that are not understood would leave a solution in what students get."""
+    open_one = ""
+    for line in text.splitlines():
+        found = MARK.fullmatch(line)
+        if not found:
+            continue
+        what, marked = found[1], found[2].rstrip()
+        if line.strip() != f"### {what} {marked}" or what != what.upper() or marked not in MARKED:
+            known = ", ".join(f"`### {what.upper()} {name}`" for name in MARKED)
+            raise author.AuthorError(f"{where}: `{line.strip()}` is no mark; there are {known}.")
+        if what == "BEGIN" and open_one:
+            raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
+        if what == "END" and marked != open_one:
+            raise author.AuthorError(f"{where}: `### END {marked}` has no `### BEGIN {marked}` before it.")
+        open_one = marked if what == "BEGIN" else ""
+    if open_one:
+        raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
+
+
+def _demand_hidden(file, notebook, variables):
+    """An answer or a question that stands outside of the marks would be given to students."""
+    owners = {variable: name for name, variable in variables.items()}
+    cells = [(number, cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
+    solved_here = {name for _, text in cells for name in answered_in(text, owners)}
+    for variable, name in owners.items():
+        if variable not in solved_here:
+            raise author.AuthorError(
+                f"{name}: no solution in {file} sets `{variable}`, so students would get the answer, or no blank. "
+                f"Write `{variable} = ...` between `### BEGIN SOLUTION` and `### END SOLUTION`."
+            )
+    for number, text in cells:
+        for node in ast.walk(ast.parse(posed(text, owners))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "question":
+                raise author.AuthorError(
+                    f"{file}, cell {number}: the question stands between `### BEGIN HIDDEN TESTS` and "
+                    "`### END HIDDEN TESTS`, or students would get it."
+                )
+
+
+def _demand_shown(file, rules, given, texts, questions):
+    """What varies belongs to a question, and what a text shows in braces is drawn."""
+    for name in rules:
+        if name not in questions:
+            raise author.AuthorError(
+                f"{name}: {file} draws what varies in it, and asks no such question; it asks {', '.join(questions)}."
+            )
+        braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", texts[name]))
+        unknown = [one for one in braces if one not in (*given[name], "picture")]
+        unshown = [one for one in given[name] if one not in braces]
+        # Braces within braces may be TeX; a parameter that is shown nowhere makes it a slip.
+        if unknown and unshown:
+            raise author.AuthorError(
+                f"{name}: its text shows {{{{{unknown[0]}}}}}, which is not drawn; drawn are {', '.join(given[name])}."
+            )
+
+
+def _texts_of_variants(notebook):
+    """The text of each question with variants, with the places of its parameters: the Markdown below what may vary."""
+    texts = {}
+    for cell, after in itertools.pairwise([*notebook.cells, None]):
+        found = drawn_in(cell.source) if cell.cell_type == "code" else None
+        if found:
+            if after is None or after.cell_type != "markdown":
+                raise author.AuthorError(f"{found[1]}: the text of the question comes next after what may vary in it.")
+            texts[found[1]] = after.source
+    return texts
+
+
+def _said(drawn, text):
+    """What is shown and given of what was drawn for a variant."""
+    return {
+        "shown": {key: shown for key, shown in written(drawn).items() if f"{{{{{key}}}}}" in text},
+        "given": {key: value for key, value in drawn.items() if _is_given(value)},
+    }
+
+
+def texts_of_questions(notebook):
+    """The text of each question as it stands in the source: the Markdown between the check before it and its own."""
+    texts, above = {}, []
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            above.append(cell.source)
+        elif cell.cell_type == "code":
+            found = checked_names(type(notebook)(cells=[cell]))
+            texts |= dict.fromkeys(found, "\n\n".join(above))
+            above = [] if found else above
+    return texts
+
+
+def _is_given(value):
+    """Whether a student's cell may need a parameter: numbers, words and lists of them, no whole sentences."""
+    return (isinstance(value, str) and len(value) <= LONGEST_WORD) or _is_plain(value) and not isinstance(value, str)
+
+
+def _is_plain(value):
+    return isinstance(value, (int, float, str)) or isinstance(value, (list, tuple)) and all(map(_is_plain, value))
+
+
+@contextlib.contextmanager
+def _replaced(module, name, value):
+    before = getattr(module, name)
+    setattr(module, name, value)
+    try:
+        yield
+    finally:
+        setattr(module, name, before)
+
+
+def _run(source, namespace, where):
+    """Run a cell and give the value of its last line, as a notebook shows it."""
+    tree = ast.parse(source, where)
+    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+    exec(compile(tree, where, "exec"), namespace)
+    if last is not None:
+        return eval(compile(ast.Expression(last.value), where, "eval"), namespace)
+    return None
+
+
+def cells_needed(notebook, names):
+    """The numbers of the code cells that some questions of a notebook need: by the names that cells bind and use.
+
+    What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than too few: which of
+    several values a name has when a function is called is not followed.
+    """
+    uses = {number: _Uses(cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"}
+    needed = {number for number, cell in uses.items() if cell.texts & set(names)}
+    while True:
+        # What a function uses it may use as late as it is called.
+        anywhere = set().union(*(uses[number].in_functions for number in needed))
+        wanted, before = set(anywhere), len(needed)
+        for number, cell in sorted(uses.items(), reverse=True):
+            if number in needed or cell.bound & wanted:
+                needed.add(number)
+                wanted |= cell.used
+        if len(needed) == before:
+            return needed
+
+
+class _Uses(ast.NodeVisitor):
+    """What a cell binds or may change, what it uses, at once or in its functions, and the texts in it."""
+
+    #: Functions that change nothing of what they are given.
+    HARMLESS = ("check", "question", "draw", "print", "display")
+
+    def __init__(self, source):
+        self.bound, self.used, self.in_functions, self.texts = set(), set(), set(), set()
+        self.depth = 0
+        self.visit(ast.parse(source))
+
+    def visit_Name(self, node):
+        if isinstance(node.ctx, ast.Load):
+            self.used.add(node.id)
+            if self.depth:
+                self.in_functions.add(node.id)
+        else:
+            self.bound.add(node.id)
+
+    def visit_Constant(self, node):
+        if isinstance(node.value, str):
+            self.texts.add(node.value)
+
+    def visit_alias(self, node):
+        self.bound.add((node.asname or node.name).partition(".")[0])
+
+    def visit_FunctionDef(self, node):
+        if hasattr(node, "name"):
+            self.bound.add(node.name)
+        self.depth += 1
+        self.generic_visit(node)
+        self.depth -= 1
+
+    visit_AsyncFunctionDef = visit_ClassDef = visit_Lambda = visit_FunctionDef
+
+    def visit_Expr(self, node):
+        if isinstance(node.value, ast.Call) and getattr(node.value.func, "id", "") not in self.HARMLESS:
+            self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+        self.generic_visit(node)
+
+    def visit_Attribute(self, node):
+        self._change(node)
+
+    def visit_Subscript(self, node):
+        self._change(node)
+
+    def _change(self, node):
+        if not isinstance(node.ctx, ast.Load):
+            self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+        self.generic_visit(node)
+
+
+def checked_names(notebook):
+    """The name of the answer of each question, from the calls of ``check``."""
+    found = {}
+    for cell in notebook.cells:
+        if cell.cell_type == "code" and "check" in cell.source:
+            for node in ast.walk(ast.parse(cell.source)):
+                if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
+                    name, answer = node.args
+                    if not isinstance(answer, ast.Name):
+                        raise author.AuthorError(f"{ast.unparse(node)}: the answer of a check is a plain name.")
+                    found[name.value] = answer.id
+    return found
+
+
+def bound(region, owners):
+    """The answers that a solution binds, in order."""
+    names = []
+    for node in ast.parse(textwrap.dedent(region)).body:
+        if isinstance(node, ast.FunctionDef):
+            names.append(node.name)
+        elif isinstance(node, ast.Assign):
+            names += [target.id for target in node.targets if isinstance(target, ast.Name)]
+    return [name for name in names if name in owners]
+
+
+def answered_in(text, owners):
+    """The answers that the solutions in a cell bind, in order."""
+    return [name for region in SOLUTION.findall(text) for name in bound(region, owners)]
+
+
+def solved(text):
+    """A cell with its solution, without the marks around it and without hidden tests."""
+    return HIDDEN.sub("", SOLUTION.sub(lambda region: region[1], in_variants(text))).rstrip()
+
+
+def posed(text, owners):
+    """The same cell as students get it: with blanks, and without hidden tests."""
+    return HIDDEN.sub("", SOLUTION.sub(lambda region: blank(region[1], owners), in_variants(text))).rstrip()
+
+
+def in_variants(text):
+    """A cell that says what may vary as students get it: it shows their variant."""
+    found = drawn_in(text)
+    return text if found is None else VARIANTS.sub("", text) + f'{found[0]} = variant("{found[1]}")\n{found[0]}'
+
+
+def blank(region, owners):
+    """What stands in place of a solution."""
+    functions = {
+        node.name: node for node in ast.parse(textwrap.dedent(region)).body if isinstance(node, ast.FunctionDef)
+    }
+    lines = []
+    for name in dict.fromkeys(bound(region, owners)):
+        if name not in functions:
+            lines.append(f"{name} = ...  # your answer\n")
+            continue
+        function = functions[name]
+        lines.append(f"def {name}({ast.unparse(function.args)}):\n")
+        if ast.get_docstring(function):
+            lines.append(f'    """{ast.get_docstring(function)}"""\n')
+        lines.append("    ...  # your code\n")
+    return "".join(lines)

@@ -1,0 +1,185 @@
+"""What a student sees after a check."""
+
+import html
+import os
+import re
+import sys
+from collections.abc import Iterable
+
+#: Each outcome with its sign and its word: the word is for those who do not see the sign or its colour.
+OUTCOMES = {
+    "correct": ("✓", "Correct", "#1a7f37"),
+    "wrong": ("✗", "Not yet", "#b54708"),
+    "invalid": ("!", "Wrong form", "#b54708"),
+    "undecided": ("?", "Undecided", "#5b5fc7"),
+    "hints": ("→", "So far", "#6b7280"),
+    "recorded": ("→", "Taken down", "#5b5fc7"),
+    "not attempted": ("…", "Not attempted", "#6b7280"),
+}
+
+
+#: Each kind of help that a student may have had, in words, from little to much.
+HELP = {
+    "mistake": "a mistake was named",
+    "hint": "a hint was shown",
+    "solution": "the worked solution was shown",
+}
+
+
+class Reply:
+    """The outcome of a check, shown as HTML in a notebook and as text elsewhere.
+
+    Attributes
+    ----------
+    question : str
+    outcome : str
+        A key of :data:`OUTCOMES`.
+    note : str
+        The mistake, or the fault of the form, in a few words; empty where there is none.
+    messages : list of str
+        Paragraphs, with ``code``, *emphasis* and $mathematics$ marked as in Markdown.
+    solution : str
+        HTML of the worked solution, once it is earned.
+    answer : str
+        What all ways of writing this answer have in common, hashed.
+    tries : int
+        How many different answers the record beside the notebook knows of; 0 where there is none.
+    tried : list of str
+        A few digits of each wrong answer that the record knows of, the newest last.
+    help : str
+        The help that was had before the answer was right, a key of :data:`HELP`; empty without any.
+    details : dict
+        What the message of the mistake needed to know.
+    sibling : str
+        The sibling of the question that earns the rest of its points; empty where there is none.
+    opened : dict
+        What else the answer opened: hints, the place of the worked solution.
+    """
+
+    def __init__(
+        self,
+        question: str,
+        outcome: str,
+        note: str = "",
+        messages: Iterable[str] = (),
+        solution: str = "",
+        opened: dict | None = None,
+    ) -> None:
+        self.question = question
+        self.outcome = outcome
+        self.note = note
+        self.messages = list(messages)
+        self.solution = solution
+        self.answer = ""
+        self.tries = 0
+        self.tried: list[str] = []
+        self.help = ""
+        self.sibling = ""
+        self.details: dict = {}
+        self.opened = opened or {}
+
+    def __repr__(self):
+        _, word, _ = OUTCOMES[self.outcome]
+        lines = [f"{word}: {self.question}", *map(plain_text, self.messages)]
+        if self.solution:
+            lines.append("The worked solution is shown where HTML can be.")
+        return "\n".join(lines)
+
+    def _repr_html_(self):
+        sign, word, colour = OUTCOMES[self.outcome]
+        name = html.escape(self.question)
+        tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
+        # What the notebook remembers of the way to this answer: the grader reads it there.
+        known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
+        known += f' data-tried="{html.escape(" ".join(self.tried))}"' if self.tried else ""
+        known += f' data-help="{self.help}"' if self.help else ""
+        # The book's pages make a button of it.
+        known += f' data-sibling="{html.escape(self.sibling)}"' if self.sibling else ""
+        formula = {} if tex_is_typeset() else {"formula": mathml}
+        paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)
+        solution = (
+            f"<details><summary>The worked solution</summary><div>{for_this_front_end(self.solution)}</div></details>"
+            if self.solution
+            else ""
+        )
+        return (
+            f'<div class="coursework-reply" role="status" data-outcome="{self.outcome}"{known} '
+            f'style="border-left:.3em solid {colour};padding:.2em .8em">'
+            f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> {word}</strong> '
+            f'<span style="opacity:.8">{name}{tries}</span></p>{paragraphs}{solution}</div>'
+        )
+
+
+# --- mathematics --------------------------------------------------------------------------------
+
+
+def tex_is_typeset():
+    """Whether whatever shows this notebook typesets TeX in HTML: VS Code, Colab and marimo do not."""
+    return not ("VSCODE_PID" in os.environ or {"google.colab", "marimo"} & set(sys.modules))
+
+
+def mathml(source, display="inline"):
+    """A formula as MathML, which every browser shows by itself; TeX in a box where there is no converter.
+
+    >>> mathml("x_1")[:40], "TeX" in mathml("x_1")
+    ('<math xmlns="http://www.w3.org/1998/Math', False)
+    """
+    try:
+        from latex2mathml.converter import convert
+
+        return convert(source, display=display)
+    except Exception:  # no converter, or one that does not know a command: a reply is never lost for that
+        return f"<code>{html.escape(source)}</code>"
+
+
+def for_this_front_end(page):
+    """The HTML of a worked solution, with its formulas in the way in which they will be seen."""
+    if tex_is_typeset():
+        return page
+    blocks = re.sub(r"\$\$([^$]+)\$\$", lambda found: mathml(html.unescape(found[1]), "block"), page)
+    return re.sub(r"\$([^$]+)\$", lambda found: mathml(html.unescape(found[1])), blocks)
+
+
+#: Code, mathematics and emphasis, each with both of its marks; what has only one is text.
+MARKED = re.compile(r"`([^`]+)`|\$([^$]+)\$|(?<![\w)])\*([^*\s][^*]*)\*(?!\w)")
+
+
+def to_html(message, formula=lambda source: f'<span class="math">${html.escape(source)}$</span>'):
+    """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed.
+
+    Parameters
+    ----------
+    message : str
+    formula : function, optional
+        The HTML of a formula, from its TeX; without it the TeX itself, for a page that typesets it.
+
+    >>> to_html('*Not* `<x>`, but *theta is odd')
+    '<em>Not</em> <code>&lt;x&gt;</code>, but *theta is odd'
+    """
+    pieces, place = [], 0
+    for found in MARKED.finditer(message):
+        code, source, stressed = found.groups()
+        pieces.append(html.escape(message[place : found.start()]))
+        if code is not None:
+            pieces.append(f"<code>{html.escape(code)}</code>")
+        elif source is not None:
+            pieces.append(formula(source))
+        else:
+            pieces.append(f"<em>{html.escape(stressed)}</em>")
+        place = found.end()
+    return "".join([*pieces, html.escape(message[place:])])
+
+
+def plain_text(message):
+    """The message for a terminal: a direction cosine matrix is written as in code, ``A_C_N``.
+
+    >>> plain_text(r'This is ${}^{N}\\mathbf{C}^{A}$: *transpose* it.')
+    'This is N_C_A: transpose it.'
+    """
+    return MARKED.sub(lambda found: found[1] or found[3] or _formula_as_text(found[2]), message)
+
+
+def _formula_as_text(source):
+    source = re.sub(r"\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?", r"\1_C_\2", source)
+    source = re.sub(r"\\hat\{(\w)\}_(\w)", r"\1_\2", source)
+    return re.sub(r"\\math\w+\{(\w+)\}", r"\1", source).replace("\\", "")

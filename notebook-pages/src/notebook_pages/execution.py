@@ -1,0 +1,106 @@
+"""Run the notebooks once, side by side, and again when their code or something that they use changes.
+
+The key of jupyter-cache is the code in the cells. A change in ``src/orientation`` would leave it, and every
+stored output, as it was; so a run is thrown away when what the notebook uses is no longer what it was run with.
+A changed sentence runs nothing.
+"""
+
+import json
+import logging
+from pathlib import Path
+
+import nbformat
+from jupyter_cache import get_cache
+from jupyter_cache.executors.basic import ExecutionWorkerLocalMProc, JupyterExecutorLocalMproc
+from jupyter_cache.executors.utils import single_nb_execution
+
+from .paths import REPOSITORY, WEBSITE, fingerprint
+from .used import fingerprint_of_used
+from .warm_kernels import WarmAsyncKernelManager
+
+#: Notebooks that are shown as they were released and run by the tests; see ``execute`` in _config.yml.
+STORED = "exercises/"
+#: Beside the cache: what each notebook used when it was run.
+NOTES = "made-with.json"
+
+
+def name_cache(app, config):
+    config.nb_execution_cache_path = str(Path(app.outdir).parent / "jupyter_cache")
+    # Pages are read again when the code that makes them changes.
+    config.website_fingerprint = fingerprint(WEBSITE, REPOSITORY / "package-lock.json")
+
+
+def throw_away_old_runs(paths, folder):
+    """Take out of the cache in ``folder`` all runs of those notebooks that use what has changed since.
+
+    Returns the paths of those notebooks.
+    """
+    notes = Path(folder, NOTES)
+    made_with = json.loads(notes.read_text("utf8")) if notes.exists() else {}
+    now = {str(path): fingerprint_of_used(nbformat.read(path, as_version=4)) for path in paths}
+    changed = {path for path, used in now.items() if made_with.get(path) != used}
+    cache = get_cache(folder)
+    for record in cache.list_cache_records():
+        if record.uri in changed:
+            cache.remove_cache(record.pk)
+    notes.parent.mkdir(parents=True, exist_ok=True)
+    notes.write_text(json.dumps(made_with | now), "utf8")  # after the runs are gone: a break leaves none that is old
+    return changed
+
+
+def pages_to_read_again(app, env, added, changed, removed):
+    """The pages whose notebooks use what has changed; Sphinx finds by itself those that have changed themselves."""
+    if env.mystnb_config.execution_mode != "cache":
+        return []
+    names = {env.doc2path(name): name for name in env.found_docs if not name.startswith(STORED)}
+    notebooks = [path for path in names if path.endswith(".ipynb")]
+    return [names[path] for path in throw_away_old_runs(notebooks, env.mystnb_config.execution_cache_path)]
+
+
+class Worker(ExecutionWorkerLocalMProc):
+    """As jupyter-cache runs a notebook, in a kernel that is there at once."""
+
+    @staticmethod
+    def execute(project_nb, data):
+        return single_nb_execution(
+            project_nb.nb,
+            cwd=str(Path(project_nb.uri).parent),
+            timeout=data.timeout,
+            allow_errors=data.allow_errors,
+            kernel_manager_class=WarmAsyncKernelManager,
+        )
+
+
+class Executor(JupyterExecutorLocalMproc):
+    _EXECUTION_WORKER = Worker
+
+    def __init__(self, cache):
+        logger = logging.getLogger(__name__)
+        logger.setLevel(logging.WARNING)  # that a process begins or ends is no news
+        super().__init__(cache, logger)
+
+
+def run_side_by_side(app, env, docnames):
+    """Fill the cache with one kernel per core before MyST-NB reads page by page."""
+    if env.mystnb_config.execution_mode != "cache":
+        return
+    cache = get_cache(env.mystnb_config.execution_cache_path)
+    records = []
+    for path in (env.doc2path(name) for name in docnames if not name.startswith(STORED)):
+        if path.endswith(".ipynb"):
+            record = cache.add_nb_to_project(path)
+            if cache.get_cached_project_nb(record.uri) is None:
+                records.append(record)
+    if len(records) > 1:
+        # A cell that fails is not cached: MyST-NB meets it again and reports it.
+        Executor(cache).run_and_cache(
+            filter_pks=[record.pk for record in records],
+            timeout=env.mystnb_config.execution_timeout,
+        )
+
+
+def setup(app):
+    app.add_config_value("website_fingerprint", "", "env", str)
+    app.connect("config-inited", name_cache)
+    app.connect("env-get-outdated", pages_to_read_again)
+    app.connect("env-before-read-docs", run_side_by_side)

@@ -1,0 +1,248 @@
+"""Which cells of the book run in the page, found out by running them as the page does.
+
+Every notebook is run once, from top to bottom, by the Python side of the page (``python/session.py``) with
+nothing but the standard library, SymPy and our own packages to import; plain Python stands in for NumPy as far as
+that goes (``python/plain_numpy.py``). A cell that then fails, or gives another result than the stored one, needs
+more; what it needs is what it failed to import, or what an earlier cell failed to import from which it takes a name.
+"""
+
+import ast
+import json
+import re
+import shutil
+import subprocess
+import symtable
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from hashlib import sha256
+from importlib.util import find_spec
+from pathlib import Path
+
+import nbformat
+
+from ..execution import STORED
+from ..moves import moves
+from ..paths import PACKAGES, REPOSITORY, fingerprint
+from ..used import fingerprint_of_used, names_imported, parse
+
+PYTHON = Path(__file__).parent / "python"
+RESULTS = REPOSITORY / "_build" / "runtime"
+#: MyST-NB's tags of cells whose code a page does not hold.
+HIDDEN = {"remove-cell", "remove-input", "remove_cell", "remove_input"}
+ALONE = """
+import json, sys
+
+sys.path.insert(0, sys.argv[1])
+import session
+
+
+class OnlyThese(dict):
+    def __contains__(self, name):
+        return name not in sys.stdlib_module_names and name not in self.allowed
+
+    def __getitem__(self, name):
+        return f"No module named {name!r}"
+
+
+messages = []
+shell = session.start(lambda text: messages.append(json.loads(text)))
+OnlyThese.allowed = {"sympy", "mpmath", *sys.argv[2:], "IPython", "session", "plain_numpy", "__main__"}
+shell.lack({} if "everything" in sys.argv else OnlyThese())
+told = []
+for number, code in enumerate(json.load(sys.stdin)):
+    outcome = json.loads(shell.run(code, f"cell {number + 1}"))
+    told.append({"outcome": outcome, "messages": messages[:]})
+    messages.clear()
+json.dump(told, sys.__stdout__)
+"""
+
+
+def write_python(folder):
+    """Write what the page's Python starts from: our files, and IPython's way of writing values as text."""
+    shutil.copytree(PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
+    (folder / "IPython" / "lib").mkdir(exist_ok=True)
+    (folder / "IPython" / "lib" / "__init__.py").touch()
+    root = find_spec("IPython").submodule_search_locations[0]
+    shutil.copyfile(Path(root, "lib", "pretty.py"), folder / "IPython" / "lib" / "pretty.py")
+
+
+def run_alone(codes, *more):
+    """What the cells of a page put out, one after another, without NumPy; or with ``"everything"``."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_python(Path(folder, "python"))
+        done = subprocess.run(
+            [sys.executable, "-c", ALONE, "python", *PACKAGES, *more],
+            cwd=folder, input=json.dumps(codes), capture_output=True, text=True, check=True,
+        )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def outputs_of_messages(messages):
+    """What a cell put out, as a list that can be compared: printed text, and the shown form of each value."""
+    outputs = []
+    for message in messages:
+        if message["type"] == "stream" and outputs and outputs[-1][0] == message["name"]:
+            outputs[-1] = (message["name"], outputs[-1][1] + message["text"])
+        elif message["type"] == "stream":
+            outputs.append((message["name"], message["text"]))
+        elif message["type"] == "clear":
+            outputs.clear()
+        else:
+            outputs.append(shown_form(message["data"]))
+    return outputs
+
+
+def stored_outputs(cell):
+    """The same for the outputs that a notebook stores."""
+    return [
+        (output.name, output.text) if output.output_type == "stream" else shown_form(output.data)
+        for output in cell.outputs
+    ]
+
+
+def shown_form(data):
+    """The form that a page shows, and its text, without what differs from one run to the next."""
+    form = next(
+        form for form in ("text/html", "image/svg+xml", "text/markdown", "text/latex", "text/plain") if form in data
+    )
+    return form, re.sub(r"0x[0-9a-f]+", "0x...", data[form])
+
+
+def alike(outputs, stored):
+    """Whether two lists of outputs are the same, but for what the last digits of numbers may move by."""
+    return [form for form, _ in outputs] == [form for form, _ in stored] and not any(
+        move.too_far for (_, now), (_, before) in zip(outputs, stored) for move in moves(before, now)
+    )
+
+
+def names_bound(code):
+    """The names that a cell gives a meaning, at its top level."""
+    symbols = symtable.symtable(code, "cell", "exec").get_symbols()
+    return {symbol.get_name() for symbol in symbols if symbol.is_assigned() or symbol.is_imported()}
+
+
+def imports_numpy(code):
+    """Whether a cell imports NumPy itself."""
+    return any(name.partition(".")[0] == "numpy" for name in names_imported(code))
+
+
+def names_taken(code):
+    """The names that a cell may take from the cells before it: all it uses, but for what it imports."""
+    tree = parse(code)
+    imported = {
+        alias.asname or alias.name.partition(".")[0]
+        for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom)) for alias in node.names
+    }  # fmt: skip
+    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - imported
+
+
+def needs_of_names(names, codes, kinds):
+    """What the cells need, of ``codes`` and ``kinds``, that gave ``names`` their last meaning."""
+    needs = set()
+    for code, kind in zip(reversed(codes), reversed(kinds)):
+        bound = names_bound(code)
+        if names & bound:
+            needs |= set(kind["needs"])
+        names = names - bound
+    return needs
+
+
+def classify(cells):
+    """For each code cell what it needs beyond SymPy, whether a run may leave it out, and its name for graders.
+
+    Also whether it asks for ``numpy``, which on a page plain Python may stand in for, and in other places does not.
+
+    A run leaves out a cell that only draws a figure, needs more for it, and gives names to other such cells
+    at most: its picture is there already. A result that differs from the stored one without such a reason is an error.
+    """
+    codes = [cell.source for cell in cells]
+    kinds = []
+    for position, (cell, told) in enumerate(zip(cells, run_alone(codes))):
+        outcome = told["outcome"]
+        # A cell that was never run has nothing to compare: what it gives here is taken for right.
+        known = cell.execution_count is not None
+        same = outcome["status"] == "ok" and (
+            not known or alike(outputs_of_messages(told["messages"]), stored_outputs(cell))
+        )
+        needs = set()
+        if not same:
+            needs = needs_of_names(names_taken(cell.source), codes[:position], kinds)
+            if outcome["status"] == "missing":
+                needs.add(outcome["package"])
+            if outcome.get("plain"):
+                needs.add("numpy")  # what plain Python makes of it is not what the book prints, to the last digit
+            if not needs and known:
+                raise RuntimeError(
+                    f"cell {position + 1} gives another result in the page than the stored one "
+                    f"(is that one old? `make notebooks`):\n"
+                    f"{cell.source}\n{outcome.get('traceback', told['messages'])}"
+                )
+        tags = cell.metadata.get("tags", [])
+        kinds.append(
+            {
+                "needs": sorted(needs), "figure": "hide-input" in tags, "shown": not HIDDEN & set(tags),
+                "code": cell.source, "name": cell.metadata.get("nbgrader", {}).get("grade_id"),
+                "numpy": bool(outcome.get("plain")) or imports_numpy(cell.source),
+            }
+        )  # fmt: skip
+    wanted = set()  # the names that the cells below take, those that are left out not counted
+    for code, kind in zip(reversed(codes), reversed(kinds)):
+        kind["skip"] = bool(kind["figure"] and kind["needs"] and not names_bound(code) & wanted)
+        if not kind["skip"]:
+            wanted = (wanted - names_bound(code)) | names_taken(code)
+    return kinds
+
+
+def kept_name(path, notebook):
+    """The name under which the kinds of a notebook's cells are kept, by all that they follow from; not by its prose."""
+    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    seen = [[cell.source, cell.outputs, cell.metadata.get("tags", []), cell.execution_count is None] for cell in cells]
+    program = fingerprint(Path(__file__), PYTHON)
+    inputs = json.dumps([program, fingerprint_of_used(notebook), seen], sort_keys=True)
+    return f"cells-{path.stem}-{sha256(inputs.encode()).hexdigest()[:12]}.json"
+
+
+def kinds_of(path):
+    """The kinds of the code cells of a notebook, found out now or kept from before."""
+    notebook = nbformat.read(path, as_version=4)
+    kept = RESULTS / path.parent.name / kept_name(path, notebook)
+    if not kept.exists():
+        try:
+            kinds = classify([cell for cell in notebook.cells if cell.cell_type == "code"])
+        except RuntimeError as error:
+            raise RuntimeError(f"{path}: {error}") from None
+        for outdated in kept.parent.glob(f"cells-{path.stem}-????????????.json"):
+            outdated.unlink()
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps(kinds), "utf8")
+    return json.loads(kept.read_text("utf8"))
+
+
+@cache
+def kinds_of_cells():
+    """The kinds of the code cells of every notebook, by the names of the pages."""
+    from ..notebooks import all_notebooks
+
+    paths = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        kinds = list(pool.map(kinds_of, paths))
+    return dict(zip([str(path.relative_to(REPOSITORY).with_suffix("")) for path in paths], kinds, strict=True))
+
+
+def on_the_page(kinds):
+    """The kinds of those cells that a page shows; each is to run, before itself, the code of the hidden ones above it.
+
+    What hidden cells need, the next cell needs; and it is not left out, since others may take names from them.
+    """
+    shown, code, needs = [], [], set()
+    for kind in kinds:
+        if not kind["shown"]:
+            code.append(kind["code"])
+            needs |= set(kind["needs"])
+            continue
+        merged = {"needs": sorted({*kind["needs"], *needs}), "skip": kind["skip"] and not code}
+        shown.append({**kind, **merged, "before": "\n".join(code)})
+        code, needs = [], set()
+    return shown

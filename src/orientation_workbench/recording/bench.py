@@ -1,0 +1,889 @@
+"""The bench: what a recording holds, one question after another, each answered with its evidence."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from orientation import dcm_from_body_fixed
+
+from .content import DEGREES, points_one_way, read_content, unit_of_field, unit_of_gravity
+from .field import fit_field
+from .judged import Judgement, Noise, in_blocks, judge
+from .motion import (
+    ASSIGNMENTS,
+    dcm_of_quaternions,
+    fit_axes,
+    fit_scale,
+    readings,
+    steps_of,
+    stretches,
+    turned,
+    written,
+)
+
+#: What a light says.
+GREEN, YELLOW, RED, UNKNOWN = "as it should be", "look", "wrong", "cannot tell"
+#: What is assumed of a gyroscope that was never still: a cheap one.
+ASSUMED = Noise(gyroscope=2e-4, bias=1e-4, force=0.01, field=0.02)
+#: Above this margin the best of 48 assignments is believed.
+BELIEVED = 1.3
+
+
+class Verdict(NamedTuple):
+    """An answer of the bench.
+
+    Attributes
+    ----------
+    about : str
+    light : str
+        ``as it should be``, ``look``, ``wrong`` or ``cannot tell``.
+    words : str
+        The answer.
+    evidence : dict
+        Numbers that it rests on, by what they are.
+    advice : str
+        What to do, or what would let it tell.
+    """
+
+    about: str
+    light: str
+    words: str
+    evidence: dict
+    advice: str = ""
+
+
+class Examined(NamedTuple):
+    """A recording, examined.
+
+    Attributes
+    ----------
+    name : str
+    verdicts : list of Verdict
+    time : array of shape ``(n,)``
+    rates, forces, field : arrays of shape ``(n, 3)`` or None
+        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity, and multiples of
+        the field's own length.
+    orientation : tuple or None
+        Times, and the file's orientations as ``B_C_N``.
+    judgements : list of Judgement
+    still : list of Stretch
+    facts : dict
+        What was found, as numbers: assignments, scale, bias, offset, shape.
+    """
+
+    name: str
+    verdicts: list
+    time: np.ndarray
+    rates: np.ndarray | None
+    forces: np.ndarray | None
+    field: np.ndarray | None
+    orientation: tuple | None
+    judgements: list
+    still: list
+    facts: dict
+
+    def light(self, about):
+        """The light of one verdict, or ``cannot tell``."""
+        return next((verdict.light for verdict in self.verdicts if verdict.about == about), UNKNOWN)
+
+    def __str__(self):
+        from .report import as_text
+
+        return as_text(self)
+
+
+def examine(source, name=None, rate=None, judged=True, progress=None):
+    """Put a recording on the bench.
+
+    Parameters
+    ----------
+    source : path, bytes, str or list of paths
+        A table of numbers in any form that :func:`.table.read_tables` takes.
+    name : str, optional
+        What to call it.
+    rate : float, optional
+        Samples per second, where the file only counts them.
+    judged : bool
+        Whether to run the filter, which takes longer than all the rest.
+    progress : callable, optional
+        Called with the share of the filter's work that is done.
+
+    Returns
+    -------
+    Examined
+
+    Raises
+    ------
+    RecordingError
+        If the file cannot be read, or holds no instrument.
+    """
+    content = read_content(source, name, rate)
+    bench = _Bench(content, name or (str(source) if not isinstance(source, (bytes, list)) else "recording"))
+    bench.clock()
+    bench.gyroscope()
+    bench.accelerometer()
+    bench.magnetometer()
+    bench.orientation()
+    if judged:
+        bench.filter(progress)
+    return bench.examined()
+
+
+class _Bench:
+    """The questions, in the order in which one needs the answers of others."""
+
+    def __init__(self, content, name):
+        self.content, self.name = content, name.splitlines()[0][:80] if "\n" in name else name
+        self.verdicts, self.facts, self.judgements, self.still = [], {}, [], []
+        groups = content.groups
+        first = next(groups[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in groups)
+        self.time = first.time
+        self.raw = {
+            kind: _at(self.time, groups[kind].time, groups[kind].values)
+            for kind in ("gyroscope", "accelerometer", "magnetometer")
+            if kind in groups
+        }
+        self.rates = self.forces = self.field = self.oriented = None
+
+    def say(self, about, light, words, evidence=None, advice=""):
+        self.verdicts.append(Verdict(about, light, words, evidence or {}, advice))
+
+    # --- what is in it --------------------------------------------------------------------------
+
+    def clock(self):
+        groups, time = self.content.groups, self.time
+        for remark in self.content.remarks:
+            self.say("rows", YELLOW, remark)
+        held = "; ".join(f"{kind}: {', '.join(group.names)}" for kind, group in groups.items())
+        unused = f". Not used: {', '.join(self.content.unused)}" if self.content.unused else ""
+        self.say("content", GREEN, held + unused)
+        for kind, group in groups.items():
+            if group.called and group.called != kind and not (group.called == "angles" and kind == "quaternion"):
+                self.say(
+                    "headings", RED, f"{', '.join(group.names)} is called {group.called} and behaves like {kind}", {}
+                )
+        if self.content.counted:
+            self.say("time", UNKNOWN, f"{self.content.clock}: the rate is not known", {}, "Name it: --rate 100.")
+            return
+        steps = np.diff(time)
+        step = float(np.median(steps))
+        evidence = {"samples": len(time), "seconds": round(float(time[-1]), 3), "rate": round(1 / step, 2)}
+        self.say(
+            "time",
+            GREEN,
+            f"{self.content.clock}; {len(time)} samples in {time[-1]:.1f} s, {1 / step:.4g} a second",
+            evidence,
+        )
+        back = int((steps <= 0).sum())
+        long = steps > 2.5 * step
+        lost = float(steps[long].sum() / time[-1]) if time[-1] > 0 else 0.0
+        evidence = {"gaps": int(long.sum()), "longest (s)": round(float(steps.max()), 4), "share lost": round(lost, 4)}
+        if back:
+            self.say("order of time", RED, f"time stands still or goes back {back} times", {"times": back})
+        light = RED if lost > 0.02 or steps.max() > max(0.25, 8 * step) else YELLOW if long.any() else GREEN
+        words = (
+            f"{int(long.sum())} gaps, the longest of {steps.max():.3g} s, {lost:.1%} of the time"
+            if long.any()
+            else "none"
+        )
+        self.say("gaps", light, words, evidence, "" if light == GREEN else "What happened in a gap, no filter knows.")
+        every = np.concatenate(list(self.raw.values()), axis=1)
+        same = float((np.diff(every, axis=0) == 0).all(axis=1).mean())
+        light = RED if same > 0.05 else YELLOW if same > 0.005 else GREEN
+        advice = (
+            "" if light == GREEN else "The instrument measures less often than the file says, or rows were filled up."
+        )
+        self.say(
+            "repeated rows", light, f"{same:.1%} of the rows repeat the one before", {"share": round(same, 4)}, advice
+        )
+
+    # --- the gyroscope --------------------------------------------------------------------------
+
+    def gyroscope(self):
+        if "gyroscope" not in self.raw:
+            self.say("gyroscope", UNKNOWN, "there is none in the file")
+            return
+        group, raw = self.content.groups["gyroscope"], self.raw["gyroscope"]
+        said = _said_unit(group.names)
+        fits, vectors = {}, {}
+        for kind in ("accelerometer", "magnetometer"):
+            if kind in self.raw:
+                vectors[kind] = self.raw[kind]
+                if kind == "magnetometer":  # a constant part belongs to the instrument, not to the Earth
+                    vectors[kind] = vectors[kind] - _centre(raw, vectors[kind], self.time)
+        units = [1.0] if self.content.counted else list(DEGREES.values())
+        grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units]))
+        if self.content.counted:
+            grid = np.geomspace(1e-6, 0.3, 60)
+        still = self._quiet(raw)
+        usual = raw[still].mean(axis=0) if still is not None else np.zeros(3)
+        for kind, vector in vectors.items():
+            rough = fit_axes(self.time, raw - usual, vector, grid, longest=12.0)
+            grid_here = rough.scale * np.geomspace(0.8, 1.25, 9)
+            choices = [fit_axes(self.time, raw - usual, vector, grid_here, seconds) for seconds in (0.3, 0.6, 1.2)]
+            fits[kind] = max(choices, key=lambda fit: fit.margin)
+        fit = max(fits.values(), key=lambda one: one.margin, default=None)
+        gravity = fits.get("accelerometer")
+        if gravity is not None and gravity.margin > 1.2:
+            fit = gravity
+        if self.content.counted:
+            self._rate(fit, said)
+            return
+        names = {scale: unit for unit, scale in DEGREES.items()}
+        if fit is not None and fit.margin > 1.12 and fit.shares.min() < 0.9:
+            unit = min(DEGREES.values(), key=lambda one: abs(np.log(fit.scale / one)))
+            ratio = fit.scale / unit
+            if not 0.4 < ratio < 2.5:
+                unit, ratio = fit.scale, 1.0
+                self.say("unit of the gyroscope", YELLOW, f"counts: one is {np.degrees(unit):.4g} °/s", {"rad/s": unit})
+            elif said and DEGREES[said] != unit:
+                self.say(
+                    "unit of the gyroscope",
+                    RED,
+                    f"its turns carry the other sensors only if it is in {names[unit]}; its heading says {said}",
+                    {"scale": round(fit.scale, 5)},
+                    f"Read it as {names[unit]}.",
+                )
+            else:
+                self.say("unit of the gyroscope", GREEN, names[unit], {"scale": round(fit.scale, 5)})
+        else:
+            fast = np.percentile(np.linalg.norm(raw, axis=1), 95)
+            unit = DEGREES[said] if said else (1.0 if fast < 40 else DEGREES["°/s"])
+            why = "by its heading" if said else f"by its size: 95 in 100 values are below {fast:.3g}"
+            self.say(
+                "unit of the gyroscope",
+                UNKNOWN,
+                f"{names[unit]}, {why}",
+                {"95 %": float(fast)},
+                "Turn it about all axes.",
+            )
+        self.unit = unit
+        self._axes(fits, raw * unit, usual * unit)
+
+    def _quiet(self, raw):
+        """Samples in which the numbers of a gyroscope vary least, whatever their unit."""
+        size = max(12, round(0.5 / max(np.median(np.diff(self.time)), 1e-6))) if not self.content.counted else 50
+        count = len(raw) // size
+        if count < 4:
+            return None
+        spread = raw[: count * size].reshape(count, size, 3).std(axis=1).mean(axis=1)
+        if spread.min() > 0.15 * np.percentile(spread, 80):
+            return None
+        best = int(spread.argmin())
+        return slice(best * size, (best + 1) * size)
+
+    def _rate(self, fit, said):
+        if fit is None or fit.margin < BELIEVED or not said:
+            self.say("rate", UNKNOWN, "the turns do not tell it", {}, "Name it: --rate 100.")
+            return
+        rate = DEGREES[said] / fit.scale
+        words = f"some {rate:.0f} samples a second, if the gyroscope is in {said} as its heading says"
+        self.say("rate", YELLOW, words, {"rate": round(float(rate), 1)}, f"Run it again with --rate {rate:.0f}.")
+        self.facts["rate"] = float(rate)
+
+    def _axes(self, fits, rates, usual):
+        """Bring the gyroscope into the axes of the accelerometer, if they differ, and find its scale and bias."""
+        reference = "accelerometer" if fits.get("accelerometer") is not None else None
+        fit = fits.get("accelerometer")
+        plain = np.eye(3)
+        if fit is not None and fit.margin > BELIEVED:
+            best = fit.best
+            right = np.allclose(best, plain)
+            left_over = {
+                "share left": round(float(fit.shares.min()), 3),
+                "next": round(float(fit.margin * fit.shares.min()), 3),
+            }
+            if right:
+                self.say("axes of the gyroscope", GREEN, "those of the accelerometer", left_over)
+            else:
+                mirrored = "; one of the two is left-handed" if np.linalg.det(best) < 0 else ""
+                self.say(
+                    "axes of the gyroscope",
+                    RED,
+                    f"along the accelerometer's axes it measures {written(best)}{mirrored}",
+                    left_over,
+                    f"Take ({written(best)}) of the gyroscope for its x, y, z.",
+                )
+            self.facts["axes of the gyroscope"] = best
+            rates, usual = rates @ best.T, best @ usual
+        elif fit is not None:
+            ways = [written(one) for one in ASSIGNMENTS[np.argsort(fit.shares)[:3]]]
+            self.say(
+                "axes of the gyroscope",
+                UNKNOWN,
+                f"several assignments fit nearly as well: {'; '.join(ways)}",
+                {"margin": round(fit.margin, 2)},
+                "Turn the instrument slowly about all three axes.",
+            )
+        self.reference, self.fits = reference, fits
+        self.rates = rates
+        self.still = stretches(self.time, rates)
+        self._scale_and_bias(usual)
+
+    def _scale_and_bias(self, usual):
+        lying = [one for one in self.still if one.still]
+        held = [one for one in self.still if not one.still]
+        seconds = sum(self.time[one.last - 1] - self.time[one.first] for one in lying)
+        told = ", ".join(f"{self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s" for one in lying[:6])
+        evidence = {
+            "stretches": len(lying),
+            "seconds": round(float(seconds), 2),
+            "deviation (°/s)": round(float(np.degrees(np.median([one.deviation for one in lying]))), 3)
+            if lying
+            else None,
+            "likeness": round(max((one.likeness for one in lying), default=0.0), 2),
+        }
+        if lying:
+            self.say("stillness", GREEN, f"it lies still from {told}: what its gyroscope says there is white", evidence)
+        elif held:
+            one = min(held, key=lambda stretch: stretch.deviation)
+            self.say(
+                "stillness",
+                YELLOW,
+                f"it is never still. From {self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s it is held: "
+                f"{np.degrees(one.deviation):.1f} °/s, each value like the one before ({one.likeness:.2f})",
+                {"deviation (°/s)": round(float(np.degrees(one.deviation)), 2), "likeness": round(one.likeness, 2)},
+                "A mean over that is motion and no bias. Lay it down for some seconds.",
+            )
+        else:
+            self.say("stillness", UNKNOWN, "it moves all the time", {}, "Lay it down for some seconds.")
+        bias, spread = None, None
+        if lying:
+            parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
+            bias, spread = np.median(parts, axis=0), parts.std(axis=0) / np.sqrt(len(parts)) * 1.25
+        poses = [one for one in self.still if one.last - one.first > 10]
+        fitted = None
+        if "accelerometer" in self.raw and len(poses) >= 3:
+            fitted = fit_scale(self.time, self.rates, self.raw["accelerometer"], poses, bias)
+        scale = 1.0
+        if fitted is not None:
+            found, uncertain, by_turns, by_turns_spread, left = fitted
+            evidence = {
+                "scale": round(found, 4),
+                "±": round(uncertain, 4),
+                "left (°)": round(np.degrees(left), 2),
+                "poses": len(poses),
+            }
+            self.facts["scale of the gyroscope"] = found
+            sure = uncertain < 0.03 and left < 0.25
+            off = abs(found - 1)
+            light = (
+                UNKNOWN
+                if not sure
+                else RED
+                if off > max(0.05, 3 * uncertain)
+                else YELLOW
+                if off > max(0.02, 3 * uncertain)
+                else GREEN
+            )
+            words = f"{found:.3f} ± {uncertain:.3f}: its turns carry gravity through {len(poses)} poses"
+            words += f" to {np.degrees(left):.1f}°"
+            advice = f"Multiply what it says by {found:.3f}." if light in (RED, YELLOW) else ""
+            self.say("scale of the gyroscope", light, words, evidence, advice)
+            if sure and off > max(0.02, 3 * uncertain):
+                scale = found
+            if bias is None and sure:
+                bias, spread = by_turns, by_turns_spread
+        else:
+            self.say(
+                "scale of the gyroscope",
+                UNKNOWN,
+                f"there are {len(poses)} poses between which gravity could be carried",
+                {},
+                "Hold it still in four poses or more, well away from each other.",
+            )
+        if bias is None:
+            self.say(
+                "bias of the gyroscope",
+                UNKNOWN,
+                "it is never still, and its turns do not tell",
+                {},
+                "Lay it down for some seconds.",
+            )
+        else:
+            most = float(np.degrees(np.abs(bias).max()))
+            sure = np.degrees(spread.max()) < 0.3
+            light = RED if most > 1 and sure else YELLOW if most > 0.3 else GREEN if sure else UNKNOWN
+            words = f"{np.degrees(bias).round(3).tolist()} ± {np.degrees(spread.max()):.2g} °/s"
+            advice = "Subtract it." if light in (RED, YELLOW) else ""
+            self.say("bias of the gyroscope", light, words, {"°/s": np.degrees(bias).round(4).tolist()}, advice)
+            self.facts["bias of the gyroscope"] = bias
+            self.rates = self.rates - bias
+        self.rates = self.rates * scale
+        if scale != 1.0:
+            self.still = stretches(self.time, self.rates)
+
+    # --- the accelerometer ----------------------------------------------------------------------
+
+    def accelerometer(self):
+        if "accelerometer" not in self.raw:
+            self.say("accelerometer", UNKNOWN, "there is none in the file")
+            return
+        raw = self.raw["accelerometer"]
+        quiet = np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
+        unit, gravity, off = unit_of_gravity(quiet)
+        self.forces = raw / gravity
+        self.say(
+            "unit of the accelerometer",
+            GREEN if unit[0] != "c" else YELLOW,
+            f"{unit}, by gravity's length",
+            {"off": round(off, 4)},
+        )
+        means = np.array([self.forces[one.first : one.last].mean(axis=0) for one in self.still])
+        ways = len(means) and np.linalg.matrix_rank(means, tol=0.5)
+        if len(means) < 4 or ways < 3:
+            self.say(
+                "accelerometer",
+                UNKNOWN,
+                f"{len(means)} poses do not tell offset from scale",
+                {},
+                "Hold it still in six poses.",
+            )
+            return
+        lengths = np.linalg.norm(means, axis=1)
+        centre, radius = _sphere(means)
+        off = float(np.linalg.norm(centre))
+        evidence = {"lengths": lengths.round(3).tolist(), "offset (g)": centre.round(3).tolist()}
+        uneven = float(np.ptp(lengths))
+        light = RED if uneven > 0.04 else YELLOW if uneven > 0.015 else GREEN
+        words = f"gravity is {lengths.min():.3f} to {lengths.max():.3f} long in {len(means)} poses"
+        if light != GREEN:
+            words += f"; an offset of {off:.3f} would explain {_explained(means, centre, radius):.0%} of that"
+        advice = "" if light == GREEN else f"Subtract {(centre * gravity).round(3).tolist()}, and look at its scales."
+        self.say("accelerometer", light, words, evidence, advice)
+        if light != GREEN and off < 0.3:
+            self.forces = self.forces - centre
+            self.facts["offset of the accelerometer"] = centre * gravity
+
+    # --- the magnetometer -----------------------------------------------------------------------
+
+    def magnetometer(self):
+        if "magnetometer" not in self.raw:
+            return
+        raw = self.raw["magnetometer"]
+        fit = fit_field(self.time, self.rates, raw) if self.rates is not None else None
+        unit, length = unit_of_field(raw)
+        if fit is None or not fit.uncertainty < 0.3:
+            self.say(
+                "unit of the magnetometer",
+                GREEN,
+                f"{unit}: its values are {length:.3g} long (median)",
+                {"length": round(length, 3)},
+            )
+            known = (
+                "" if fit is None else f": a direction would be uncertain by {np.degrees(min(fit.uncertainty, 3)):.0f}°"
+            )
+            self.say(
+                "offset of the magnetometer",
+                UNKNOWN,
+                f"the turns do not suffice for offset and shape{known}",
+                {},
+                "Turn it slowly through all directions, a figure of eight.",
+            )
+            self.field = raw / length
+            return
+        unit, length = unit_of_field(fit.strength * np.array([[1.0, 0, 0]]))
+        self.say(
+            "unit of the magnetometer", GREEN, f"{unit}: the field is {length:.3g} long", {"length": round(length, 3)}
+        )
+        corrected = (raw - fit.offset) @ fit.shape.T
+        self.field = corrected / fit.strength
+        plain = ASSIGNMENTS[np.argmax(np.einsum("kij,ij->k", ASSIGNMENTS, fit.axes))]
+        aside = np.degrees(np.arccos(np.clip((np.trace(plain.T @ fit.axes) - 1) / 2, -1, 1)))
+        reference = np.eye(3) if "accelerometer" in self.raw else self.facts.get("axes of the gyroscope", np.eye(3))
+        if np.allclose(plain, reference) or np.allclose(plain, -reference):
+            self.say(
+                "axes of the magnetometer",
+                GREEN,
+                "those of the others, or all three opposite",
+                {"aside (°)": round(float(aside), 1)},
+            )
+        else:
+            self.say(
+                "axes of the magnetometer",
+                RED,
+                f"along the axes of the others it measures {written(plain)}, or the opposite",
+                {"aside (°)": round(float(aside), 1)},
+                f"Take ({written(plain)}) of the magnetometer for its x, y, z, or the opposite.",
+            )
+        self.facts |= {
+            "axes of the magnetometer": plain,
+            "offset of the magnetometer": fit.offset,
+            "shape of the magnetometer": fit.shape,
+        }
+        hard = float(np.linalg.norm(fit.offset) / fit.strength)
+        sure = fit.uncertainty < 0.1
+        evidence = {
+            "offset": fit.offset.round(3).tolist(),
+            "share of the field": round(hard, 3),
+            "± (°)": round(float(np.degrees(fit.uncertainty)), 2),
+        }
+        light = RED if hard > 0.1 + 2 * fit.uncertainty else YELLOW if hard > 0.05 else GREEN
+        aside = np.degrees(np.arcsin(min(1, hard)))
+        words = f"{fit.offset.round(2).tolist()}, {hard:.0%} of the field: up to {aside:.0f}° of direction"
+        self.say(
+            "offset of the magnetometer",
+            light if sure or light == RED else UNKNOWN,
+            words,
+            evidence,
+            "" if light == GREEN else "Subtract it.",
+        )
+        light = RED if fit.stretch > 1.12 + 2 * fit.uncertainty else YELLOW if fit.stretch > 1.06 else GREEN
+        words = f"longest and shortest axis are as {fit.stretch:.2f} to 1"
+        self.say(
+            "shape of the magnetometer",
+            light if sure or light == RED else UNKNOWN,
+            words,
+            {"matrix": fit.shape.round(3).tolist()},
+            "" if light == GREEN else "Multiply by the matrix.",
+        )
+        lengths = np.linalg.norm(fit.fields, axis=1)
+        own = np.linalg.norm(self.field, axis=1)
+        smooth = np.array(
+            [
+                np.median(part)
+                for part in np.array_split(own, max(4, len(own) // max(10, round(1 / np.median(np.diff(self.time))))))
+            ]
+        )
+        uneven = float(np.percentile(smooth, 97) - np.percentile(smooth, 3))
+        dips = self._dips()
+        evidence = {"length varies by": round(uneven, 3), "length by run": lengths.round(2).tolist()[:12]} | (
+            {"dip varies by (°)": round(dips[1], 1), "dip (°)": round(dips[0], 1)} if dips else {}
+        )
+        light = (
+            RED
+            if uneven > 0.2 or (dips and dips[1] > 12)
+            else YELLOW
+            if uneven > 0.1 or (dips and dips[1] > 6)
+            else GREEN
+        )
+        words = f"once corrected, its length varies by {uneven:.0%}" + (
+            f", its dip by {dips[1]:.0f}° about {dips[0]:.0f}°" if dips else ""
+        )
+        self.say(
+            "field",
+            light,
+            words,
+            evidence,
+            "" if light == GREEN else "Something of iron was near for a while: leave the field out then.",
+        )
+
+    def _dips(self):
+        if self.forces is None or len(self.still) < 3:
+            return None
+        found = []
+        for one in self.still:
+            up, field = (values[one.first : one.last].mean(axis=0) for values in (self.forces, self.field))
+            found.append(
+                np.degrees(np.arcsin(np.clip(-up @ field / np.linalg.norm(up) / np.linalg.norm(field), -1, 1)))
+            )
+        return float(np.median(found)), float(np.percentile(found, 95) - np.percentile(found, 5))
+
+    # --- the orientation ------------------------------------------------------------------------
+
+    def orientation(self):
+        groups = self.content.groups
+        if self.rates is None:
+            return
+        for kind in ("quaternion", "angles"):
+            if kind not in groups:
+                continue
+            group = groups[kind]
+            if kind == "quaternion":
+                candidates = {
+                    order: dcm_of_quaternions(group.values, order) for order in ("scalar first", "scalar last")
+                }
+            else:
+                candidates = _angle_readings(group)
+            found = readings(self.time, self.rates, group.time, candidates)
+            if not found:
+                self.say(
+                    kind,
+                    UNKNOWN,
+                    "it turns too little to be compared with the gyroscope",
+                    {},
+                    "Turn it about all axes.",
+                )
+                continue
+            self._reading(kind, group, candidates, found)
+
+    def _reading(self, kind, group, candidates, found):
+        best = found[0].disagreement
+        equal = [one for one in found if one.disagreement < best * 1.02 + 0.003]
+        other = next((one for one in found if one.disagreement > best * 1.02 + 0.003), found[-1])
+        levels = {id(one): self._level(group.time, _matrices(candidates, one)) for one in equal}
+        if self.forces is not None:  # the ground has an axis up, in all programs
+            most = max(levels[id(one)][0] for one in equal)
+            equal = [one for one in equal if levels[id(one)][0] > most - 0.02]
+        upwards = [one for one in equal if levels[id(one)][1] == 2] or equal
+        reading = upwards[0]
+        level, axis = levels[id(reading)]
+        words = (
+            f"{reading.order}; "
+            + (
+                "the ground from the body, the conjugate of this book's"
+                if reading.conjugate
+                else "the body from the ground, as in this book"
+            )
+            + (
+                ""
+                if np.allclose(reading.mounting, np.eye(3))
+                else f"; its body's x, y, z are the gyroscope's {written(reading.mounting)}"
+            )
+        )
+        evidence = {
+            "disagreement": round(best, 3),
+            "next": round(other.disagreement, 3),
+            "equal readings": len(upwards),
+        }
+        if level is not None:
+            evidence["up along the ground's axes"] = f"{'xyz'[axis]}, to {np.degrees(np.arccos(min(1, level))):.1f}°"
+        self.facts[f"convention of the {kind}"] = reading
+        wrong = ""
+        if kind == "quaternion":
+            letters = [name.strip().lower().rstrip(")]").split("(")[0][-1:] for name in group.names]
+            named = "".join(letter for letter in letters if letter in "wxyz")
+            says = {"wxyz": "scalar first", "xyzw": "scalar last"}.get(named)
+            if says and says != reading.order:
+                wrong = f"its headings say {says}"
+        if best > 0.6 or other.disagreement < best * 1.2:
+            light, advice = (
+                (RED, "It does not follow the gyroscope: is it another instrument's, or late?")
+                if best > 0.6 and self.facts.get("bias of the gyroscope") is not None
+                else (UNKNOWN, "")
+            )
+        elif wrong:
+            light, advice = RED, f"Read it {reading.order}: {wrong}."
+        else:
+            light, advice = GREEN, ""
+        self.say(kind, light, words + (f". But {wrong}" if wrong else ""), evidence, advice)
+        matrices = _matrices(candidates, reading)
+        if light != UNKNOWN and self.oriented is None:
+            self.oriented = (group.time, matrices)
+        if level is not None:
+            lean = float(np.degrees(np.arccos(min(1, level))))
+            light = GREEN if lean < 3 else YELLOW
+            self.say(
+                "level",
+                light,
+                f"up leans by {lean:.1f}° from the ground's {'xyz'[axis]} axis",
+                {"°": round(lean, 2)},
+                "" if light == GREEN else "Was it tared while it was not level?",
+            )
+
+    def _level(self, time, matrices):
+        """How nearly up is along an axis of the ground, and which."""
+        if self.forces is None:
+            return None, None
+        forces = _at(time, self.time, self.forces)
+        ups = np.einsum("nji,nj->ni", matrices, forces)
+        calm = np.abs(np.linalg.norm(forces, axis=1) - 1) < 0.1
+        up = np.median(ups[calm] if calm.sum() > 10 else ups, axis=0)
+        up = up / max(np.linalg.norm(up), 1e-9)
+        return float(np.abs(up).max()), int(np.abs(up).argmax())
+
+    # --- the filter -----------------------------------------------------------------------------
+
+    def filter(self, progress):
+        if self.rates is None or self.forces is None or self.content.counted:
+            self.say("filter", UNKNOWN, "it needs a gyroscope and an accelerometer, and a clock")
+            return
+        steps = np.diff(self.time)
+        step = float(np.median(steps))
+        lying = [one for one in self.still if one.still]
+        noise = ASSUMED
+        if lying:
+
+            def spread(values):
+                parts = [values[one.first : one.last] for one in lying]
+                return float(np.sqrt(np.mean([part.var(axis=0, ddof=1).mean() for part in parts])))
+
+            field = spread(self.field) if self.field is not None else ASSUMED.field
+            noise = Noise(
+                spread(self.rates) * np.sqrt(step), ASSUMED.bias, max(spread(self.forces), 1e-3), max(field, 1e-3)
+            )
+        # While it moves, pushes are taken for gravity, and last for many samples: each counts for less.
+        push = np.linalg.norm(self.forces, axis=1) - 1
+        moving = np.ones(len(push), dtype=bool)
+        for one in lying:
+            moving[one.first : one.last] = False
+        alike = np.corrcoef(push[1:], push[:-1])[0, 1] if push.std() > 0 else 0.0
+        lasting = np.sqrt((1 + min(max(alike, 0.0), 0.999)) / (1 - min(max(alike, 0.0), 0.999)))
+        usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
+        doubt = np.where(moving, np.hypot(usual, push) * lasting, 0.0)
+        field = self.field
+        trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
+        if field is not None and {"field"} & trouble:
+            field = None
+        for first, last in _parts_to_judge(self.time, self.rates):
+            part = slice(first, last)
+            means = (self.rates[part] + np.concatenate([self.rates[first : first + 1], self.rates[part][:-1]])) / 2
+            vectors = [self.forces[part]] if field is None else [self.forces[part], field[part]]
+            time, rates, found = in_blocks(self.time[part], self.rates[part], vectors)
+            rates = means if len(time) == len(means) else rates
+            doubts = np.interp(time, self.time[part], doubt[part])
+            size = max(1, round(len(self.time[part]) / len(time)))
+            at_best = noise._replace(force=noise.force / np.sqrt(size), field=noise.field / np.sqrt(size))
+            self.judgements.append(
+                judge(
+                    time,
+                    rates,
+                    found[0],
+                    None if field is None else found[1],
+                    at_best,
+                    doubts / np.sqrt(size),
+                    progress,
+                )
+            )
+        where = ", ".join(f"{one.first:.0f} to {one.last:.0f} s" for one in self.judgements)
+        claimed = float(np.sqrt(np.mean([one.claimed**2 for one in self.judgements])))
+        found = float(np.sqrt(np.mean([one.found**2 for one in self.judgements])))
+        ratios = {"tilt": found / max(claimed, 1e-6)}
+        words = (
+            f"from {where}: it claims its tilt to {claimed:.2f}°, forwards and backwards differ as if by {found:.2f}°"
+        )
+        if self.judgements[0].heading:
+            heading = np.sqrt(np.mean([np.square(one.heading) for one in self.judgements], axis=0))
+            ratios["heading"] = heading[1] / max(heading[0], 1e-6)
+            words += f"; its heading to {heading[0]:.2f}°, and {heading[1]:.2f}°"
+        else:
+            words += "; of the heading it can say nothing, for gravity is the same whichever way one faces"
+        squares = {
+            name: round(float(np.mean([one.squares[name] for one in self.judgements])), 2)
+            for name in self.judgements[0].squares
+        }
+        alike = {
+            name: round(float(np.mean([one.likeness[name] for one in self.judgements])), 2)
+            for name in self.judgements[0].likeness
+        }
+        worst = max(ratios.values())
+        high = max(squares.values())
+        light = (
+            RED if worst > 4 or high > 5 else YELLOW if worst > 2 or high > 2 or max(alike.values()) > 0.5 else GREEN
+        )
+        advice = ""
+        if light == RED:
+            advice = f"It is too sure of itself by {max(worst, np.sqrt(high)):.0f} times: "
+            advice += "tell it of larger deviations, and use fewer samples as evidence."
+        elif light == YELLOW:
+            advice = "Successive surprises are alike: what the sensors do wrong lasts for more than one sample."
+        evidence = {
+            "claimed (°)": round(claimed, 3),
+            "found (°)": round(found, 3),
+            "innovations": squares,
+            "likeness": alike,
+            "held out (°)": self.judgements[0].held_out,
+        }
+        self.say("filter", light, words, evidence, advice)
+
+    def examined(self):
+        return Examined(
+            self.name,
+            self.verdicts,
+            self.time,
+            self.rates,
+            self.forces,
+            self.field,
+            self.oriented,
+            self.judgements,
+            self.still,
+            self.facts,
+        )
+
+
+def _at(time, source, values):
+    """Values at other times, between samples along a straight line."""
+    if len(source) == len(time) and np.allclose(source, time, atol=1e-9):
+        return values
+    return np.stack([np.interp(time, source, column) for column in values.T], axis=-1)
+
+
+def _said_unit(names):
+    text = " ".join(names).lower()
+    if "rad" in text:
+        return "mrad/s" if "mrad" in text else "rad/s"
+    if "deg" in text or "°" in text or "dps" in text:
+        return "m°/s" if "mdps" in text or "mdeg" in text else "°/s"
+    return ""
+
+
+def _centre(rates, field, time):
+    """A first idea of a magnetometer's offset: the middle of the sphere nearest to its values."""
+    del rates, time
+    if not points_one_way(field - np.median(field, axis=0)) and np.linalg.matrix_rank(field - field.mean(axis=0)) < 3:
+        return np.zeros(3)
+    centre, radius = _sphere(field)
+    spread = np.linalg.norm(field - centre, axis=1)
+    ways = np.linalg.eigvalsh(np.cov(((field - centre) / spread[:, None]).T))
+    # Where the values cover a small part of the sphere, its middle is anybody's guess.
+    return centre if ways[0] > 0.03 and spread.std() < 0.3 * radius else np.zeros(3)
+
+
+def _sphere(points):
+    """Middle and radius of the sphere nearest to points."""
+    rows = np.concatenate([2 * points, np.ones((len(points), 1))], axis=1)
+    solution, *_ = np.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)
+    return solution[:3], float(np.sqrt(max(solution[3] + (solution[:3] ** 2).sum(), 0.0)))
+
+
+def _explained(points, centre, radius):
+    before = np.linalg.norm(points, axis=1).std()
+    after = np.linalg.norm(points - centre, axis=1).std()
+    del radius
+    return max(0.0, 1 - after / max(before, 1e-12))
+
+
+def _matrices(candidates, reading):
+    """``B_C_N``, the body taken along the gyroscope's axes."""
+    dcms = candidates[reading.order]
+    dcms = dcms.swapaxes(-1, -2) if reading.conjugate else dcms
+    return reading.mounting.T @ dcms
+
+
+def _angle_readings(group):
+    """Three angles as orientations: which is which, about which axes, in degrees or radians."""
+    degrees = np.abs(group.values).max() > 6.5
+    values = np.radians(group.values) if degrees else group.values
+    order = _by_name(group.names)
+    found = {}
+    unit = "degrees" if degrees else "radians"
+    for sequence in ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx"):
+        for places in [order] if order else [(2, 1, 0), (0, 1, 2), (1, 0, 2), (0, 2, 1), (1, 2, 0), (2, 0, 1)]:
+            for signs in ((1, 1, 1), (1, -1, 1), (-1, 1, 1), (1, 1, -1)):
+                called = ", ".join(
+                    ("-" if sign < 0 else "") + group.names[place] for sign, place in zip(signs, places, strict=True)
+                )
+                found[f"body fixed {sequence} ({called}), {unit}"] = dcm_from_body_fixed(
+                    values[:, places] * signs, sequence
+                )
+    return found
+
+
+def _by_name(names):
+    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their headings."""
+    text = [name.lower() for name in names]
+    for words in (
+        ("yaw", "pitch", "roll"),
+        ("heading", "pitch", "roll"),
+        ("azimuth", "pitch", "roll"),
+        ("alpha", "beta", "gamma"),
+        ("psi", "theta", "phi"),
+    ):
+        places = [next((k for k, name in enumerate(text) if word in name), None) for word in words]
+        if None not in places and len(set(places)) == 3:
+            return tuple(places)
+    return None
+
+
+def _parts_to_judge(time, rates, longest=60.0, count=3):
+    """Where to judge a filter: all of a short recording, or its liveliest, calmest and middle parts."""
+    if time[-1] - time[0] <= longest * 1.5:
+        return [(0, len(time))]
+    size = int(longest / 2 / np.median(np.diff(time)))
+    starts = np.arange(0, len(time) - size, size)
+    lively = np.array([np.linalg.norm(rates[start : start + size], axis=1).mean() for start in starts])
+    chosen = np.argsort(lively)[[0, len(starts) // 2, -1]][:count]
+    return [(int(starts[k]), int(starts[k]) + size) for k in sorted(set(chosen.tolist()))]
+
+
+__all__ = ["Examined", "Judgement", "Verdict", "examine", "steps_of", "turned"]

@@ -1,0 +1,355 @@
+"""What the columns of a recording are: by how they behave, with their headings heard as witnesses only."""
+
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from .table import RecordingError, read_tables
+
+#: Of what a heading may say, the sign that it speaks of a sensor.
+HEADINGS = {
+    "quaternion": r"quat|^q[0-3wxyz]?$|orientation|attitude|rotation.?vector|\bq\b",
+    "angles": r"roll|pitch|yaw|euler|heading|azimuth|^alpha|^beta|^gamma|\bphi\b|\btheta\b|\bpsi\b",
+    "gravity": r"grav",
+    "linear acceleration": r"^lin|user|without.?g",
+    "magnetometer": r"mag|field|compass|^m$|^b$",
+    "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w$|^g$|^wib",
+    "accelerometer": r"acc|force|^a$|^fib|^f$",
+}
+TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
+UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
+#: Lengths of what points one way only, in the units that are in use: standard gravity, and the Earth's field.
+GRAVITY = {"g": 1.0, "m/s²": 9.80665, "mg": 1000.0, "cm/s²": 980.665}
+FIELD = {
+    "µT": (20, 70),
+    "gauss": (0.2, 0.7),
+    "mG": (200, 700),
+    "nT": (20e3, 70e3),
+    "multiples of its length": (0.7, 1.5),
+}
+DEGREES = {"rad/s": 1.0, "°/s": np.pi / 180, "mrad/s": 1e-3, "m°/s": np.pi / 180e3}
+
+
+class Group(NamedTuple):
+    """Columns that belong together: three of a vector or of angles, four of a quaternion.
+
+    Attributes
+    ----------
+    kind : str
+        What it is taken for.
+    called : str
+        What the headings say that it is, or an empty string.
+    names : list of str
+        The headings.
+    time : array of shape ``(n,)``
+    values : array of shape ``(n, 3)`` or ``(n, 4)``
+    """
+
+    kind: str
+    called: str
+    names: list
+    time: np.ndarray
+    values: np.ndarray
+
+
+class Content(NamedTuple):
+    """What a recording holds.
+
+    Attributes
+    ----------
+    groups : dict
+        A :class:`Group` by its kind: gyroscope, accelerometer, magnetometer, quaternion, angles.
+    clock : str
+        The heading of the time that is used, and its unit; or that there is none.
+    counted : bool
+        Whether time is only counted: the rate is not known.
+    remarks : list of str
+    unused : list of str
+        Headings of columns that nothing was made of.
+    """
+
+    groups: dict
+    clock: str
+    counted: bool
+    remarks: list
+    unused: list
+
+
+def read_content(source, name=None, rate=None):
+    """Read a recording and find out what its columns are.
+
+    Parameters
+    ----------
+    source : path, bytes or str
+        As :func:`.table.read_tables` takes it; or a list of paths, whose tables share one clock.
+    name : str, optional
+    rate : float, optional
+        Samples per second, where the file only counts them.
+
+    Returns
+    -------
+    Content
+
+    Raises
+    ------
+    RecordingError
+        If the file cannot be read, or holds no instrument.
+    """
+    if isinstance(source, (list, tuple)):
+        tables = [table for one in source for table in read_tables(one)]
+    else:
+        tables = read_tables(source, name)
+    groups, unused, remarks, clocks = [], [], [], []
+    for table in tables:
+        remarks += [f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks]
+        column, time, clock, counted = _time(table)
+        clocks.append((clock, counted))
+        found, left = _groups(table, column, time)
+        groups += found
+        unused += left
+    chosen = _roles(groups)
+    alone = set(chosen) == {"gyroscope"} and not chosen["gyroscope"].called
+    if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
+        raise RecordingError(
+            "no instrument is in this file: three columns that belong together and behave like a gyroscope, an "
+            f"accelerometer or a magnetometer were sought among {', '.join(c for t in tables for c in t.columns)}"[:400]
+        )
+    used = {tuple(group.names) for group in chosen.values()}
+    unused += [", ".join(group.names) for group in groups if tuple(group.names) not in used]
+    kinds = {kind: group._replace(kind=kind) for kind, group in chosen.items()}
+    first = next(kinds[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in kinds)
+    clock, counted = next(
+        clock for table, clock in zip(tables, clocks, strict=True) if set(first.names) <= set(table.columns)
+    )
+    if counted:  # the samples of the first instrument are the clock, one by one
+        ticks = first.time
+        kinds = {
+            kind: group._replace(time=np.interp(group.time, ticks, np.arange(len(ticks))) / (rate or 1.0))
+            for kind, group in kinds.items()
+        }
+    start = min(group.time[0] for group in kinds.values())
+    kinds = {kind: group._replace(time=group.time - start) for kind, group in kinds.items()}
+    return Content(kinds, clock, counted and not rate, remarks, unused)
+
+
+def _unit(heading):
+    """What stands in brackets in a heading, or behind its last blank."""
+    found = re.search(r"[(\[]([^)\]]*)[)\]]", heading)
+    return (found[1] if found else heading.rpartition("_")[2]).strip().lower()
+
+
+def _time(table):
+    """The column of the time, the time in seconds, in what words, and whether it is only counted."""
+    candidates = []
+    for k, column in enumerate(table.columns):
+        values = table.values[:, k]
+        if np.isnan(values).any() or len(values) < 3:
+            continue
+        steps = np.diff(values)
+        middle = np.median(steps)
+        if middle > 0 and np.mean(steps >= 0) > 0.97:
+            even = np.mean(np.abs(steps - middle) < 0.5 * middle)
+            called = bool(re.search(TIME, column.lower()))
+            if even > 0.6 or called:
+                precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
+                candidates.append((called + precise + 0.5 * even - 0.01 * k, k))
+    if not candidates:
+        return None, np.arange(len(table.values)), "there is no column of time", True
+    k = max(candidates)[1]
+    column, values = table.columns[k], table.values[:, k]
+    fine = [c for c, other in enumerate(table.columns) if re.search(r"nsec|nano", other.lower()) and c != k]
+    if fine and re.search(r"sec", column.lower()) and table.values[:, fine[0]].max() < 1.0001e9:
+        values = values + 1e-9 * table.values[:, fine[0]]
+        return k, values, f"{column} with {table.columns[fine[0]]}, in s", False
+    step = np.median(np.diff(values)[np.diff(values) > 0])
+    if re.search(r"counter|packet|index|sample|frame", column.lower()) or (step == 1 and _unit(column) != "ms"):
+        return k, values, f"{column}, which only counts", True
+    named = UNITS_OF_TIME.get(_unit(column))
+    by_size = next((scale for scale in (1.0, 1e-3, 1e-6, 1e-9) if 2e-4 < step * scale <= 0.5), None)
+    scale = named if named and 1e-5 < step * named < 5 else by_size
+    if scale is None:
+        raise RecordingError(f"{table.name}: column {column} looks like a time, but its steps of {step:g} fit no unit")
+    words = f"{column}, in {next(unit for unit, size in UNITS_OF_TIME.items() if size == scale)}"
+    if named and named != scale:
+        words += f" (its heading says {_unit(column)})"
+    return k, values * scale, words, False
+
+
+def _parts(heading):
+    """A heading without its unit, parted into what it is about and the letter of its axis."""
+    heading = re.sub(r"^field\.", "", heading)  # before every heading of a robot's log
+    text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
+    text = re.sub(r"(?<=[a-z])(?=\[)|[\[\]|:. _-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)).strip()
+    words = text.split()
+    if not words:
+        return "", ""
+    for place in (-1, 0):
+        if re.fullmatch(r"[wxyz]", words[place]):
+            rest = words[:-1] if place else words[1:]
+            return " ".join(rest), words[place]
+    if re.fullmatch(r"\d", words[-1]):
+        return " ".join(words[:-1]), words[-1]
+    if re.fullmatch(r"[wxyz] (?:element|axis|value)", text):
+        return "", text[0]
+    found = re.fullmatch(r"(.*[a-z0-9])([wxyz]|(?<=q)[0-3])", words[-1])
+    if found:
+        return " ".join([*words[:-1], found[1]]), found[2]
+    return text, ""
+
+
+def _called(text):
+    return next((kind for kind, pattern in HEADINGS.items() if re.search(pattern, text)), "")
+
+
+def _groups(table, time_column, time):
+    """Columns that belong together, and the headings of those that are left."""
+    groups, taken = [], {time_column}
+    parts = [_parts(column) for column in table.columns]
+    usable = [k for k in range(len(table.columns)) if k != time_column and np.isfinite(table.values[:, k]).sum() > 8]
+
+    def add(kind, columns, called):
+        rows = np.isfinite(table.values[:, columns]).all(axis=1)
+        if rows.sum() > 8:
+            names = [table.columns[k] for k in columns]
+            groups.append(Group(kind, called, names, time[rows], table.values[np.ix_(rows, columns)]))
+            taken.update(columns)
+
+    stems = {}
+    for k in usable:
+        stem, axis = parts[k]
+        if axis:
+            stems.setdefault(stem, []).append((axis, k))
+    for stem, found in stems.items():
+        axes = {axis: k for axis, k in found}
+        called = _called(stem) or _called(table.name.lower())
+        columns = [k for _, k in found]
+        if len(found) == 4 and _is_unit(table.values[:, columns]):
+            add("quaternion", columns, "quaternion")
+        elif {"x", "y", "z"} <= set(axes) and len(found) in (3, 4):
+            add("vector", [axes[axis] for axis in "xyz"], called)
+        elif len(found) == 3 and len({axis for axis, _ in found}) == 3:
+            add("vector", columns, called)
+    angles = [k for k in usable if k not in taken and _called(table.columns[k].lower()) == "angles"]
+    if len(angles) >= 3:
+        add("angles", angles[:3], "angles")
+    rest = [k for k in usable if k not in taken]
+    for k in list(rest):
+        four = [k, k + 1, k + 2, k + 3]
+        if set(four) <= set(rest) and not set(four) & taken and _is_unit(table.values[:, four]):
+            add("quaternion", four, "")
+    runs = []
+    for k in usable:
+        if k not in taken and np.nanstd(table.values[:, k]) > 0:
+            if runs and runs[-1][-1] == k - 1:
+                runs[-1].append(k)
+            else:
+                runs.append([k])
+    for run in runs:
+        spare = len(run) % 3
+        sizes = np.log(np.nanstd(table.values[:, run], axis=0) + np.abs(np.nanmedian(table.values[:, run], axis=0)))
+
+        def unlike(first):
+            return sum(np.std(sizes[k : k + 3]) for k in range(first, len(run) - spare + first, 3))
+
+        first = min(range(spare + 1), key=unlike)
+        for k in range(first, len(run) - spare + first, 3):
+            add("vector", run[k : k + 3], _called(" ".join(table.columns[c].lower() for c in run[k : k + 3])))
+    return groups, [table.columns[k] for k in range(len(table.columns)) if k not in taken]
+
+
+def _is_unit(values):
+    values = values[np.isfinite(values).all(axis=1)]
+    squares = (values**2).sum(axis=1)
+    return len(values) > 8 and abs(np.median(squares) - 1) < 0.02 and np.mean(np.abs(squares - 1) < 0.05) > 0.98
+
+
+def points_one_way(values):
+    """Whether vectors have nearly one length, as gravity and the Earth's field have, and a gyroscope's have not."""
+    low, middle, high = np.percentile(np.linalg.norm(values, axis=1), (10, 50, 95))
+    return middle > 0 and low / middle > 0.6 and high / middle < 2.2
+
+
+def _roughness(values):
+    """How much of what a vector does it does from one sample to the next."""
+    return np.median(np.linalg.norm(np.diff(values, 2, axis=0), axis=1)) / np.median(np.linalg.norm(values, axis=1))
+
+
+def _roles(groups):
+    """The group that plays each part: by behaviour where that decides, by its heading where it does not."""
+    chosen = {}
+    quaternions = [group for group in groups if group.kind == "quaternion"]
+    angles = [group for group in groups if group.kind == "angles"]
+    vectors = [group for group in groups if group.kind == "vector" and np.ptp(group.values, axis=0).max() > 0]
+    # What some call linear holds gravity nevertheless: its length tells.
+    vectors = [
+        group._replace(called="accelerometer")
+        if group.called == "linear acceleration" and points_one_way(group.values)
+        else group
+        for group in vectors
+        if group.called not in ("gravity", "quaternion")
+    ]
+    vectors = [group for group in vectors if group.called != "linear acceleration"]
+    for group in list(vectors):
+        if group.called == "angles":
+            angles.append(group)
+            vectors.remove(group)
+    steady = [group for group in vectors if points_one_way(group.values)]
+    changing = [group for group in vectors if not any(group is one for one in steady)]
+    if not changing and len(steady) > 1:  # of an instrument that does nothing but lie, only the headings can tell
+        changing = [group for group in steady if group.called == "gyroscope"][:1]
+        steady = [group for group in steady if not any(group is one for one in changing)]
+
+    def length(group):
+        return np.median(np.linalg.norm(group.values, axis=1))
+
+    def as_gravity(group):
+        off = min(abs(np.log(length(group) / one)) for one in GRAVITY.values())
+        alone = not any(low < length(group) < high for low, high in list(FIELD.values())[:4])
+        return (group.called == "accelerometer") * 2 - (group.called == "magnetometer") * 2 + alone * (off < 0.06)
+
+    if steady:
+        best = max(steady, key=lambda group: (as_gravity(group), _roughness(group.values)))
+        others = [group for group in steady if group is not best]
+        if as_gravity(best) > 0 or len(steady) > 1 or best.called == "accelerometer":
+            chosen["accelerometer"] = best
+        else:
+            chosen["magnetometer"] = best
+        field = [group for group in others if group.called in ("magnetometer", "")]
+        if field:
+            chosen["magnetometer"] = max(field, key=lambda group: group.called == "magnetometer")
+    if "accelerometer" not in chosen:
+        shaken = [group for group in changing if group.called == "accelerometer"]
+        if shaken:
+            chosen["accelerometer"] = shaken[0]
+            changing = [group for group in changing if group is not shaken[0]]
+    if "magnetometer" not in chosen:
+        disturbed = [group for group in changing if group.called == "magnetometer"]
+        if disturbed:
+            chosen["magnetometer"] = disturbed[0]
+            changing = [group for group in changing if group is not disturbed[0]]
+    if changing:
+        chosen["gyroscope"] = max(changing, key=lambda group: (group.called == "gyroscope", group.called == ""))
+    if quaternions:
+        chosen["quaternion"] = quaternions[0]
+    if angles:
+        chosen["angles"] = angles[0]
+    return chosen
+
+
+def unit_of_gravity(values):
+    """The unit in which vectors have gravity's length, how many of it make one, and by how much it is off."""
+    middle = float(np.median(np.linalg.norm(values, axis=1)))
+    unit = min(GRAVITY, key=lambda one: abs(np.log(middle / GRAVITY[one])))
+    if abs(np.log(middle / GRAVITY[unit])) < 0.2:
+        return unit, GRAVITY[unit], middle / GRAVITY[unit] - 1
+    return f"counts, {middle:.4g} for gravity", middle, 0.0
+
+
+def unit_of_field(values):
+    """The unit in which vectors have the length of the Earth's field, and their length in it."""
+    middle = float(np.median(np.linalg.norm(values, axis=1)))
+    for unit, (low, high) in FIELD.items():
+        if low <= middle <= high:
+            return unit, middle
+    return f"a unit of its own, {middle:.4g} for the field", middle

@@ -1,0 +1,420 @@
+"""What a gyroscope, and vectors that stay where they are while the instrument turns, say of each other."""
+
+from itertools import permutations, product
+from typing import NamedTuple
+
+import numpy as np
+
+#: The 48 matrices that take axes for each other and change signs; the proper ones, which turn, first.
+ASSIGNMENTS = np.array(
+    [
+        np.diag(signs) @ np.eye(3)[list(order)]
+        for order in permutations(range(3))
+        for signs in product((1, -1), repeat=3)
+    ]
+)
+ASSIGNMENTS = ASSIGNMENTS[np.argsort(-np.linalg.det(ASSIGNMENTS), kind="stable")].round()
+PROPER = ASSIGNMENTS[:24]
+#: Where the opposite of each proper one stands.
+OPPOSITE = np.array([24 + int(np.abs(ASSIGNMENTS[24:] + one).sum(axis=(1, 2)).argmin()) for one in PROPER])
+
+
+def written(assignment, letters="xyz"):
+    """An assignment in words: what the new x, y and z are.
+
+    >>> written(np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]))
+    'y, -x, z'
+    """
+    return ", ".join(
+        ("-" if row.sum() < 0 else "") + letters[int(np.abs(row).argmax())] for row in np.asarray(assignment)
+    )
+
+
+def turned(rates, steps):
+    """Direction cosine matrices of each moment from the first one, by a gyroscope.
+
+    Parameters
+    ----------
+    rates : array of shape ``(..., n, 3)``
+        Radians per second along the body; each holds for the step before it.
+    steps : array of shape ``(n,)``
+        Seconds before each sample; the first is not used.
+
+    Returns
+    -------
+    array of shape ``(..., n, 3, 3)``
+        The body at each moment from the body at the first, ``B_k_C_B_0``.
+    """
+    vectors = (rates[..., 1:, :] + rates[..., :-1, :]) / 2 * steps[1:, None]
+    small = from_rotation_vectors(np.concatenate([np.zeros_like(vectors[..., :1, :]), vectors], axis=-2))
+    reach = 1
+    while reach < small.shape[-3]:  # products of 1, 2, 4 ... neighbours
+        small = np.concatenate(
+            [small[..., :reach, :, :], small[..., reach:, :, :] @ small[..., :-reach, :, :]], axis=-3
+        )
+        reach *= 2
+    return small
+
+
+def from_rotation_vectors(vectors):
+    """``exp(-[r])`` of many rotation vectors, shape ``(..., 3)``, fast and for small ones too."""
+    angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    zero = np.zeros_like(x)
+    cross = np.stack([zero, z, -y, -z, zero, x, y, -x, zero], axis=-1).reshape(*x.shape, 3, 3)
+    return np.eye(3) + np.sinc(angle / np.pi) * cross + np.sinc(angle / 2 / np.pi) ** 2 / 2 * cross @ cross
+
+
+def to_rotation_vectors(dcms):
+    """Rotation vectors of many direction cosine matrices, for turns of less than half a turn."""
+    axis = np.stack(
+        [dcms[..., 1, 2] - dcms[..., 2, 1], dcms[..., 2, 0] - dcms[..., 0, 2], dcms[..., 0, 1] - dcms[..., 1, 0]],
+        axis=-1,
+    )
+    sine = np.linalg.norm(axis, axis=-1) / 2
+    angle = np.arctan2(sine, (np.trace(dcms, axis1=-2, axis2=-1) - 1) / 2)
+    return axis / 2 * (angle / np.where(sine > 1e-12, sine, 1.0) + (sine <= 1e-12))[..., None]
+
+
+def steps_of(time):
+    """Seconds before each sample."""
+    return np.diff(time, prepend=time[0])
+
+
+# --- stillness --------------------------------------------------------------------------------------
+
+
+class Stretch(NamedTuple):
+    """A stretch of time in which an instrument hardly moves.
+
+    Attributes
+    ----------
+    first, last : int
+        Samples, the last one not within.
+    still : bool
+        Whether what the gyroscope says is white: else something alive holds it.
+    deviation : float
+        Of the angular velocity, root mean square over the axes, radians per second.
+    likeness : float
+        Root mean square of the correlations of neighbours, one to five samples apart, less what chance gives.
+    """
+
+    first: int
+    last: int
+    still: bool
+    deviation: float
+    likeness: float
+
+
+#: Radians per second: a hand trembles more than that, and an instrument that is held still by it moves less than that.
+TREMBLE, QUIET = np.radians(0.15), np.radians(4.0)
+
+
+def likeness(rates, lags=5):
+    """Root mean square correlation of neighbours, less what white noise gives by chance."""
+    count = len(rates)
+    rates = rates - rates.mean(axis=0)
+    power = (rates**2).sum(axis=0)
+    if (power == 0).any():
+        return 0.0
+    squares = [((rates[lag:] * rates[:-lag]).sum(axis=0) / power) ** 2 for lag in range(1, lags + 1)]
+    return float(np.sqrt(max(0.0, np.mean(squares) - 1 / count)))
+
+
+def stretches(time, rates, seconds=0.5):
+    """Find where an instrument hardly moves, and whether it lies or is held.
+
+    Parameters
+    ----------
+    time : array of shape ``(n,)``
+    rates : array of shape ``(n, 3)``
+        Radians per second.
+
+    Returns
+    -------
+    list of Stretch
+    """
+    step = np.median(np.diff(time))
+    size = max(12, round(seconds / step))
+    count = len(time) // size
+    if count < 1:
+        return []
+    blocks = rates[: count * size].reshape(count, size, 3)
+    spread = np.sqrt(blocks.var(axis=1, ddof=1).mean(axis=1))
+    level = np.linalg.norm(blocks.mean(axis=1), axis=1)
+    calm = spread < min(QUIET, max(6 * np.percentile(spread, 5), np.radians(0.3)))
+    if not calm.any():
+        return []
+    usual = np.median(blocks.mean(axis=1)[calm], axis=0)
+    calm &= np.linalg.norm(blocks.mean(axis=1) - usual, axis=1) < np.maximum(3 * spread, np.radians(1.0))
+    found, first = [], None
+    for k in range(count + 1):
+        inside = k < count and calm[k]
+        if inside and first is None:
+            first = k
+        elif inside and spread[k] > 2.5 * spread[first:k].min():
+            found.append((first, k))
+            first = k
+        elif not inside and first is not None:
+            found.append((first, k))
+            first = None
+    del level
+    result = []
+    for first, last in found:
+        part = rates[first * size : last * size]
+        deviation = float(np.sqrt(part.var(axis=0, ddof=1).mean()))
+        alike = likeness(part)
+        result.append(Stretch(first * size, last * size, bool(alike < 0.2 or deviation < TREMBLE), deviation, alike))
+    return result
+
+
+# --- axes, signs, unit and scale of a gyroscope -----------------------------------------------------
+
+
+class Fit(NamedTuple):
+    """How well each assignment of axes explains what was measured.
+
+    Attributes
+    ----------
+    shares : array of shape ``(48,)``
+        What is left of the changes of a vector, as a share of them, by the assignments of ``ASSIGNMENTS``.
+    scale : float
+        By which the gyroscope's numbers are multiplied in the best one.
+    """
+
+    shares: np.ndarray
+    scale: float
+
+    @property
+    def best(self):
+        """The assignment that leaves least."""
+        return ASSIGNMENTS[self.shares.argmin()]
+
+    @property
+    def margin(self):
+        """How many times as much the next one leaves."""
+        first, second = np.sort(self.shares)[:2]
+        return float(second / max(first, 1e-9))
+
+
+def pieces(time, rates, longest=40.0, seconds=0.5):
+    """Samples, cut into runs of blocks, in which there is most turning: a slice for each run, and the block's size."""
+    step = np.median(np.diff(time))
+    size = max(2, round(seconds / step))
+    run = 8 * size
+    starts = np.arange(0, max(1, len(time) - run + 1), run)
+    turning = [np.linalg.norm(rates[start : start + run], axis=1).sum() for start in starts]
+    chosen = starts[np.argsort(turning)[::-1][: max(2, round(longest / step / run))]]
+    return [slice(start, start + run) for start in np.sort(chosen)], size
+
+
+def fit_axes(time, rates, vectors, scales, seconds=0.5, longest=40.0):
+    """Try all 48 assignments of a gyroscope's axes to those of a vector that stays where it is.
+
+    While the instrument turns, a vector that stays (gravity, the Earth's field) turns backwards in it. Carried back by
+    the gyroscope, its means over short blocks must agree with those of the next block.
+
+    Parameters
+    ----------
+    time : array of shape ``(n,)``
+    rates : array of shape ``(n, 3)``
+        As the gyroscope prints them.
+    vectors : array of shape ``(n, 3)``
+        At the same times.
+    scales : array of shape ``(m,)``
+        What to multiply the rates by.
+    seconds : float
+        Length of a block.
+    longest : float
+        How many seconds to look at: those with most turning.
+
+    Returns
+    -------
+    Fit
+    """
+    parts, size = pieces(time, rates, longest, seconds)
+    shares = np.full((len(scales), 48), np.inf)
+    for number, scale in enumerate(scales):
+        left, moved = np.zeros(48), 0.0
+        for part in parts:
+            step = steps_of(time[part])
+            some, those = rates[part], vectors[part]
+            count = len(some) // size
+            if count < 2:
+                continue
+            those = those[: count * size]
+            means = those.reshape(count, size, 3).mean(axis=1)
+            moved += (np.diff(means, axis=0) ** 2).sum()
+            for sign in (1, -1):
+                dcms = turned(sign * scale * some, step)[: count * size]
+                # The mean over a block of D^T P v is linear in P.
+                outer = np.einsum("nji,nk->nijk", dcms, those).reshape(count, size, 3, 3, 3).mean(axis=1)
+                change = np.diff(outer, axis=0)
+                differences = change.reshape(-1, 9) @ PROPER.swapaxes(-1, -2).reshape(24, 9).T
+                # The gyroscope's axes, taken so, are those of the vector: G, and -G of the mirror images.
+                left[slice(24) if sign > 0 else OPPOSITE] += (differences**2).sum(axis=0)
+        shares[number] = np.sqrt(left / max(moved, 1e-300))
+    best = np.unravel_index(shares.argmin(), shares.shape)[0]
+    return Fit(shares[best], float(scales[best]))
+
+
+def carried(time, rates, poses):
+    """Turns from the end of each pose to the beginning of the next, by a gyroscope; shape ``(m - 1, 3, 3)``."""
+    found = []
+    for one, other in zip(poses, poses[1:], strict=False):
+        part = slice((one.first + one.last) // 2, (other.first + other.last) // 2 + 1)
+        found.append(turned(rates[part], steps_of(time[part]))[-1])
+    return np.array(found)
+
+
+def fit_scale(time, rates, forces, poses, bias=None):
+    """Scale and bias of a gyroscope: turns must carry gravity from one pose to the next.
+
+    Parameters
+    ----------
+    time : array of shape ``(n,)``
+    rates, forces : arrays of shape ``(n, 3)``
+        Along the same axes, rates in radians per second.
+    poses : list of Stretch
+    bias : array of shape ``(3,)``, optional
+        Radians per second, where it is known.
+
+    Returns
+    -------
+    scale, its standard deviation, bias of shape ``(3,)``, its standard deviations, and what is left in radians
+        The true angular velocity is ``scale * (rates - bias)``. ``None`` if the poses do not suffice.
+    """
+    ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])
+    ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)
+    if len(poses) < 3:
+        return None
+    moves = np.linalg.norm(np.cross(ups[1:], ups[:-1]), axis=1)
+    if (moves > 0.2).sum() < 2:
+        return None
+    known = bias is not None
+    middle = np.zeros(3) if bias is None else np.asarray(bias)
+
+    def residuals(parameters):
+        rate = parameters[0] * (rates - (middle if known else parameters[1:]))
+        return (ups[1:] - np.einsum("nij,nj->ni", carried(time, rate, poses), ups[:-1])).ravel()
+
+    # Several turns have many scales that nearly fit: the best one of a grid is refined.
+    grid = np.geomspace(0.4, 2.5, 47)
+    parameters = np.concatenate([[0.0], middle])
+    costs = [np.abs(residuals(np.concatenate([[scale], middle]))).sum() for scale in grid]
+    parameters[0] = grid[int(np.argmin(costs))]
+    free = 1 if known else 4
+    prior = np.array([1e3, *[np.radians(1.0)] * 3])[:free]  # a bias is some degrees per second at most
+    for _ in range(12):
+        at = residuals(parameters)
+        slopes = np.empty((len(at), free))
+        for k in range(free):
+            moved = parameters.copy()
+            moved[k] += 1e-5
+            slopes[:, k] = (residuals(moved) - at) / 1e-5
+        noise = max(np.sqrt(np.median(at**2)) * 1.5, 0.003)
+        weights = 1 / np.maximum(noise, np.abs(at)) / noise  # a wild transition counts less
+        information = (slopes * weights[:, None]).T @ slopes + np.diag(prior**-2.0)
+        pull = (slopes * weights[:, None]).T @ -at
+        if not known:
+            pull -= prior**-2.0 * np.concatenate([[0.0], parameters[1:] - middle])
+        change = np.linalg.solve(information, pull)
+        parameters[:free] += change
+        if np.abs(change).max() < 1e-8:
+            break
+    freedom = max(1.0, len(at) * 2 / 3 - free)
+    spread = np.sqrt(np.diag(np.linalg.inv(information)) * max(1.0, (at**2 * weights).sum() / freedom))
+    wide = np.concatenate([spread, np.zeros(4 - free)])
+    return float(parameters[0]), float(wide[0]), parameters[1:], wide[1:], float(np.sqrt((at**2).mean() * 3))
+
+
+# --- the convention of an orientation ---------------------------------------------------------------
+
+
+class Reading(NamedTuple):
+    """One way to read four numbers, or three angles, as an orientation.
+
+    Attributes
+    ----------
+    disagreement : float
+        Between the turns of the orientation and those of the gyroscope, as a share of the latter.
+    order : str
+        ``scalar first`` or ``scalar last``; of angles the sequence, as in ``zyx (yaw, pitch, roll)``.
+    conjugate : bool
+        Whether what stands there is the other way round than in the book: the ground from the body.
+    mounting : array of shape ``(3, 3)``
+        The body of the orientation from the axes of the gyroscope.
+    """
+
+    disagreement: float
+    order: str
+    conjugate: bool
+    mounting: np.ndarray
+
+
+def dcm_of_quaternions(values, order):
+    """``B_C_N`` of quaternions, read in the book's way, with their scalar first or last."""
+    values = values / np.linalg.norm(values, axis=1, keepdims=True)
+    w, x, y, z = (values if order == "scalar first" else np.roll(values, 1, axis=1)).T
+    rows = [
+        [w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)],
+        [2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x)],
+        [2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+def readings(time, rates, orientation_time, candidates):
+    """Read an orientation in every way there is, and compare its turns with those of the gyroscope.
+
+    Parameters
+    ----------
+    time : array of shape ``(n,)``
+    rates : array of shape ``(n, 3)``
+        Of the gyroscope, radians per second.
+    orientation_time : array of shape ``(m,)``
+    candidates : dict
+        Arrays of shape ``(m, 3, 3)`` by the name of the order.
+
+    Returns
+    -------
+    list of Reading
+        The best one first. Where several fit as well, those come first that change least.
+    """
+    steps = steps_of(time)
+    vectors = np.concatenate([np.zeros((1, 3)), (rates[1:] + rates[:-1]) / 2 * steps[1:, None]])
+    path = np.cumsum(vectors, axis=0)
+    inside = (orientation_time >= time[0] - 1e-9) & (orientation_time <= time[-1] + 1e-9)
+    # An orientation may be printed for each sample or now and then: a turn over a tenth of a second is compared.
+    stride = max(1, round(0.05 / np.median(np.diff(orientation_time))))
+    places = np.flatnonzero(inside)[::stride]
+    at = np.stack([np.interp(orientation_time[places], time, path[:, k]) for k in range(3)], axis=-1)
+    measured = np.diff(at, axis=0)
+    turns = np.linalg.norm(measured, axis=1)
+    use = turns < 1.0
+    if len(places) < 10 or np.sqrt((measured[use] ** 2).sum()) < 0.05:
+        return []
+    whole = (measured[use] ** 2).sum()
+    found = []
+    for name, dcms in candidates.items():
+        dcms = dcms[places]
+        for conjugate in (False, True):
+            # B_C_N, or its transpose: then the turns are written along the other side.
+            forth, back = dcms[1:], dcms[:-1].swapaxes(-1, -2)
+            turn = forth.swapaxes(-1, -2) @ dcms[:-1] if conjugate else forth @ back
+            turn = to_rotation_vectors(turn)[use]
+            likeness_of_axes = turn.T @ measured[use]
+            squares = (turn**2).sum() + whole - 2 * np.einsum("kij,ij->k", ASSIGNMENTS, likeness_of_axes)
+            found += [
+                Reading(float(np.sqrt(max(0.0, square) / whole)), name, conjugate, mounting)
+                for square, mounting in zip(squares, ASSIGNMENTS, strict=True)
+            ]
+
+    def plain(reading):
+        return (
+            round(reading.disagreement, 3),
+            np.linalg.det(reading.mounting) < 0,
+            np.abs(reading.mounting - np.eye(3)).sum(),
+        )
+
+    return sorted(found, key=plain)

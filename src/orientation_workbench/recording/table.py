@@ -1,0 +1,319 @@
+"""Tables of numbers out of whatever a recording came in: text, a folder or a zip of texts, JSON.
+
+Nothing is repaired: a row that does not fit is left out, counted and named by its line and column; where many do not
+fit, the file is refused in the same words.
+"""
+
+import csv
+import io
+import json
+import re
+import zipfile
+from collections import Counter
+from datetime import datetime
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+DELIMITERS = (",", ";", "\t", "|", None)  # None stands for blanks
+TEXTS = (".csv", ".txt", ".tsv", ".log", ".json", ".dat")
+MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
+MOST_BROKEN = 0.02  # share of the rows that may not fit before a file is refused
+
+
+class RecordingError(ValueError):
+    """What keeps a file from being read as a recording, with its line and column where there is one."""
+
+
+class Table(NamedTuple):
+    """Columns of numbers that were measured together.
+
+    Attributes
+    ----------
+    name : str
+        Of the file, or of the kind of line in a log.
+    columns : list of str
+        As the file names them; ``column 1`` and so on where it does not.
+    values : array of shape ``(n, m)``
+        Missing ones are NaN.
+    remarks : list of str
+        What did not fit, with lines and columns.
+    """
+
+    name: str
+    columns: list
+    values: np.ndarray
+    remarks: list
+
+
+def read_tables(source, name=None):
+    """Read all tables of a file, of a folder, or of a text that is at hand.
+
+    Parameters
+    ----------
+    source : path, bytes or str
+        A file or a folder; or what a file holds: bytes, or a text of more than one line.
+    name : str, optional
+        What to call it, where it comes without a name.
+
+    Returns
+    -------
+    list of Table
+
+    Raises
+    ------
+    RecordingError
+        If nothing in it is a table of numbers, or too much of it does not fit.
+
+    Examples
+    --------
+    >>> rows = "\\n".join(f"{k / 100},{k},{k * k}" for k in range(9))
+    >>> [table] = read_tables("time,x,y\\n" + rows)
+    >>> table.columns, table.values.shape
+    (['time', 'x', 'y'], (9, 3))
+    """
+    if isinstance(source, str) and "\n" in source:
+        return _from_text(source, name or "recording")
+    if isinstance(source, bytes):
+        return _from_bytes(source, name or "recording")
+    path = Path(source)
+    if path.is_dir():
+        files = {one.name: one.read_bytes() for one in sorted(path.iterdir()) if one.suffix.lower() in TEXTS}
+        return _from_several(files, str(path))
+    if not path.exists():
+        raise RecordingError(f"there is no file {path}")
+    return _from_bytes(path.read_bytes(), name or path.name)
+
+
+def _from_bytes(content, name):
+    if content[:4] == b"PK\x03\x04":
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            files = {one: archive.read(one) for one in archive.namelist() if Path(one).suffix.lower() in TEXTS}
+        return _from_several(files, name)
+    if not content.strip():
+        raise RecordingError(f"{name} is empty")
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = content.decode("utf-16")
+    elif b"\0" in content[:4096]:
+        raise RecordingError(
+            f"{name} is no text: byte {content.index(0) + 1} is zero. Many loggers write a format of their own; export "
+            "it as CSV with the maker's program first."
+        )
+    else:
+        try:
+            text = content.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = content.decode("latin-1")
+    return _from_text(text, name)
+
+
+def _from_several(files, name):
+    tables, reasons = [], []
+    for one, content in files.items():
+        try:
+            tables += _from_bytes(content, Path(one).stem)
+        except RecordingError as error:  # beside the measurements there are often settings and remarks
+            reasons.append(str(error))
+    if not tables:
+        raise RecordingError(f"{name} holds no table of numbers" + "".join(f"; {reason}" for reason in reasons))
+    return tables
+
+
+def _from_text(text, name):
+    if text.lstrip()[:1] in "[{":
+        return _from_json(text, name)
+    lines = text.splitlines()
+    delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
+    rows = [_split(line, delimiter) for line in lines]
+    comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
+    words = [sum(_number(field, comma) is None for field in row[:1]) for row in rows if len(row) > 3]
+    keys = {row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None}
+    if len(words) > 20 and sum(words) > 0.9 * len(words) and len(keys) < 0.2 * len(words):
+        return _from_log(rows, name, comma)
+    return [_table(rows, name, comma)]
+
+
+def _split(line, delimiter):
+    if delimiter is None:
+        return line.split()
+    if '"' in line:
+        return [field.strip() for field in next(csv.reader([line], delimiter=delimiter))]
+    return [field.strip() for field in line.split(delimiter)]
+
+
+def _is_comma(field):
+    return re.fullmatch(r"[-+]?\d+,\d+([eE][-+]?\d+)?", field) is not None
+
+
+def _number(field, comma=False):
+    """The number that a field says, NaN for one that is missing, None for what is no number."""
+    try:
+        return float(field.replace(",", ".") if comma else field)
+    except ValueError:
+        pass
+    if field.lower() in MISSING:
+        return float("nan")
+    if ":" in field:
+        try:
+            return datetime.fromisoformat(field.replace("/", "-").replace("Z", "+00:00")).timestamp()
+        except ValueError:
+            clock = re.fullmatch(r"(\d+):(\d\d):(\d\d(?:[.,]\d+)?)", field)
+            if clock:
+                hours, minutes, seconds = (float(part.replace(",", ".")) for part in clock.groups())
+                return 3600 * hours + 60 * minutes + seconds
+    return None
+
+
+def _numbers_per_line(lines, delimiter):
+    """The median count of numbers in the lines of the middle, were they parted so."""
+    middle = [line for line in lines[len(lines) // 4 :] if line.strip()][:200]
+    counts = []
+    for line in middle:
+        fields = _split(line, delimiter)
+        counts.append(
+            sum(_number(field) is not None or _is_comma(field) and delimiter != "," for field in fields if field)
+        )
+    return float(np.median(counts)) if counts else 0
+
+
+def _table(rows, name, comma, numbers=None, columns=None):
+    """One table out of rows of fields; ``numbers`` are the lines' numbers, where they are not all there."""
+    numbers = range(1, len(rows) + 1) if numbers is None else numbers
+    rows = [(line, row) for line, row in zip(numbers, rows, strict=True) if any(row)]
+    widths = Counter(len(row) for _, row in rows)
+    if not widths:
+        raise RecordingError(f"{name} is empty")
+    width = widths.most_common(1)[0][0]
+    full = [(line, row) for line, row in rows if len(row) == width]
+    sample = full[len(full) // 4 :][:300] or full
+    numeric = [
+        k
+        for k in range(width)
+        if sum(_number(row[k], comma) is not None for _, row in sample) > 0.8 * len(sample)
+        and any(_number(row[k], comma) is not None and row[k].lower() not in MISSING for _, row in full)
+    ]
+    if len(numeric) < 3 or len(full) < 8:
+        line, row = (sample or rows)[0]
+        raise RecordingError(
+            f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} columns of numbers, "
+            f"where a recording has three and more. Line {line} begins: {' '.join(row)[:60]!r}"
+        )
+
+    def values(row):
+        return [_number(row[k], comma) for k in numeric]
+
+    begin = next(
+        k for k, (_, row) in enumerate(rows) if len(row) == width and all(value is not None for value in values(row))
+    )
+    if columns is None:
+        columns = _names([row for _, row in rows[:begin]], width)
+    kept, broken = [], []
+    for line, row in rows[begin:]:
+        if len(row) != width:
+            broken.append(f"line {line} has {len(row)} columns where the others have {width}")
+            continue
+        try:
+            found = [float(row[k]) for k in numeric]
+        except ValueError:
+            found = values(row)
+        if None in found:
+            column = numeric[found.index(None)]
+            broken.append(f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is no number")
+        elif any(abs(value) == float("inf") for value in found):
+            broken.append(f"line {line} holds an infinite number")
+        else:
+            kept.append(found)
+    told = "; ".join(broken[:3]) + (f"; and {len(broken) - 3} more" if len(broken) > 3 else "")
+    if len(broken) > max(2, MOST_BROKEN * (len(kept) + len(broken))):
+        raise RecordingError(f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}")
+    remarks = [f"{len(broken)} rows are left out: {told}"] if broken else []
+    return Table(name, [columns[k] for k in numeric], np.array(kept), remarks)
+
+
+def _names(head, width):
+    """Names of the columns: of the last line above the numbers that has as many, with the units below it."""
+    head = [[re.sub(r"^[#%/\s\"']+|[\"']+$", "", field) for field in row] for row in head]
+    head = [
+        row for row in head if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", one) for one in row)
+    ]
+    if not head:
+        return [f"column {k + 1}" for k in range(width)]
+    names = head[-1]
+    if len(head) > 1 and len(head[-2]) == len(names):
+        units = sum(bool(re.fullmatch(r"[(\[]?[°\w/^²·.*]{1,9}[)\]]?", field)) for field in names if field)
+        if len(set(names)) < 0.7 * len(names) and units > 0.7 * len(names):  # units repeat themselves, names do not
+            names = [f"{name} [{unit.strip('()[]')}]" for name, unit in zip(head[-2], names, strict=True)]
+    names = [*names, *(f"column {k + 1}" for k in range(len(names), width))][:width]
+    return [name or f"column {k + 1}" for k, name in enumerate(names)]
+
+
+def _from_log(rows, name, comma):
+    """A log whose lines begin with a word that says what they hold, as those of drones and phones do."""
+    lines, names = {}, {}
+    for number, row in enumerate(rows, 1):
+        if len(row) < 3:
+            continue
+        if row[0] == "FMT" and len(row) > 5:  # of ArduPilot: type, length, name, formats, names of the columns
+            names[row[3]] = row[5:]
+        else:
+            lines.setdefault(row[0], []).append((number, row[1:]))
+    tables = []
+    for key, found in lines.items():
+        if len(found) < 8:
+            continue
+        columns = names.get(key)
+        width = Counter(len(row) for _, row in found).most_common(1)[0][0]
+        try:
+            tables.append(
+                _table(
+                    [row for _, row in found],
+                    key,
+                    comma,
+                    [number for number, _ in found],
+                    columns if columns and len(columns) == width else None,
+                )
+            )
+        except RecordingError:  # a kind of line that holds no measurements
+            continue
+    if not tables:
+        raise RecordingError(f"{name} looks like a log, but none of its kinds of lines is a table of numbers")
+    return tables
+
+
+def _from_json(text, name):
+    try:
+        content = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise RecordingError(
+            f"{name} begins like JSON but is not: line {error.lineno}, column {error.colno}: {error.msg}"
+        ) from None
+    if isinstance(content, dict):
+        content = next((value for value in content.values() if isinstance(value, list)), [])
+    kinds = {}
+    for entry in content:
+        if isinstance(entry, dict):
+            kinds.setdefault(str(entry.get("sensor", name)), []).append(_flat(entry))
+    tables = []
+    for kind, entries in kinds.items():
+        columns = list(dict.fromkeys(key for entry in entries for key in entry))
+        rows = [[str(entry.get(column, "")) for column in columns] for entry in entries]
+        try:
+            tables.append(_table(rows, kind, False, None, columns))
+        except RecordingError:
+            continue
+    if not tables:
+        raise RecordingError(f"{name} is JSON without a list of measurements in it")
+    return tables
+
+
+def _flat(entry, before=""):
+    found = {}
+    for key, value in entry.items():
+        if isinstance(value, dict):
+            found |= _flat(value, f"{before}{key}.")
+        elif isinstance(value, (list, tuple)):
+            found |= {f"{before}{key}[{k}]": one for k, one in enumerate(value)}
+        elif key != "sensor":
+            found[before + key] = value
+    return found

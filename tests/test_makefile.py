@@ -1,0 +1,88 @@
+"""The commands of the book, without what they run: what is set up, how often, and side by side or not."""
+
+import os
+import re
+import shutil
+import subprocess
+import time
+
+import pytest
+from places import REPOSITORY
+
+#: Stands for Python, pip and npm: writes down when it began and ended.
+RECORDER = """#!/bin/sh
+echo "begin $*" >> "$LOG"
+mkdir -p .venv/runtime
+sleep 0.1
+echo "end $*" >> "$LOG"
+"""
+
+
+@pytest.fixture
+def make(tmp_path):
+    """``make(*arguments)``: what the Makefile runs in a folder of its own, each program as a line of text."""
+    for name in ("Makefile", "constraints.txt", "pyproject.toml", "package-lock.json"):
+        shutil.copy(REPOSITORY / name, tmp_path)
+    for name in (
+        "notebook-pages/src/notebook_pages/live/wheels.txt",
+        "notebook-pages/src/notebook_pages/lite/wheels.txt",
+        "notebook-pages/src/notebook_pages/ipython_kernel_config.py",
+    ):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(REPOSITORY / name, tmp_path / name)
+    programs = tmp_path / ".venv" / "bin"
+    programs.mkdir(parents=True)
+    (tmp_path / "node_modules").mkdir()
+    for name in ("python", "npm"):
+        (programs / name).write_text(RECORDER)
+        (programs / name).chmod(0o755)
+
+    def run(*arguments):
+        log = tmp_path / "log"
+        log.write_text("")
+        environment = {**os.environ, "LOG": str(log), "MAKEFLAGS": ""}
+        done = subprocess.run(["make", *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return log.read_text().splitlines()
+
+    return run
+
+
+def installs(lines):
+    return [line for line in lines if line.startswith("begin") and " install " in line and "--editable" in line]
+
+
+def test_nothing_is_installed_beside_something_else(make):
+    lines = make("-j4", "test")
+    assert len(lines) > 8
+    assert [line.split()[0] for line in lines] == ["begin", "end"] * (len(lines) // 2)
+
+
+def test_what_the_tests_installed_is_not_installed_again(make):
+    assert len(installs(make("test"))) == 1
+    time.sleep(1.1)
+    for command in ("book", "take-away", "check", "release", "new-question", "new-chapter"):
+        assert installs(make(command, "NAME=belt-trick", "TITLE=The belt trick")) == [], command
+
+
+def test_what_the_book_installed_is_not_enough_for_the_tests(make):
+    assert len(installs(make("book"))) == 1
+    assert len(installs(make("test"))) == 1
+
+
+def test_one_notebook_is_released_and_tried_alone(make):
+    lines = [line for line in make("release", "ONLY=belt-trick chapters") if line.startswith("begin -m coursework")]
+    assert [line.removeprefix("begin -m coursework ") for line in lines] == [
+        "release belt-trick chapters",
+        "selftest belt-trick chapters",
+    ]
+
+
+def test_a_check_builds_nothing(make):
+    assert not any("notebook_pages.build" in line for line in make("check"))
+
+
+def test_nothing_is_deleted_out_of_packages():
+    """pip would no longer know what it has installed."""
+    rule = (REPOSITORY / "Makefile").read_text("utf8").partition("$(VENV)/ready-%:")[2].partition("\n\n")[0]
+    assert "$(PIP)" in rule and not re.search(r"\brm\b|-delete|unlink", rule)
