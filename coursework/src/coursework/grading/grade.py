@@ -826,7 +826,7 @@ def bring_in_decisions(out, *, show=None):
     -------
     list of Moved
     """
-    from . import reports
+    from .reporting import reports
 
     store = Store(out)
     with store.locked():
