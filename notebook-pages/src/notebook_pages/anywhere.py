@@ -21,6 +21,7 @@ from pathlib import Path
 import nbformat
 from nbclient import NotebookClient
 
+from coursework import authoring
 from coursework.authoring.course import find_course
 from coursework.authoring.source import notebooks_in
 
@@ -29,7 +30,7 @@ from .live.cells import ALONE, kinds_of_cells, outputs_of_messages, stored_outpu
 from .live.runtime import COMPILER, FETCHED, PYODIDE, compile_wheels
 from .moves import moves, moves_of_outputs
 from .notebooks import all_notebooks
-from .packing import build_wheel
+from .packing import build_wheels
 from .paths import NODE, PACKAGES, REPOSITORY
 from .released import digests_of
 from .warm_kernels import WarmAsyncKernelManager
@@ -200,16 +201,15 @@ def numbers_in_a_browser(only):
     codes = {name: [cell.source for cell in cells] for name, cells in stored.items()}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        own = build_wheel(folder / "built")
-        for wheel in (own, *(wheel for wheel in compile_wheels(sorted(FETCHED.glob("*.whl"))))):
+        for wheel in (*build_wheels(folder / "built"), *compile_wheels(sorted(FETCHED.glob("*.whl")))):
             shutil.copy(wheel, folder)
         write_python(folder / "python")
-        shutil.copytree(REPOSITORY / "src" / "coursework" / "authoring", folder / "authoring")
+        shutil.copytree(Path(authoring.__file__).parent, folder / "authoring")
         shutil.copy(Path(__file__).with_name("released.py"), folder)
         (folder / "sources").mkdir()
         for path in sources(only):
             shutil.copy(path, folder / "sources")
-        (folder / "codes.json").write_text(json.dumps({"cells": codes, "packages": PACKAGES}), "utf8")
+        (folder / "codes.json").write_text(json.dumps({"cells": codes, "packages": list(PACKAGES)}), "utf8")
         (folder / "alone.py").write_text(ALONE, "utf8")
         (folder / "program.py").write_text(IN_A_BROWSER, "utf8")
         subprocess.run([NODE, COMPILER[0], PYODIDE / "pyodide.mjs", folder / "program.py", folder], check=True)

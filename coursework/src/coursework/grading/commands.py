@@ -1,5 +1,6 @@
 """The commands of instructors, from ``coursework grade`` to ``coursework sample-class``."""
 
+import contextlib
 import re
 import sys
 
@@ -161,10 +162,35 @@ def _named(assignments):
     return {name: (notebooks or name).split(",") for name, _, notebooks in parts} or None
 
 
+class NeedsLinux(RuntimeError):
+    """This system keeps no programs apart in the way that grading does."""
+
+    def __str__(self):
+        return (
+            "this judges what strangers wrote, apart from all else and by means of Linux that this system has not. Run "
+            "it in WSL or in a container; review, merge, term and export run here, too."
+        )
+
+
+@contextlib.contextmanager
+def _on_linux():
+    """Where modules that only Unix has are missing, say what that means."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if error.name in ("fcntl", "resource"):
+            raise NeedsLinux from None
+        raise
+
+
 def grade(assignment, **options):
-    from .execution.sandbox import WeakIsolation, WorkerDied
-    from .grade import grade as grade_class
-    from .store import InUse
+    try:
+        with _on_linux():
+            from .execution.sandbox import WeakIsolation, WorkerDied
+            from .grade import grade as grade_class
+            from .store import InUse
+    except NeedsLinux as error:
+        sys.exit(f"coursework grade: {error}")
 
     try:
         grade_class(assignments=_named(assignment), **options)
@@ -177,12 +203,13 @@ def grade(assignment, **options):
 
 
 def regrade(out, solutions, yes, never_lower, full_credit, void):
-    from .grade import regrade as regrade_class
     from .reporting.laboratory import PAGE, Policies
     from .store import InUse
 
     policies = Policies(tuple(never_lower), tuple(full_credit), tuple(void))
     try:
+        with _on_linux():
+            from .grade import regrade as regrade_class
         laboratory = regrade_class(out, solutions=solutions, policies=policies, dry_run=True)
         for line in laboratory.lines():
             print(line)
@@ -191,7 +218,7 @@ def regrade(out, solutions, yes, never_lower, full_credit, void):
             if not sys.stdin.isatty() or input("Shall these marks move? yes or no: ").strip().casefold() != "yes":
                 sys.exit("No mark has moved. To go on, say --yes.")
         _say_moved(regrade_class(out, solutions=solutions, policies=policies))
-    except (InUse, ValueError) as error:  # NothingToGrade and BadPolicy are such
+    except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade and BadPolicy are such
         sys.exit(f"coursework regrade: {error}")
 
 
@@ -209,7 +236,6 @@ def _say_moved(moved):
 def review(out, grader, share, hide_names, port):
     import getpass
 
-    from .grade import bring_in_decisions
     from .review import review as serve
     from .store import InUse
 
@@ -228,8 +254,10 @@ def review(out, grader, share, hide_names, port):
     except KeyboardInterrupt:
         print("\nThe decisions are brought into the marks and pages.")
         try:
+            with _on_linux():
+                from .grade import bring_in_decisions
             _say_moved(bring_in_decisions(out))
-        except (InUse, ValueError) as error:
+        except (InUse, NeedsLinux, ValueError) as error:
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 
