@@ -58,7 +58,7 @@ class Project:
         return [path for path in about if path.exists()] + sorted(
             path
             for path in files
-            if not {"__pycache__", "build"} & set(path.parts)
+            if not {"__pycache__", "build"} & set(path.relative_to(self.repository).parts)
             and path not in about
             and not any(path.is_relative_to(place) for place in left_out)
         )
