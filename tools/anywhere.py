@@ -214,7 +214,7 @@ def moves_in_a_browser(path, kinds, packages):
         shutil.copytree(packages, folder / "packages")
         (folder / "codes.json").write_text(json.dumps([cell.source for cell in cells]), "utf8")
         program = folder / "program.py"
-        program.write_text(IN_A_BROWSER.format(packages=PACKAGES, program=ALONE), "utf8")
+        program.write_text(IN_A_BROWSER.format(packages=tuple(PACKAGES), program=ALONE), "utf8")
         subprocess.run([NODE, COMPILER[0], PYODIDE / "pyodide.mjs", program, folder], check=True)
         told = json.loads((folder / "told.json").read_text("utf8"))
     found = []

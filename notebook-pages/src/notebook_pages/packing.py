@@ -138,7 +138,7 @@ def write_zip(target, files):
 
 
 #: What the book names, its own project last.
-PROJECTS = [Project(one["project"], one["packages"], one.get("leave-out", ())) for one in REGISTERED["wheels"]]
+PROJECTS = [Project(one["project"], one["packages"], one.get("leave-out", ())) for one in REGISTERED.get("wheels", ())]
 
 
 def build_wheels(folder):

