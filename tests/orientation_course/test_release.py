@@ -15,11 +15,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 from seed import SEED
 from trial_course import SETUP, SOLUTION, made_in, write_source
 
-from coursework.authoring import release
+from coursework.authoring import author, release
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
 from coursework.authoring.packing import archive, write_zip
@@ -90,6 +91,24 @@ def test_a_release_is_the_same_each_time(trial, tmp_path):
     release.release(made_in(tmp_path, sources=trial / "sources"), run=False)
     assert release.differences(trial / "exercises", tmp_path / "exercises", "*") == []
     assert release.differences(trial / "sealed", tmp_path / "sealed", "*") == []
+
+
+@pytest.mark.parametrize(
+    "about", [{}, {"tolerance": 1e-6}, {"tolerance": 1e-6, "relative": 0.01}, {"tolerance": 5, "relative": 0.001}]
+)
+def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
+    """The same on every processor: of numbers of all sizes, of simple fractions, and of what should be zero."""
+    random = np.random.default_rng(7)
+    sizes = 10.0 ** random.uniform(-3, 5, 12)
+    for right in (*random.normal(size=12) * sizes, 0.5, -1 / 3, 1 / 4096, 0.00012345, 1000, np.pi / 4, 12345.678905):
+        sealed = [
+            author.question("trial/one", "vector", [right * (1 + noise), noise, 7], **about)
+            for noise in (0, 3e-16, -3e-16, 2e-15)
+        ]
+        told = [{text: entry.cases for text, entry in one.entries.items()} | one.public for one in sealed]
+        assert len({json.dumps(one, sort_keys=True) for one in told}) == 1, right
+        for case in (case for entry in sealed[0].entries.values() for case in entry.cases if "numbers" in case):
+            assert all(len(number.strip("-")) < 17 for number in case["numbers"])
 
 
 def test_a_planted_secret_is_found(trial, tmp_path):
