@@ -2,13 +2,13 @@
 
 import pytest
 
-from notebook_pages.browser import FLAGS, MISSING, find
-
 
 @pytest.fixture(scope="session")
 def browser():
     """Headless Chromium; skipped with a reason where there is none."""
     from playwright.sync_api import sync_playwright
+
+    from notebook_pages.browser import FLAGS, MISSING, find
 
     if find() is None:
         pytest.skip(MISSING)
