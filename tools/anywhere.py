@@ -21,6 +21,7 @@ from pathlib import Path
 import nbformat
 from nbclient import NotebookClient
 
+from coursework import authoring
 from coursework.authoring.course import find_course
 from coursework.authoring.source import notebooks_in
 from notebook_pages.execution import STORED
@@ -200,11 +201,10 @@ def numbers_in_a_browser(only):
     codes = {name: [cell.source for cell in cells] for name, cells in stored.items()}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        (folder / "built").mkdir()
         for wheel in (*build_wheels(folder / "built"), *compile_wheels(sorted(FETCHED.glob("*.whl")))):
             shutil.copy(wheel, folder)
         write_python(folder / "python")
-        shutil.copytree(REPOSITORY / "coursework" / "src" / "coursework" / "authoring", folder / "authoring")
+        shutil.copytree(Path(authoring.__file__).parent, folder / "authoring")
         shutil.copy(Path(__file__).with_name("released.py"), folder)
         (folder / "sources").mkdir()
         for path in sources(only):

@@ -29,6 +29,7 @@ from coursework.checking.update import MANIFEST, ArchiveRefused, manifest, updat
 from notebook_pages import packing
 
 COURSE = find_course(Path(__file__).parent)
+INSTRUCTORS = (COURSE.root / "appendix" / "instructors.md").read_text("utf8")
 
 
 HIDDEN = (
@@ -289,17 +290,17 @@ def test_a_manifest_of_a_newer_format_is_refused_in_words(tmp_path):
     assert {path: path.read_bytes() for path in work.iterdir()} == before
 
 
-def fake_wheel(folder, version, digest):
+def fake_wheel(folder, version, digest, package="sealed_trial"):
     """A package that holds one file, made without any tool."""
-    name = f"sealed_trial-{version}-py3-none-any.whl"
-    about = f"sealed_trial-{version}.dist-info"
+    name = f"{package}-{version}-py3-none-any.whl"
+    about = f"{package}-{version}.dist-info"
     with zipfile.ZipFile(folder / name, "w") as box:
-        box.writestr("sealed_trial.py", f"DIGEST = {digest!r}\n")
-        box.writestr(f"{about}/METADATA", f"Metadata-Version: 2.1\nName: sealed-trial\nVersion: {version}\n")
+        box.writestr(f"{package}.py", f"DIGEST = {digest!r}\n")
+        box.writestr(f"{about}/METADATA", f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n")
         box.writestr(
             f"{about}/WHEEL", "Wheel-Version: 1.0\nGenerator: a test\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
         )
-        box.writestr(f"{about}/RECORD", f"sealed_trial.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n")
+        box.writestr(f"{about}/RECORD", f"{package}.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n")
     return folder / name
 
 
@@ -347,6 +348,48 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     with pytest.raises(ArchiveRefused, match="post20261122093000.*post20261201080000"):
         update(old, work)
     assert {path: path.read_bytes() for path in work.iterdir()} == before
+
+
+def in_bash(text, prompt):
+    """The commands of a text, each on a line of its own after ``prompt``."""
+    return [line.removeprefix(prompt) for line in text.splitlines() if line.startswith(prompt)]
+
+
+@pytest.mark.long
+def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
+    """To the letter: with a system's Python that takes no packages, and in a room without a network."""
+    work = unpacked(archive(COURSE, tmp_path / "exercises.zip"), tmp_path)
+    index = tmp_path / "index"
+    index.mkdir()
+    for name in ("jupyterlab", "latex2mathml"):
+        fake_wheel(index, "1.0", "", name)
+    said = (work / "README.txt").read_text("utf8")
+    first, second, third, windows, *_, offline, lab, _ = in_bash(said, " " * 7)
+    assert (windows, lab) == ("py -m venv environment", "jupyter lab")
+    environment = {**os.environ, "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
+
+    python = shlex.quote(sys.executable)
+    assert first.startswith("python3 ")
+    first = first.replace("python3", python, 1)
+    check = "python -c 'import importlib.util as u; print(u.find_spec(\"coursework\").origin)'"
+
+    def run(*lines, **more):
+        script = "\n".join(["set -eu", *lines, check])
+        done = subprocess.run(
+            ["bash", "-c", script], cwd=work, env={**environment, **more}, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+        return Path(done.stdout.splitlines()[-1])
+
+    assert run(first, second, third, PIP_FIND_LINKS=str(index)).is_relative_to(work / "environment")
+    shutil.rmtree(work / "environment")
+    (fetch,) = [line for line in in_bash(INSTRUCTORS, "$ ") if "pip download" in line]
+    (same,) = [line for line in in_bash(INSTRUCTORS, "$ ") if "--no-index" in line]
+    assert same.replace("--requirement", "-r") == offline
+    run(first, second, third, fetch, PIP_FIND_LINKS=str(index))
+    shutil.rmtree(work / "environment")
+    shutil.rmtree(index)
+    assert run(first, second, offline).is_relative_to(work / "environment")
 
 
 def test_a_version_follows_from_the_sources(tmp_path):

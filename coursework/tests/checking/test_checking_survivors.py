@@ -1,4 +1,4 @@
-"""Changes of the checking that no other test had noticed: each is noticed here. `make mutants` looks for more."""
+"""Changes of the checking that no other test had noticed: each is noticed here."""
 
 import pytest
 import sympy as sm

@@ -84,6 +84,11 @@ for (const text of document.querySelectorAll("div.cell_output .output pre")) {
   text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|\S {2,}\S/m.test(text.textContent));
 }
 
+// What a check says where nobody has answered yet is known from the dots in its cell.
+for (const output of document.querySelectorAll("div.cell_output > .output")) {
+  output.hidden = /^\s*…\s*Not attempted/.test(output.textContent);
+}
+
 document.querySelector("button.print-page")?.addEventListener("click", () => print());
 
 // A page opened from disk may not read other pages: the search then shows titles alone.
@@ -100,4 +105,22 @@ if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined
     if (line.top < box.top || line.bottom > Math.min(box.bottom, innerHeight)) side.scrollTop += line.top - box.top - side.clientHeight / 3;
   };
   if (entry) addEventListener("load", show);
+}
+
+// The search is loaded when somebody goes to a field of it; the key / leads to one.
+{
+  const typing = "input, textarea, select, [contenteditable], .cm-content";
+  const script = document.querySelector("link[rel='search-script']")?.href;
+  let loaded = false;
+  const load = () => {
+    if (!loaded && script) document.head.append(Object.assign(document.createElement("script"), { src: script }));
+    loaded = true;
+  };
+  document.addEventListener("focusin", ({ target }) => target.closest("form.bd-search") && load());
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "/" || event.ctrlKey || event.metaKey || event.altKey || event.target.closest(typing)) return;
+    event.preventDefault();
+    document.querySelector(".search-button__button")?.click();
+  });
+  if (document.querySelector("form.bd-search:not(dialog form)")) load();
 }
