@@ -21,7 +21,8 @@ def book(tmp_path, monkeypatch):
     """The texts of the book, in a folder of their own."""
     for name in ("chapters", "appendix", "exercises", "tests/solutions"):
         shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns(".*"))
-    shutil.copy(REPOSITORY / "_toc.yml", tmp_path)
+    for path in (REPOSITORY / "_toc.yml", *REPOSITORY.glob("*.ipynb")):
+        shutil.copy(path, tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
