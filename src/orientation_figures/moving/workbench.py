@@ -70,7 +70,7 @@ class WorkbenchFigure(MovingFigure):
 
     kind = "workbench"
     sheet = (-330, -172, 330, 172)
-    room = (900, 1500)
+    room = (800, 1010)
     first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(sync=True, state=True)
     second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(sync=True, state=True)
     first_is = Known({"kind": UNKNOWN, "sequence": UNKNOWN}).tag(sync=True, state=True)
