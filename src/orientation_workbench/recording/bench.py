@@ -443,7 +443,7 @@ class _Bench:
         lengths = np.linalg.norm(means, axis=1)
         centre, radius = _sphere(means)
         off = float(np.linalg.norm(centre))
-        evidence = {"lengths": lengths.round(3).tolist(), "offset (g)": centre.round(3).tolist()}
+        evidence = {"lengths": lengths.round(3).tolist()[:12], "offset (g)": centre.round(3).tolist()}
         uneven = float(np.ptp(lengths))
         light = RED if uneven > 0.04 else YELLOW if uneven > 0.015 else GREEN
         words = f"gravity is {lengths.min():.3f} to {lengths.max():.3f} long in {len(means)} poses"
@@ -707,10 +707,11 @@ class _Bench:
         moving = np.ones(len(push), dtype=bool)
         for one in lying:
             moving[one.first : one.last] = False
-        alike = np.corrcoef(push[1:], push[:-1])[0, 1] if push.std() > 0 else 0.0
-        lasting = np.sqrt((1 + min(max(alike, 0.0), 0.999)) / (1 - min(max(alike, 0.0), 0.999)))
         usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
-        doubt = np.where(moving, np.hypot(usual, push) * lasting, 0.0)
+        doubt = np.where(moving, np.hypot(usual, push) * _lasting(push), 0.0)
+        if self.field is not None:  # iron shows in the field's length, and lasts as well
+            uneven = np.linalg.norm(self.field, axis=1) - 1
+            noise = noise._replace(field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * _lasting(uneven)))
         field = self.field
         trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
         if field is not None and {"field"} & trouble:
@@ -772,7 +773,7 @@ class _Bench:
             "found (°)": round(found, 3),
             "innovations": squares,
             "likeness": alike,
-            "held out (°)": self.judgements[0].held_out,
+            "held out (°)": {name: round(off, 1) for name, off in self.judgements[0].held_out.items()},
         }
         self.say("filter", light, words, evidence, advice)
 
@@ -789,6 +790,14 @@ class _Bench:
             self.still,
             self.facts,
         )
+
+
+def _lasting(values):
+    """By how much less the samples of something that lasts tell than as many that know nothing of each other."""
+    if values.std() == 0:
+        return 1.0
+    alike = min(max(np.corrcoef(values[1:], values[:-1])[0, 1], 0.0), 0.999)
+    return float(np.sqrt((1 + alike) / (1 - alike)))
 
 
 def _at(time, source, values):
