@@ -159,10 +159,13 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
         _start(forces[-lead:], field[-lead:] if magnetic else None),
     ]
     doubt = np.full(count, noise.force) if doubt is None else np.hypot(noise.force, doubt)
-    angle = np.hypot(max(doubt[0], doubt[-1]), 0.02)
-    first = np.diag([angle**2] * 3 + [np.radians(0.5) ** 2] * 3)
-    heading = np.hypot(noise.field, 0.05)
-    first[:3, :3] += 0 if not magnetic else np.eye(3) * heading**2
+    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by more of heading.
+    first = np.array(
+        [
+            np.diag([(0.03 + noise.field * magnetic + min(0.4, 8 * end)) ** 2] * 3 + [np.radians(0.5) ** 2] * 3)
+            for end in (doubt[0], doubt[-1], doubt[0], doubt[0])
+        ][:runs]
+    )
     estimate = MultiplicativeKalmanFilter(
         np.array([starts[0], starts[1], starts[0], starts[0]][:runs]), first, noise.gyroscope, noise.bias
     )
