@@ -5,6 +5,7 @@ PYTHON ?= python3
 PORT ?= 8000
 VENV := .venv
 RUN := $(VENV)/bin/python
+PAGES := notebook-pages/src/notebook_pages
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-compile --constraint constraints.txt
 
 # Kernels see this book's settings and nobody's own.
@@ -34,11 +35,12 @@ help:
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
 
-# What each command installs, by the extras of pyproject.toml: the book itself needs neither browser nor tests.
-EXTRAS_book := book
-EXTRAS_print := book,print
-EXTRAS_release := book,grading
-EXTRAS_test := book,grading,print,test
+# What each command installs: the projects of this repository, with these of their extras. The book itself needs neither
+# browser nor tests.
+PROJECTS_book := ./src/orientation ./coursework ./notebook-pages .
+PROJECTS_print := ./src/orientation ./coursework ./notebook-pages[print] .
+PROJECTS_release := ./src/orientation ./coursework[tools] ./notebook-pages .
+PROJECTS_test := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test]
 # Whose installation has these in it, too.
 COVERS_print := book
 COVERS_release := book
@@ -52,10 +54,10 @@ $(VENV)/bin/python:
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'The book needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Name one: make PYTHON=python3.12')"
 	@$(PYTHON) -m venv $(VENV)
 
-$(VENV)/ready-%: constraints.txt pyproject.toml | $(VENV)/bin/python
-	@echo "Setting up Python in $(VENV) for: $(EXTRAS_$*) ..."
+$(VENV)/ready-%: constraints.txt $(wildcard pyproject.toml */pyproject.toml */*/pyproject.toml) | $(VENV)/bin/python
+	@echo "Setting up Python in $(VENV) for: $(PROJECTS_$*) ..."
 	@$(PIP) setuptools
-	@$(PIP) --editable '.[$(EXTRAS_$*)]'
+	@$(PIP) $(addprefix --editable ,$(PROJECTS_$*))
 	@touch $@ $(COVERS_$*:%=$(VENV)/ready-%)
 
 node_modules/ready: package-lock.json | $(VENV)/ready-book
@@ -63,58 +65,58 @@ node_modules/ready: package-lock.json | $(VENV)/ready-book
 	@PATH="$(CURDIR)/$(VENV)/bin:$$PATH" npm ci --silent --ignore-scripts --no-audit --no-fund
 	@touch $@
 
-$(VENV)/runtime/ready: src/website/live/wheels.txt src/website/lite/wheels.txt | $(VENV)/ready-book
+$(VENV)/runtime/ready: $(PAGES)/live/wheels.txt $(PAGES)/lite/wheels.txt | $(VENV)/ready-book
 	@echo "Setting up Python packages for browsers in $(VENV)/runtime ..."
 	@rm -rf $(@D)
 	@for place in live lite; do \
 	  $(RUN) -m pip download --quiet --disable-pip-version-check --no-deps --only-binary=:all: --python-version 3.14 \
-	    --platform any --implementation py --abi none --require-hashes --requirement src/website/$$place/wheels.txt --dest $(@D)/$$place || exit 1; \
+	    --platform any --implementation py --abi none --require-hashes --requirement $(PAGES)/$$place/wheels.txt --dest $(@D)/$$place || exit 1; \
 	done
 	@touch $@
 
-$(KERNEL_SETTINGS): src/website/ipython_kernel_config.py
+$(KERNEL_SETTINGS): $(PAGES)/ipython_kernel_config.py
 	@mkdir -p $(@D)
 	@cp $< $@
 
 book: setup
-	@$(RUN) -m website.build
+	@$(RUN) -m notebook_pages.build
 
 serve: book
-	@$(RUN) -m website.serve $(PORT)
+	@$(RUN) -m notebook_pages.serve $(PORT)
 
 take-away: $(VENV)/ready-print book
-	@$(RUN) -m website.whole_book
+	@$(RUN) -m notebook_pages.whole_book
 
 # Built with BOOK_NUMPY=_build/numpy, the pages ask nobody else for anything. Each file is compared with its fingerprint.
 numpy: setup
-	@$(RUN) -m website.live.fetch _build/numpy
+	@$(RUN) -m notebook_pages.live.fetch _build/numpy
 
 # What an author begins with. AFTER names the chapter that the new one follows; it is released, so that the book builds.
 new-chapter: $(VENV)/ready-release setup
-	@$(RUN) -m website.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
+	@$(RUN) -m notebook_pages.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
 	@$(RUN) -m coursework release "$(NAME)" chapters
 
 new-question: setup
-	@$(RUN) -m website.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
+	@$(RUN) -m notebook_pages.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
 
 check: $(VENV)/ready-test setup
-	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_chapters.py
+	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/chapters/test_chapters.py
 
 # Tests run side by side, one more than there are cores. What takes long and rarely breaks is left to `make test-all`.
 test: $(VENV)/ready-test book
-	@$(RUN) -m website.browser || true
+	@$(RUN) -m notebook_pages.browser || true
 	@$(RUN) -m pytest -n auto -m "not long"
 
 # The PDF is printed by a browser; where there is none, the tests that need one are skipped.
 test-all: $(VENV)/ready-test book
-	@if $(RUN) -m website.browser; then $(RUN) -m website.whole_book; fi
+	@if $(RUN) -m notebook_pages.browser; then $(RUN) -m notebook_pages.whole_book; fi
 	@$(RUN) -m pytest -n auto $(TABLE)
 
 times: TABLE := --write-times
 times: test-all
 
 notebooks: setup
-	@$(RUN) -m website.notebooks
+	@$(RUN) -m notebook_pages.notebooks
 
 release: $(VENV)/ready-release setup
 	@$(RUN) -m coursework release $(ONLY)
@@ -122,10 +124,10 @@ release: $(VENV)/ready-release setup
 
 # Cells, releases and doctests, as other processors have their numbers (ONLY=unit-quaternions: those of one notebook); no browser.
 anywhere: $(VENV)/ready-test setup
-	@$(RUN) -m website.anywhere $(ONLY)
+	@$(RUN) -m notebook_pages.anywhere $(ONLY)
 
 renew-pins: setup
-	@$(RUN) -m website.pins
+	@$(RUN) -m notebook_pages.pins
 
 benchmark: $(VENV)/ready-test setup
 	@$(RUN) -m benchmarks

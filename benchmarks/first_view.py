@@ -20,9 +20,9 @@ import threading
 from collections import defaultdict
 from pathlib import Path
 
-from website.browser import find
-from website.paths import NODE
-from website.serve import Handler, server
+from notebook_pages.browser import find
+from notebook_pages.paths import NODE
+from notebook_pages.serve import Handler, server
 
 SITE, SCRATCH = Path("_build/html"), Path("_build/benchmark/lighthouse")
 LIGHTHOUSE = "lighthouse@12.8.2"

@@ -19,8 +19,8 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from website.browser import FLAGS, find
-from website.serve import server
+from notebook_pages.browser import FLAGS, find
+from notebook_pages.serve import server
 
 from .pages import ALONE
 

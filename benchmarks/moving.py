@@ -17,9 +17,9 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
+from notebook_pages.browser import FLAGS, find
 from orientation_figures import moving
 from orientation_figures.moving import bundle
-from website.browser import FLAGS, find
 
 FIGURES = [figure for figure in (getattr(moving, name) for name in moving.__all__) if getattr(figure, "kind", "")]
 SLOWED, FRAME, HEAVIEST = 4, 16, 60_000  # times, milliseconds, bytes

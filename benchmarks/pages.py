@@ -23,8 +23,8 @@ from pathlib import Path
 import yaml
 from playwright.sync_api import sync_playwright
 
-from website.browser import FLAGS, find
-from website.serve import server
+from notebook_pages.browser import FLAGS, find
+from notebook_pages.serve import server
 
 PAGE = "chapters/euler-angles"
 OURS, SCRATCH = Path("_build/html"), Path("_build/benchmark")

@@ -7,7 +7,7 @@ import subprocess
 import time
 
 import pytest
-from conftest import REPOSITORY
+from places import REPOSITORY
 
 #: Stands for Python, pip and npm: writes down when it began and ended.
 RECORDER = """#!/bin/sh
@@ -23,7 +23,11 @@ def make(tmp_path):
     """``make(*arguments)``: what the Makefile runs in a folder of its own, each program as a line of text."""
     for name in ("Makefile", "constraints.txt", "pyproject.toml", "package-lock.json"):
         shutil.copy(REPOSITORY / name, tmp_path)
-    for name in ("src/website/live/wheels.txt", "src/website/lite/wheels.txt", "src/website/ipython_kernel_config.py"):
+    for name in (
+        "notebook-pages/src/notebook_pages/live/wheels.txt",
+        "notebook-pages/src/notebook_pages/lite/wheels.txt",
+        "notebook-pages/src/notebook_pages/ipython_kernel_config.py",
+    ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(REPOSITORY / name, tmp_path / name)
     programs = tmp_path / ".venv" / "bin"
@@ -75,7 +79,7 @@ def test_one_notebook_is_released_and_tried_alone(make):
 
 
 def test_a_check_builds_nothing(make):
-    assert not any("website.build" in line for line in make("check"))
+    assert not any("notebook_pages.build" in line for line in make("check"))
 
 
 def test_nothing_is_deleted_out_of_packages():

@@ -5,22 +5,20 @@ import re
 import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import REPOSITORY
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from places import REPOSITORY
 
-from website import pins
+from notebook_pages import pins
 
 CONSTRAINTS = pins.pins(pins.CONSTRAINTS.read_text("utf8"))
 
 
 def test_what_is_asked_for_is_pinned():
-    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
-    for text in [*project["dependencies"], *sum(project["optional-dependencies"].values(), [])]:
+    for text in pins.asked_for():
         wanted = Requirement(text)
         version = CONSTRAINTS[canonicalize_name(wanted.name)]
         assert wanted.specifier.contains(version), f"constraints.txt has {version}, pyproject.toml asks for {text}"
@@ -93,11 +91,9 @@ def test_a_newer_python_needs_no_compiler(tmp_path):
     if not answering:
         pytest.skip("there is no newer Python here")
     subprocess.run([answering[-1], "-m", "venv", tmp_path / "newer"], check=True)
-    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["project"]
     command = [tmp_path / "newer" / "bin" / "python", "-m", "pip", "install", "--dry-run", "--only-binary=:all:"]
     command += ["--quiet", "--constraint", pins.CONSTRAINTS]
-    wanted = [*project["dependencies"], *sum(project["optional-dependencies"].values(), [])]
-    done = subprocess.run([*command, *wanted], capture_output=True, text=True)
+    done = subprocess.run([*command, *pins.asked_for()], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
 
 

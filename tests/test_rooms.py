@@ -5,57 +5,78 @@ import json
 import subprocess
 import sys
 from importlib import metadata
-from pathlib import Path
 
 import pytest
+from places import REPOSITORY
 
 from coursework.checking import plugins, questions
-from website.paths import PACKAGES
+from notebook_pages.paths import PACKAGES
 
-SOURCES = Path(__file__).resolve().parent.parent / "src"
 #: What the modules of a room may import of this repository's packages, the room itself not named.
 MAY_IMPORT = {
     "orientation": (),
     "orientation_figures": ("orientation",),
     "orientation_recordings": (),
     "orientation_workbench": ("orientation",),
-    "coursework/checking": (),
-    "coursework/authoring": ("coursework.checking",),
-    "coursework/grading": ("coursework.checking", "coursework.authoring"),
+    "coursework.checking": (),
+    "coursework.authoring": ("coursework.checking",),
+    "coursework.grading": ("coursework.checking", "coursework.authoring"),
     "orientation_course": ("coursework", "orientation"),
 }
-OURS = {*PACKAGES, "website"}
+#: In grading, what follows a notebook on its way uses only what comes before it, and what stands beside the rooms.
+WAY = ("submissions", "execution", "judging", "reporting", "export")
+BESIDE = ("store", "tables", "versions", "workers")
+PAGES = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
+OURS = {*PACKAGES, "notebook_pages"}
 
 
-def imported(path):
+def folder_of(room):
+    package, *inner = room.split(".")
+    return PACKAGES[package].joinpath(*inner)
+
+
+def imported(path, sources):
     """The absolute names that a module imports, those of relative imports made absolute."""
-    package = path.relative_to(SOURCES).parent.parts
+    package = path.relative_to(sources).parent.parts
     for node in ast.walk(ast.parse(path.read_text("utf8"))):
         if isinstance(node, ast.Import):
             yield from (name.name for name in node.names)
         elif isinstance(node, ast.ImportFrom):
             start = package[: len(package) - node.level + 1] if node.level else ()
-            yield ".".join([*start, *([node.module] if node.module else [])])
+            module = ".".join([*start, *([node.module] if node.module else [])])
+            # What is named may be a module itself.
+            yield from (f"{module}.{name.name}" for name in node.names)
+
+
+def foreign(room, allowed):
+    """What the modules of a room import of ours that is neither in the room nor allowed."""
+    folder, sources = folder_of(room), folder_of(room.partition(".")[0]).parent
+    return [
+        f"{path.relative_to(sources)} imports {name}"
+        for path in folder.rglob("*.py")
+        for name in imported(path, sources)
+        if name.partition(".")[0] in OURS and not any(f"{name}.".startswith(f"{one}.") for one in (room, *allowed))
+    ]
 
 
 @pytest.mark.parametrize("room", MAY_IMPORT)
 def test_imports_run_one_way(room):
-    own, found = room.replace("/", "."), []
-    for path in (SOURCES / room).rglob("*.py"):
-        for name in imported(path):
-            allowed = any(f"{name}.".startswith(f"{other}.") for other in (own, *MAY_IMPORT[room]))
-            if name.partition(".")[0] in OURS and not allowed and name != "coursework":
-                found.append(f"{path.relative_to(SOURCES)} imports {name}")
-    assert found == []
+    of_all = (" imports coursework", " imports coursework.__version__")
+    assert [name for name in foreign(room, MAY_IMPORT[room]) if not name.endswith(of_all)] == []
 
 
-def test_one_list_of_packages():
-    """That of the site, of the folders, and of the program in Pyodide, which can import neither."""
-    folders = {path.parent.name for path in SOURCES.glob("*/__init__.py")}
-    assert folders == OURS
-    program = ast.parse((SOURCES / "website" / "live" / "compile_wheels.py").read_text("utf8"))
-    (ours,) = (one.value for one in program.body if isinstance(one, ast.Assign) and one.targets[0].id == "OURS")
-    assert sorted(ast.literal_eval(ours)) == sorted(f"{name}/" for name in PACKAGES)
+@pytest.mark.parametrize("room", WAY)
+def test_grading_follows_a_notebook_on_its_way(room):
+    before = [*WAY[: WAY.index(room)], *BESIDE, *(["grade"] if room == "export" else [])]  # Gradescope grades there
+    allowed = ["coursework.checking", "coursework.authoring", *(f"coursework.grading.{name}" for name in before)]
+    assert foreign(f"coursework.grading.{room}", allowed) == []
+
+
+def test_every_package_is_registered():
+    """All folders of packages, but the one that makes the pages."""
+    folders = {path.parent for path in REPOSITORY.glob("src/*/__init__.py")}
+    folders |= {path.parent for path in REPOSITORY.glob("*/src/*/__init__.py")}
+    assert folders == {*PACKAGES.values(), PAGES}
 
 
 def test_checking_needs_no_course():

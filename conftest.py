@@ -1,0 +1,131 @@
+"""What the tests share: which of them run, the built site, a server for it, and a browser."""
+
+import os
+import threading
+from collections import defaultdict
+from importlib import metadata
+
+import nbval.kernel
+import nbval.plugin
+import pytest
+import stored_outputs
+import times
+from places import BROWSER_REQUIRED, HTML, PATIENCE
+from seed import SEED, spread
+from xdist.scheduler import LoadFileScheduling
+
+from notebook_pages import warm_kernels
+from notebook_pages.browser import FLAGS, MISSING, find
+
+# Tests that take long, each by itself, and share nothing with the others of their file.
+APART = (
+    "tests/pages/test_site.py::test_page_in_",
+    "tests/pages/test_live.py::test_results_equal_the_stored_ones[",
+    "tests/orientation_course/test_release.py::test_what_is_committed_is_what_the_source_makes[",
+    "tests/orientation_course/test_selftest.py::test_every_question_passes_and_names_its_mistakes[",
+    "tests/pages/test_takeaway.py::test_script_runs[",
+)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config):
+    """One process more than there are cores: while one waits for a page, another works."""
+    return (os.cpu_count() or 1) + 1
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Share the tests out among processes by file: the cells of a notebook have one kernel, many tests one fixture.
+
+    Those that stand apart come one by one, after the larger files, so that no process is left without work.
+    """
+
+    class ByFile(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return nodeid if nodeid.startswith(APART) else super()._split_scope(nodeid)
+
+    return ByFile(config, log)
+
+
+def pytest_addoption(parser):
+    parser.addoption("--write-times", action="store_true", help="write the table of tests/TIMES.md")
+
+
+def pytest_configure(config):
+    # What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata.
+    if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
+        raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
+    nbval.plugin.IPyNbCell.compare_outputs = stored_outputs.compare_outputs
+    nbval.plugin.IPyNbCell.format_output_compare = stored_outputs.format_output_compare
+    nbval.kernel.KernelManager = warm_kernels.WarmKernelManager
+    config.pluginmanager.register(times.Times(config))
+    config.addinivalue_line(
+        "markers",
+        "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of all tests of the file "
+        "that name the same thing, only so many run every time, spread evenly over all; the rest is long",
+    )
+
+
+def pytest_report_header():
+    return f"what is drawn by lot is drawn from BOOK_TEST_SEED={SEED!r}"
+
+
+@pytest.hookimpl(tryfirst=True)  # before those that are marked as long are left out
+def pytest_collection_modifyitems(items):
+    cases = defaultdict(list)
+    for item in items:
+        for node, marker in item.iter_markers_with_node("sampled"):
+            if not item.get_closest_marker("long"):
+                name = node.nodeid.partition("[")[0]  # of the test, or of the file that is marked
+                if "of" in marker.kwargs:
+                    name = f"{name.partition('::')[0]} {marker.kwargs['of']}"
+                cases[name, marker.args[0]].append(item)
+            break  # the closest
+    for (_, number), found in cases.items():
+        chosen = spread(found, number)
+        for item in found:
+            if item not in chosen:
+                item.add_marker(pytest.mark.long)
+
+
+def pytest_unconfigure():
+    warm_kernels.warm.end()
+
+
+@pytest.fixture(scope="session")
+def site():
+    """The address of the built book, served locally."""
+    from notebook_pages.serve import server
+
+    if not (HTML / "index.html").exists():
+        pytest.fail("the book is not built: run `make book`")
+    book = server(folder=HTML)
+    threading.Thread(target=book.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{book.server_port}/"
+    book.shutdown()
+    book.server_close()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Headless Chromium; skipped with a reason where there is none."""
+    from playwright.sync_api import sync_playwright
+
+    found = find()
+    if found is None:
+        reason = MISSING
+        pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=found, args=list(FLAGS))
+        open_context = chromium.new_context
+
+        # Conditions that a test waits for are programs, which the pages' own policy forbids: only tests that look
+        # at what the policy does (``bypass_csp=False``) have it enforced.
+        def open_patient_context(**options):
+            context = open_context(**{"bypass_csp": True, **options})
+            context.set_default_timeout(PATIENCE)
+            return context
+
+        chromium.new_context = open_patient_context
+        yield chromium
+        chromium.close()

@@ -1,0 +1,118 @@
+"""A course: where its notebooks with solutions are, and where what is made of them goes."""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import NamedTuple
+
+from .author import AuthorError
+
+FILE = "course.toml"
+
+
+class Course(NamedTuple):
+    """What ``course.toml`` says; all paths are absolute.
+
+    Attributes
+    ----------
+    title : str
+    sources : Path
+        The folder of the notebooks with solutions. Nothing but releasing and grading needs it.
+    exercises, sealed : Path
+        The folders of the notebooks that students get and of the sealed questions.
+    archive : Path
+        What students download.
+    package : str
+        ``module:function`` that builds the wheels for students into a folder, that of coursework among them, and gives
+        their paths, for a course with a package of its own; empty for one that needs nothing but coursework.
+    edition : str
+        Each edition draws the variants of questions afresh: an exam, say, or another year.
+    chapter, solution : str
+        Addresses that the graders' feedback leads to, with ``{notebook}`` and ``{question}`` in them: where one reads
+        on, and the worked solution, named here once it is released.
+    moved : dict
+        Names that questions had in an earlier edition, and those that they have now.
+    """
+
+    root: Path
+    title: str
+    sources: Path
+    exercises: Path
+    sealed: Path
+    archive: Path
+    package: str = ""
+    edition: str = ""
+    chapter: str = ""
+    solution: str = ""
+    moved: dict = {}
+
+
+#: What a course may say that is no path.
+TEXTS = ("package", "edition", "chapter", "solution")
+MOVED = "moved"
+DEFAULTS = {
+    "sources": "solutions",
+    "exercises": "exercises",
+    "sealed": "exercises/sealed",
+    "archive": "build/exercises.zip",
+}
+
+
+def find_course(start="."):
+    """The course of a folder: that of the nearest ``course.toml``, there or above.
+
+    Raises
+    ------
+    AuthorError
+        There is none, or it is not understood.
+    """
+    course = _course_around(start)
+    if course is None:
+        raise AuthorError(
+            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. `coursework new COURSE` makes a "
+            "course that has one."
+        )
+    return course
+
+
+def _course_around(start):
+    start = Path(start).resolve()
+    found = next((folder / FILE for folder in (start, *start.parents) if (folder / FILE).is_file()), None)
+    return found and _read(found)
+
+
+def edition_of(folder):
+    """The edition of the course that a folder belongs to; empty where it belongs to none."""
+    course = _course_around(folder)
+    return course.edition if course else ""
+
+
+def links_of(folder):
+    """The addresses that the course of a folder names, by what they lead to."""
+    course = _course_around(folder)
+    return {name: address for name in ("chapter", "solution") if course and (address := getattr(course, name))}
+
+
+def _read(path):
+    try:
+        said = tomllib.loads(path.read_text("utf8"))
+    except ValueError as error:
+        raise AuthorError(f"{path}: {error}") from None
+    moved = said.pop(MOVED, {})
+    if not isinstance(moved, dict) or not all(isinstance(name, str) for name in moved.values()):
+        raise AuthorError(f'{path}: [{MOVED}] holds old and new names of questions: "levers/arm" = "levers/moment"')
+    unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
+    if unknown or not all(isinstance(value, str) for value in said.values()):
+        raise AuthorError(
+            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, a table [{MOVED}], and "
+            + "nothing else"
+            + (f"; what is {unknown[0]!r}?" if unknown else ".")
+        )
+    places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
+    others = {name: said.get(name, "") for name in TEXTS}
+    for name in ("chapter", "solution"):
+        if others[name] and not re.fullmatch(r"https?://[^{}\s]*(\{(notebook|question)\}[^{}\s]*)+", others[name]):
+            raise AuthorError(
+                f"{path}: `{name}` is an address with {{notebook}} or {{question}} in it, and {others[name]!r} is none."
+            )
+    return Course(path.parent, said.get("title", path.parent.name), **places, **others, moved=moved)

@@ -1,0 +1,216 @@
+"""What students download: the notebooks, the sealed questions, and the package that checks them."""
+
+import base64
+import hashlib
+import re
+import shutil
+import subprocess
+import tempfile
+import zipfile
+from datetime import UTC, datetime
+from importlib import import_module
+from pathlib import Path
+
+import coursework
+
+from ..checking.update import MANIFEST, manifest
+
+#: Every file of an archive carries this time, so that the same contents are the same bytes.
+TIME = (2026, 1, 1, 0, 0, 0)
+#: What each distribution holds of coursework, what it needs, and its one line. Students get neither the author's
+#: tools nor the grader.
+DISTRIBUTIONS = {
+    "coursework-checks": (
+        ("*.py", "py.typed", "checking/*.py"),
+        ("sympy<2,>=1.14",),
+        "Exercises in notebooks that check themselves and hold no answers: what a student needs",
+    ),
+    "coursework-tools": (
+        ("authoring/**/*", "grading/**/*"),
+        (
+            "coursework-checks=={version}",
+            "ipykernel",
+            "ipython",
+            "jinja2",
+            "latex2mathml",
+            "markdown-it-py",
+            "markupsafe",
+            "matplotlib",  # what students plot with
+            "mdit-py-plugins",
+            "nbclient",
+            "nbformat",
+            "numpy",
+            "packaging",
+            "pyyaml",  # Gradescope's table of submissions
+            "tornado",  # the page to judge in
+        ),
+        "Exercises in notebooks that check themselves and hold no answers: what authors and instructors need",
+    ),
+}
+README = """Exercises of {title}
+
+1. Install Python 3.11 or newer, then in this folder:
+
+       python -m pip install -r requirements.txt
+
+2. Start Jupyter and open a notebook:
+
+       jupyter lab
+
+Answer in place of the dots and run the check below each question. It says whether the answer is right or what
+was mixed up. Your progress is kept in the folder .coursework beside the notebooks and nowhere else.
+
+When there is a newer archive, do not unpack it over your work. Run
+
+       python -m coursework update exercises.zip
+
+in this folder: it adds what is new, puts the new package in place of the old one, tells how to install it,
+replaces the notebooks that you have not changed, and leaves every one that you have changed as it is.
+"""
+ABOUT = """Metadata-Version: 2.1
+Name: {name}
+Version: {version}
+Summary: {summary}
+License: BSD-3-Clause
+Requires-Python: >=3.11
+"""
+
+
+WHEEL = """Wheel-Version: 1.0
+Generator: coursework
+Root-Is-Purelib: true
+Tag: py3-none-any
+"""
+VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
+
+
+def archive(course, target=None):
+    """Make the archive for students. The same contents give the same bytes.
+
+    Parameters
+    ----------
+    course : Course
+    target : path, optional
+        Another place than the course names.
+    """
+    target = Path(target or course.archive)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        module, _, function = course.package.partition(":")
+        wheels = (
+            getattr(import_module(module), function)(folder) if course.package else [wheel("coursework-checks", folder)]
+        )
+        packages = {path.name: path.read_bytes() for path in wheels}
+    files = {
+        "README.txt": README.format(title=course.title).encode("utf8"),
+        # The manifest has the digest of each.
+        "requirements.txt": "".join(
+            f"{one}\n" for one in [*(f"./{name}" for name in packages), "jupyterlab", "latex2mathml"]
+        ).encode(),
+        **packages,
+    }
+    files |= {path.name: path.read_bytes() for path in course.exercises.glob("*.ipynb")}
+    if not course.package:
+        files |= {f"sealed/{path.name}": path.read_bytes() for path in course.sealed.glob("*.json")}
+        files |= {
+            f"sealed/variants/{path.name}": path.read_bytes() for path in (course.sealed / "variants").glob("*.json")
+        }
+    files[MANIFEST] = manifest(files).encode()
+    write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
+    return target
+
+
+def dated(stated, tag, folder, paths=(".",), files=()):
+    """The version of a package that is built from its sources: as it is stated, or ``1.2.0.post20261122093000``.
+
+    A package that students hold is only replaced by one of another version. So the version that the sources state is
+    for those of its tag alone; built from others, it adds when they were last changed, in UTC: when they were last
+    committed or, where something is not committed or there is no repository, when those files were written.
+
+    Parameters
+    ----------
+    stated, tag : str
+    folder : path
+        In the repository, as a rule.
+    paths : sequence of str
+        What git is asked about: the sources, as patterns of paths below the folder.
+    files : sequence of Path
+        The sources, where there is no repository.
+    """
+
+    def git(*arguments):
+        """What git says, or nothing where there is no git, or no repository that it would read."""
+        if not shutil.which("git"):
+            return ""
+        done = subprocess.run(["git", "-C", folder, *arguments, "--", *paths], capture_output=True, text=True)
+        return done.stdout.strip() if done.returncode == 0 else ""
+
+    def named(*arguments):
+        return [Path(folder, name) for name in git(*arguments, "-z").split("\0") if name]
+
+    committed = git("log", "-1", "--format=%ct")
+    if committed:
+        unknown = named("ls-files", "--others", "--exclude-standard")
+        if git("log", "-1", "--format=%ct", tag) and not unknown + named("diff", "--name-only", "--relative", tag):
+            return stated
+        files = unknown + named("diff", "--name-only", "--relative", "HEAD")
+    # Of a file that is gone, the folder that it stood in tells when.
+    written = [(path if path.exists() else path.parent).stat().st_mtime for path in files]
+    return f"{stated}.post{datetime.fromtimestamp(max([int(committed or 0), *written]), UTC):%Y%m%d%H%M%S}"
+
+
+def _own_version(root):
+    """The version of this package; where it was installed from a wheel, that is the version of the wheel."""
+    tracked = (
+        shutil.which("git")
+        and not subprocess.run(
+            ["git", "-C", root, "ls-files", "--error-unmatch", "__init__.py"], capture_output=True
+        ).returncode
+    )
+    stated = coursework.__version__
+    return dated(stated, f"coursework-checks-{stated}", root) if tracked else stated
+
+
+def wheel(name, folder):
+    """Build one of :data:`DISTRIBUTIONS` out of the coursework that is installed here, and give its file."""
+    patterns, needs, summary = DISTRIBUTIONS[name]
+    root = Path(coursework.__file__).parent
+    version = _own_version(root)
+    place = f"{name.replace('-', '_')}-{version}"
+    files = {
+        f"coursework/{path.relative_to(root).as_posix()}": path.read_bytes()
+        for pattern in patterns
+        for path in root.glob(pattern)
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    if "coursework/__init__.py" in files:
+        text = files["coursework/__init__.py"].decode("utf8")
+        files["coursework/__init__.py"] = VERSION.sub(f'__version__ = "{version}"', text).encode("utf8")
+    about = ABOUT.format(name=name, version=version, summary=summary) + "".join(
+        f"Requires-Dist: {one.format(version=version)}\n" for one in needs
+    )
+    files |= {
+        f"{place}.dist-info/METADATA": about.encode(),
+        f"{place}.dist-info/WHEEL": WHEEL.encode(),
+        f"{place}.dist-info/entry_points.txt": b"[console_scripts]\n"
+        + (b"coursework = coursework.__main__:main\n" if name == "coursework-checks" else b""),
+    }
+    lines = [f"{name},sha256={_digest(content)},{len(content)}\n" for name, content in sorted(files.items())]
+    record = f"{place}.dist-info/RECORD"
+    files[record] = "".join([*lines, f"{record},,\n"]).encode()
+    return write_zip(Path(folder, f"{place}-py3-none-any.whl"), files)
+
+
+def _digest(content):
+    return base64.urlsafe_b64encode(hashlib.sha256(content).digest()).decode().rstrip("=")
+
+
+def write_zip(target, files):
+    """Write contents by name into a zip, always the same way."""
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, TIME)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            box.writestr(entry, files[name])
+    return target

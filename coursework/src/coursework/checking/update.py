@@ -1,0 +1,194 @@
+"""A newer archive of exercises beside a student's work, which stays as it is.
+
+An archive holds a manifest: what was handed out, by name, each file with a digest. So what nobody has changed since
+is known, and a newer one takes its place.
+"""
+
+import hashlib
+import json
+import re
+import sys
+import zipfile
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+#: The file of a package: its name and its version.
+WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
+REQUIREMENTS = "requirements.txt"
+#: The folder of the sealed questions: no student changes them, so a newer one takes the place of the older one.
+SEALED = "sealed/"
+
+
+MANIFEST = "manifest.json"
+#: Of manifests.
+FORMAT = 1
+
+
+class ArchiveRefused(ValueError):
+    """The archive is older than the folder, or the folder is of a newer coursework; the message says which."""
+
+
+def manifest(files):
+    """The manifest of files by name, as text.
+
+    >>> json.loads(manifest({"README.txt": b"Answer in place of the dots."}))
+    {'files': {'README.txt': '57c8e4f1c8ae41625a63c305e9a221a4'}, 'format': 1}
+    """
+    return _as_text({name: digest_of(name, data) for name, data in files.items()})
+
+
+def _as_text(digests):
+    return json.dumps({"format": FORMAT, "files": digests}, indent=0, sort_keys=True) + "\n"
+
+
+def digest_of(name, data):
+    """A digest of what stands in a file; of a notebook, of what its cells say: to run it is not to change it."""
+    if name.endswith(".ipynb"):
+        try:
+            cells = json.loads(data)["cells"]
+            data = json.dumps([[cell["cell_type"], "".join(cell["source"])] for cell in cells]).encode()
+        except (ValueError, KeyError, TypeError):
+            pass  # no notebook: its bytes count
+    return hashlib.sha256(data).hexdigest()[:32]
+
+
+def update(archive_file, folder="."):
+    """Unpack a newer archive of exercises beside a student's work.
+
+    What nobody has changed since it was handed out is replaced. What somebody has changed is left as it is, and what
+    is new is put beside it under a new name. The package takes the place of the older one.
+
+    Parameters
+    ----------
+    archive_file, folder : path
+
+    Returns
+    -------
+    list of str
+        A line for each file, and at the end how to install the package, if another one is installed.
+
+    Raises
+    ------
+    ArchiveRefused
+        Nothing was changed.
+    """
+    folder = Path(folder)
+    with zipfile.ZipFile(archive_file) as box:
+        entries = [entry for entry in sorted(box.namelist()) if not entry.endswith("/")]
+        files = {_place(entry): box.read(entry) for entry in entries}
+    files.pop(MANIFEST, None)
+    before = _handed_out(folder)
+    now = {name: digest_of(name, data) for name, data in files.items()}
+    older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
+    to_install = [str(folder / name) for name in older if not _is_installed(name)]
+    said = []
+    for name, data in files.items():
+        place = folder / name
+        if place.exists() and place.read_bytes() == data:
+            said.append(f"the same    {name}")
+        elif name.startswith(SEALED):
+            said.append(f"{'replaced' if place.exists() else 'added':<12}{name}")
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(data)
+        elif name in older:
+            place.write_bytes(data)
+            for path in older[name]:
+                path.unlink()
+            said.append(
+                f"{'replaced' if older[name] else 'added':<12}{', '.join(path.name for path in older[name]) or name}"
+            )
+        elif not place.exists():
+            place.write_bytes(data)
+            said.append(f"added       {name}")
+        elif before.get(name) == digest_of(name, place.read_bytes()):
+            place.write_bytes(data)
+            said.append(f"replaced    {name}, which you had not changed")
+        elif name == REQUIREMENTS:
+            place.write_text(_with_new_packages(place.read_text("utf8"), older), "utf8")
+            said.append(f"changed     {name}")
+        elif before.get(name) == now[name]:
+            said.append(f"kept yours  {name}; nothing in it is new")
+        else:
+            beside = _put_beside(place, data, before)
+            now[beside] = now[name]
+            said.append(f"kept yours  {name}; the new one is {beside}")
+    (folder / MANIFEST).write_text(_as_text({**before, **now}), "utf8")
+    if to_install:
+        command = ["python" if sys.platform == "win32" else sys.executable, "-m", "pip", "install", *to_install]
+        line = " ".join(f'"{word}"' if " " in word else word for word in command)
+        said.append(f"Now run this:\n\n    {line}\n")
+    return said
+
+
+def _place(entry):
+    """Where an entry of the archive goes: sealed questions into a folder of their own, other files into the folder."""
+    path = Path(entry)
+    if path.parent.name == "variants":
+        return f"{SEALED}variants/{path.name}"
+    return f"{SEALED}{path.name}" if path.parent.name == "sealed" else path.name
+
+
+def _is_installed(name):
+    wheel = WHEEL.fullmatch(name)
+    try:
+        return version(wheel["name"]) == wheel["version"]
+    except PackageNotFoundError:
+        return False
+
+
+def _order(number):
+    """Versions in their order: those of our packages are numbers, and ``post`` with a number."""
+    return [int(part) for part in re.findall(r"\d+", number)]
+
+
+def _older(folder, name):
+    """The files of ``folder`` that hold another version of the package in the file ``name``."""
+    new = WHEEL.fullmatch(name)
+    found = []
+    for path in sorted(folder.glob("*.whl")):
+        present = WHEEL.fullmatch(path.name)
+        if present and present["name"] == new["name"] and path.name != name:
+            if _order(present["version"]) > _order(new["version"]):
+                raise ArchiveRefused(
+                    f"The archive is older than this folder: it has version {new['version']} of the package, "
+                    f"and here is {present['version']}. Nothing was changed."
+                )
+            found.append(path)
+    return found
+
+
+def _with_new_packages(text, wheels):
+    """A list of requirements that names the new files; other lines are the student's and stay."""
+    for name in wheels:
+        package = re.escape(WHEEL.fullmatch(name)["name"])
+        text, count = re.subn(rf"^(\./)?{package}-[^-]+-\S+\.whl", f"./{name}", text, flags=re.M)
+        if not count:
+            text = f"./{name}\n{text}"
+    return text
+
+
+def _put_beside(place, data, before):
+    """Write a new file beside the one that a student has changed, and give its name."""
+    number = 1
+    while (beside := place.with_name(f"{place.stem}-new-{number}{place.suffix}")).exists():
+        there = beside.read_bytes()
+        if there == data or before.get(beside.name) == digest_of(beside.name, there):
+            break
+        number += 1
+    beside.write_bytes(data)
+    return beside.name
+
+
+def _handed_out(folder):
+    """What was handed out into a folder, by name: the digest of each file. Nothing, if that was before manifests."""
+    try:
+        found = json.loads((folder / MANIFEST).read_text("utf8"))
+        number, files = found["format"], dict(found["files"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}  # what is not known to be as it was handed out is the student's
+    if number != FORMAT:
+        raise ArchiveRefused(
+            f"{MANIFEST} in this folder is of format {number}, and the coursework that is installed reads {FORMAT}: "
+            "install the package that lies in this folder, and run this again. Nothing was changed."
+        )
+    return files

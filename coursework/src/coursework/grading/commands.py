@@ -1,0 +1,331 @@
+"""The commands of instructors, from ``coursework grade`` to ``coursework sample-class``."""
+
+import re
+import sys
+
+
+def add_commands(commands):
+    """Add these commands to those of ``coursework``."""
+    grade = commands.add_parser("grade", help="grade a folder or an archive of notebooks")
+    grade.add_argument("submissions", help="a folder, a zip of Canvas, Moodle or Brightspace, or a notebook")
+    grade.add_argument("--out", required=True, help="folder for marks, feedback and reports")
+    grade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    grade.add_argument(
+        "--assignment",
+        action="append",
+        default=[],
+        metavar="NAME[=NOTEBOOK,...]",
+        help="grade this assignment only; with = the notebooks of the exercises that make it up",
+    )
+    grade.add_argument(
+        "--roster", metavar="FILE.csv", help="who is in the course: a table, or the gradebook your system exports"
+    )
+    grade.add_argument("--student", help="the one student who handed all of it in")
+    grade.add_argument(
+        "--only-list", action="store_true", help="say whose each file is and how that is known; run nothing"
+    )
+    grade.add_argument("--workers", type=int, help="how many notebooks are run at a time (one for each processor)")
+    grade.add_argument(
+        "--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead, such as tcp://host:8786"
+    )
+    grade.add_argument(
+        "--allow-weak-isolation",
+        action="store_true",
+        help="run student code although this machine cannot keep it apart; only on a machine you can lose",
+    )
+    grade.add_argument(
+        "--as-listed",
+        action="store_true",
+        help="go on although many notebooks say that they are of somebody else than the list shows",
+    )
+    regrade = commands.add_parser(
+        "regrade", help="judge the stored answers again, after a question or a decision changed"
+    )
+    regrade.add_argument("out", metavar="DIR")
+    regrade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    review = commands.add_parser("review", help="judge answers on a page that this machine alone sees")
+    review.add_argument("out", metavar="DIR")
+    review.add_argument("--grader", help="your name, for the ledger; your user's if it is not said")
+    review.add_argument(
+        "--share", default="1/1", metavar="K/N", help="the K-th of N shares, if several people judge: 2/3"
+    )
+    review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
+    review.add_argument("--solutions", help="folder of the notebooks with solutions")
+    review.add_argument("--port", type=int, default=0, help="the port; any that is free if it is not said")
+    merge = commands.add_parser("merge", help="take in the decisions of another grader")
+    merge.add_argument("out", metavar="DIR")
+    merge.add_argument("ledgers", nargs="+", metavar="ledger.jsonl")
+    term = commands.add_parser("term", help="what a whole course comes to: due dates, weights, statistics")
+    term.add_argument("out", metavar="DIR")
+    term.add_argument(
+        "--rules", required=True, metavar="FILE.toml", help="due dates, extensions, weights: see the book"
+    )
+    term.add_argument(
+        "--earlier", nargs="+", default=[], metavar="counts.json", help="the counts of other years, to compare"
+    )
+    export = commands.add_parser("export", help="hand the marks on")
+    export.add_argument("out", metavar="DIR")
+    export.add_argument(
+        "--lms", metavar="FILE.csv", help="the gradebook that you exported from Canvas, Moodle or Brightspace"
+    )
+    export.add_argument(
+        "--filled", metavar="FILE.csv", help="where the filled gradebook goes; FILE-filled.csv if not said"
+    )
+    export.add_argument("--column", help="the column to fill, by its name or the beginning of it")
+    export.add_argument(
+        "--name",
+        action="append",
+        default=[],
+        metavar="OURS=THEIRS",
+        help="what a column is called there, in a gradebook of another language: --name 'identifier=ID'",
+    )
+    export.add_argument(
+        "--rules", metavar="FILE.toml", help="the rules of the term: what is late costs points, who is excused has none"
+    )
+    export.add_argument(
+        "--as-graded", action="store_true", help="hand on the points as graded, although the term has rules"
+    )
+    export.add_argument("--dry-run", action="store_true", help="say what would be filled in, and write nothing")
+    export.add_argument(
+        "--overwrite",
+        action="append",
+        default=[],
+        metavar="STUDENT",
+        help="fill in also where somebody entered another mark for this student; an excuse stays",
+    )
+    export.add_argument("--assignment", help="the assignment whose points are handed on, if there are several")
+    export.add_argument(
+        "--feedback", metavar="FILE.zip", help="write the pages of feedback, named for your system to take them back"
+    )
+    export.add_argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table")
+    export.add_argument(
+        "--gradescope", metavar="results.json", help="write the results of a Gradescope autograder, for one student"
+    )
+    export.add_argument("--student", help="the student for --gradescope, if there are several")
+    gradescope = commands.add_parser("gradescope", help="make an autograder of one assignment for Gradescope")
+    gradescope.add_argument("--out", required=True, metavar="FILE.zip")
+    gradescope.add_argument("--solutions", help="folder of the notebooks with solutions")
+    gradescope.add_argument("--assignment", required=True, metavar="NAME[=NOTEBOOK,...]")
+    gradescope.add_argument("--roster", metavar="FILE.csv", help="who is in the course, with their addresses")
+    sample = commands.add_parser("sample-class", help="make a class to try grading on")
+    sample.add_argument("--out", required=True, help="folder for the class")
+    sample.add_argument("--students", type=int, default=200)
+    sample.add_argument("--seed", type=int, default=1)
+    sample.add_argument(
+        "--notebooks", default="", help="the exercises to hand in, separated by commas; they become one notebook"
+    )
+    sample.add_argument("--solutions", help="folder of the notebooks with solutions")
+    sample.add_argument(
+        "--layout", default="folders", choices=("folders", "canvas", "moodle", "brightspace", "nbgrader")
+    )
+
+
+def _named(assignments):
+    """The notebooks that make up each assignment, from ``NAME`` and ``NAME=NOTEBOOK,...``."""
+    parts = [one.partition("=") for one in assignments]
+    return {name: (notebooks or name).split(",") for name, _, notebooks in parts} or None
+
+
+def grade(assignment, **options):
+    from .execution.sandbox import WeakIsolation, WorkerDied
+    from .grade import grade as grade_class
+    from .store import InUse
+
+    try:
+        grade_class(assignments=_named(assignment), **options)
+    except (InUse, WeakIsolation, WorkerDied, ValueError) as error:  # NothingToGrade and BadRoster are such
+        sys.exit(f"coursework grade: {error}")
+    except KeyboardInterrupt:
+        sys.exit("\nStopped. The same command goes on from here.")
+    if not options["only_list"]:
+        print(f"The report: {options['out']}/report.html")
+
+
+def regrade(out, solutions):
+    from .store import InUse
+
+    try:
+        _regrade(out, solutions)
+    except (InUse, ValueError) as error:  # NothingToGrade is such
+        sys.exit(f"coursework regrade: {error}")
+
+
+def _regrade(out, solutions):
+    from .grade import regrade as regrade_class
+    from .tables import number
+
+    moved = regrade_class(out, solutions=solutions)
+    for one in moved:
+        print(
+            f"{one.student!r}, {one.assignment}: {number(one.before)} -> {number(one.after)}  "
+            f"({', '.join(one.questions)})"
+        )
+    print(f"{len(moved)} moved.")
+
+
+def review(out, grader, share, hide_names, solutions, port):
+    import getpass
+
+    from .review import review as serve
+    from .store import InUse
+
+    found = re.fullmatch(r"(\d+)/(\d+)", share)
+    mine, shares = map(int, found.groups()) if found else (0, 0)
+    if not 1 <= mine <= shares:
+        sys.exit(f"coursework review: a share is one of several, such as 2/3, and this is {share!r}.")
+
+    def say(address):
+        print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
+
+    try:
+        serve(out, grader or getpass.getuser(), share=(mine, shares), hide_names=hide_names, port=port, say=say)
+    except ValueError as error:
+        sys.exit(f"coursework review: {error}")
+    except KeyboardInterrupt:
+        print("\nThe decisions are brought into the marks and pages.")
+        try:
+            _regrade(out, solutions)
+        except (InUse, ValueError) as error:
+            sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
+
+
+def merge(out, ledgers):
+    from pathlib import Path
+
+    from .judging.ledger import Ledger
+    from .store import Store
+    from .tables import in_a_line
+
+    ledger, store = Ledger(Path(out)), Store(out)
+    missing = [path for path in ledgers if not Path(path).is_file()]
+    if missing:
+        sys.exit(
+            f"coursework merge: there is no {missing[0]}. Who has decided nothing yet has no ledger: leave it out."
+        )
+    for path in ledgers:
+        try:
+            new, differing = ledger.merge(Path(path))
+        except (OSError, ValueError) as error:
+            sys.exit(f"coursework merge: {error}")
+        print(f"{new} decisions from {path}.")
+        foreign = [one for one in ledger.decisions[len(ledger.decisions) - new :] if not _is_here(store, one)]
+        if foreign:
+            whose = ", ".join(in_a_line(name, 60) for name in dict.fromkeys(one.student for one in foreign))
+            print(f"  {len(foreign)} of them are on answers that are not here: {whose}. They change no mark.")
+        for first, second in differing:
+            print(
+                f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, {second.who} gave "
+                f"{second.credit}; the later one counts."
+            )
+
+
+def _is_here(store, decision):
+    """Whether the answer that was decided on is that of the records."""
+    from .judging.ledger import digest_of_answer
+
+    record = store.read(decision.student, decision.assignment)
+    return record is not None and digest_of_answer(record, decision.question) == decision.answer
+
+
+def term(out, rules, earlier):
+    from .judging.term import BadRules, keep_rules, read_rules
+    from .reporting.course_pages import FOLDER, write_course
+    from .store import Store
+
+    try:
+        said = write_course(Store(out), read_rules(rules), earlier=earlier)
+        keep_rules(Store(out), rules)
+    except BadRules as error:
+        sys.exit(f"coursework term: {error}")
+    print(*said, f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it", sep="\n")
+
+
+def export(
+    out,
+    lms,
+    filled,
+    column,
+    name,
+    rules,
+    as_graded,
+    dry_run,
+    overwrite,
+    assignment,
+    feedback,
+    nbgrader,
+    gradescope,
+    student,
+):
+    from .export import gradebooks
+    from .judging.term import BadRules, read_rules, rules_of
+    from .store import Store
+
+    if not (lms or feedback or nbgrader or gradescope):
+        sys.exit("coursework export: name what to write: --lms, --feedback, --nbgrader or --gradescope.")
+    try:
+        store = Store(out)
+        known = None if as_graded else rules or rules_of(store)
+        if known and not rules and (lms or nbgrader):
+            raise gradebooks.CannotExport(
+                f"The term has rules, {known}, and these would be the points before them. Say --rules {known}, or "
+                "--as-graded."
+            )
+        marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None)
+        if lms:
+            names = dict(one.partition("=")[::2] for one in name)
+            said = gradebooks.fill(lms, marks, column, filled, names, overwrite, dry_run)
+            print(*said, sep="\n")
+        if dry_run:
+            return
+        if feedback:
+            written = gradebooks.write_feedback(feedback, marks, store)
+            print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
+        if nbgrader:
+            gradebooks.write_nbgrader(nbgrader, marks)
+        if gradescope:
+            gradebooks.write_gradescope(gradescope, marks, student)
+    except (gradebooks.CannotExport, BadRules, ValueError) as error:
+        sys.exit(f"coursework export: {error}")
+
+
+def gradescope(out, solutions, assignment, roster):
+    from .export.gradescope import write_autograder
+
+    try:
+        stems = write_autograder(out, _named([assignment]), solutions=solutions, roster=roster)
+    except (OSError, ValueError) as error:
+        sys.exit(f"coursework gradescope: {error}")
+    print(f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and show it to nobody.")
+
+
+def sample_class(out, students, seed, notebooks, solutions, layout):
+    from .sample_class import make_class
+
+    made = make_class(out, students, seed, [name for name in notebooks.split(",") if name], solutions, layout)
+    print(f"{students} students in {made}")
+
+
+def _told(name, command):
+    """A command that says what the system refused, in place of where in the code that happened."""
+
+    def told(**options):
+        try:
+            return command(**options)
+        except OSError as error:
+            where = f": {error.filename}" if error.filename else ""
+            sys.exit(f"coursework {name}: {error.strerror or error}{where}")
+
+    return told
+
+
+COMMANDS = {
+    "grade": grade,
+    "regrade": regrade,
+    "review": review,
+    "merge": merge,
+    "term": term,
+    "export": export,
+    "gradescope": gradescope,
+    "sample-class": sample_class,
+}
+COMMANDS = {name: _told(name, command) for name, command in COMMANDS.items()}

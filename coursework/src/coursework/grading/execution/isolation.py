@@ -1,0 +1,549 @@
+"""What keeps a student's code apart from the machine, in layers that are tried before they are trusted.
+
+Each layer alone stops something; together they must stop every attempt of :data:`ATTEMPTS`, and it is
+tried at each start whether they do. Student code is not run otherwise.
+
+namespaces
+    The warm parent and its children see a root folder made for them: Python, its libraries and
+    nothing else, read only; a network with no way out; no processes but their own, so that ending
+    the first ends all. Each notebook has its own scratch folder, in memory and of limited size.
+    Made by bubblewrap where it is installed and works, else by our own calls. Does not limit memory
+    or processor, and leaves the kernel's whole surface open. Missing on systems that forbid
+    unprivileged user namespaces (Ubuntu 24.04 does), inside most containers, and always without Linux.
+landlock
+    The kernel lets the process read Python's own files and write in its scratch folder only. From
+    Linux 6.2 it can stand in for the root folder of its own; from 6.7 it refuses TCP, from 6.12 local
+    sockets and signals too. Does not cover UDP, does not hide that a file exists, and does not cover
+    changes of modes and owners: the next layer does.
+seccomp
+    A list of system calls (see :mod:`coursework.grading.execution.system_calls`): no socket of any kind, no new
+    process, no other program, no signal to others, no change of modes. Cannot tell one file from another.
+resource limits
+    Memory, processor time, size of a file, open files, threads, no core files. They hold for one
+    process, so they bound a notebook only together with seccomp, which allows it only one.
+no privileges
+    No capabilities, no way to gain any, and, if grading is started by root, another user.
+
+What is enough, then: seccomp, resource limits and no privileges, with namespaces or a recent Landlock.
+That the environment is empty, files are closed and output goes nowhere belongs to every start.
+
+All of it is standard library and system calls; nothing here knows about notebooks or answers.
+"""
+
+import contextlib
+import ctypes
+import encodings.idna  # noqa: F401  an attempt needs it where its file can no longer be read
+import errno
+import mmap
+import os
+import resource
+import signal
+import socket
+import stat
+import struct
+import sys
+import sysconfig
+import threading
+from pathlib import Path
+
+from coursework.checking.plugins import folders_of, packages
+from coursework.grading.execution import system_calls
+
+NAMESPACES, LANDLOCK, SECCOMP = "namespaces", "landlock", "seccomp"
+LIMITS, PRIVILEGES = "resource limits", "no privileges"
+LAYERS = (NAMESPACES, LANDLOCK, SECCOMP, LIMITS, PRIVILEGES)
+
+HOW_TO_GET = {
+    NAMESPACES: "install bubblewrap, or allow unprivileged user namespaces "
+    "(sysctl kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu), or start as root",
+    LANDLOCK: "use Linux 6.2 or newer with Landlock enabled (lsm=landlock,... on the kernel's command line)",
+    SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that forbids them",
+    LIMITS: "start grading where the limits of memory, time and files may be lowered",
+    PRIVILEGES: "start grading as an ordinary user, or as root with the right to change users",
+}
+
+
+class IsolationError(OSError):
+    """A layer could not be put in force; the message says which and why."""
+
+
+_library = ctypes.CDLL(None, use_errno=True)
+_library.mount.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_ulong, ctypes.c_char_p)
+
+
+def _call(what, result):
+    if result < 0:
+        code = ctypes.get_errno()
+        raise IsolationError(code, f"{what}: {os.strerror(code)}")
+    return result
+
+
+def _system_call(what, number, *arguments):
+    longs = [ctypes.c_long(a) if isinstance(a, int) else a for a in arguments]
+    return _call(what, _library.syscall(ctypes.c_long(number), *longs))
+
+
+# ---- what Python must be able to read
+
+DEVICES = ("/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
+
+
+def readable_paths():
+    """The folders and files that Python and the libraries are loaded from, and no others."""
+    import site
+
+    wanted = [sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")]
+    wanted += site.getsitepackages()
+    # Shared libraries: of this Python, then of the system.
+    wanted += [
+        sysconfig.get_config_var("LIBDIR"),
+        "/lib",
+        "/lib64",
+        "/lib32",
+        "/usr/lib",
+        "/usr/lib64",
+        "/usr/local/lib",
+        "/etc/ld.so.cache",
+        "/usr/share/zoneinfo",
+    ]
+    # The interpreter itself, for bubblewrap to start.
+    wanted += [sys.executable, os.path.realpath(sys.executable), os.path.join(sys.prefix, "pyvenv.cfg")]
+    # This package and those of the course, also where they are installed from a working copy.
+    wanted.append(str(Path(__file__).resolve().parents[2]))
+    wanted += folders_of(packages())
+    existing = sorted({os.path.abspath(path) for path in wanted if path and os.path.exists(path)})
+    kept = []
+    for path in existing:
+        if not any(path == outer or path.startswith(outer + "/") for outer in kept):
+            kept.append(path)
+    return kept
+
+
+# ---- namespaces
+
+CLONE_NEWNS, CLONE_NEWCGROUP, CLONE_NEWUTS, CLONE_NEWIPC = 0x00020000, 0x02000000, 0x04000000, 0x08000000
+CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x10000000, 0x20000000, 0x40000000
+MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE = 2, 4, 16384, 1 << 18
+AT_FDCWD, AT_EMPTY_PATH, AT_RECURSIVE, MNT_DETACH = -100, 0x1000, 0x8000, 2
+OPEN_TREE, MOVE_MOUNT, MOUNT_SETATTR = 428, 429, 442
+PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
+READ_ONLY, NO_SETUID, NO_DEVICES = 1, 2, 4  # attributes of a mount
+OUTSIDER = 65534
+SCRATCH = "/scratch"
+
+
+def _places(readable):
+    """Where each readable path must be found: where it is named, and where its links lead."""
+    places = {}
+    for path in readable:
+        for name in (path, os.path.realpath(path)):
+            places.setdefault(name, path)
+    return places
+
+
+def bubblewrap_command(bubblewrap, readable):
+    """The command line in front of the warm parent that gives it namespaces by bubblewrap."""
+    command = [bubblewrap, "--as-pid-1", "--die-with-parent", "--cap-drop", "ALL"]
+    for namespace in ("ipc", "pid", "net", "uts", "cgroup-try"):
+        command.append(f"--unshare-{namespace}")
+    if os.geteuid() != 0:
+        command.append("--unshare-user")
+    # What the warm parent needs to mount each notebook's scratch folder, and to change its user if
+    # it is root; the notebook's process gives all of it up.
+    for capability in ("SYS_ADMIN", "SETPCAP", "SETUID", "SETGID", "KILL", "CHOWN", "DAC_OVERRIDE", "FOWNER"):
+        command += ["--cap-add", f"CAP_{capability}"]
+    places = _places(readable)
+    # Folders on the way would be closed to the user that root gives the code to.
+    on_the_way = {str(parent) for name in places for parent in Path(name).parents} - {"/"} - set(places)
+    for folder in sorted(on_the_way):
+        command += ["--perms", "0755", "--dir", folder]
+    for name, path in places.items():
+        command += ["--ro-bind", path, name]
+    for device in DEVICES:
+        command += ["--dev-bind", device, device]
+    command += ["--tmpfs", SCRATCH, "--symlink", SCRATCH, "/dev/shm"]
+    return [*command, "--remount-ro", "/", "--chdir", "/", "--"]
+
+
+def unshare_all():
+    """Leave the machine's namespaces; the process that is forked next is the first of the new ones."""
+    others = CLONE_NEWNS | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWCGROUP
+    user, group = os.geteuid(), os.getegid()
+    if user == 0 and _library.unshare(others) == 0:
+        return
+    _call("unshare", _library.unshare(CLONE_NEWUSER | others))
+    # A user namespace of its own, in which it is somebody without a name.
+    try:
+        Path("/proc/self/setgroups").write_text("deny")
+        Path("/proc/self/uid_map").write_text(f"{OUTSIDER} {user} 1")
+        Path("/proc/self/gid_map").write_text(f"{OUTSIDER} {group} 1")
+    except OSError as error:
+        raise IsolationError(error.errno, f"user namespace: {error.strerror}") from None
+
+
+def unshare_processes():
+    """Have the process that is forked next be the first of a namespace in which only those below it are seen."""
+    _call("unshare", _library.unshare(CLONE_NEWPID))
+
+
+def enter_own_root(readable):
+    """Change to a root folder that holds `readable`, a few devices and a scratch folder, and is read only."""
+    _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
+    trees = []
+    for name, path in _places([*readable, *DEVICES]).items():
+        # The first flag: a copy that can be mounted elsewhere.
+        tree = _system_call("open_tree", OPEN_TREE, AT_FDCWD, path.encode(), 1 | os.O_CLOEXEC | AT_RECURSIVE)
+        attributes = READ_ONLY | NO_SETUID | (0 if path in DEVICES else NO_DEVICES)
+        _set_attributes(tree, b"", AT_EMPTY_PATH | AT_RECURSIVE, attributes)
+        trees.append((tree, name, os.path.isdir(path)))
+    new = "/tmp"
+    _mount_memory(new, "size=1m,mode=0755")
+    mask = os.umask(0o022)
+    for tree, name, is_folder in trees:
+        target = new + name
+        os.makedirs(target if is_folder else os.path.dirname(target), exist_ok=True)
+        if not is_folder:
+            Path(target).touch()
+        # The flag: the source is the handle itself.
+        _system_call("move_mount", MOVE_MOUNT, tree, b"", AT_FDCWD, target.encode(), 4)
+        os.close(tree)
+    os.mkdir(new + SCRATCH)
+    os.symlink(SCRATCH, new + "/dev/shm")
+    os.umask(mask)
+    _mount_memory(new + SCRATCH, "size=256m,mode=0755")
+    os.chdir(new)
+    _system_call("pivot_root", PIVOT_ROOT[os.uname().machine], b".", b".")
+    _call("umount", _library.umount2(b".", MNT_DETACH))
+    os.chdir("/")
+    _set_attributes(AT_FDCWD, b"/", 0, READ_ONLY)
+
+
+def _set_attributes(tree, path, flags, attributes):
+    packed = struct.pack("=QQQQ", attributes, 0, 0, 0)
+    _system_call("mount_setattr", MOUNT_SETATTR, tree, path, flags, packed, len(packed))
+
+
+def _mount_memory(folder, options):
+    _call("mount", _library.mount(b"tmpfs", folder.encode(), b"tmpfs", MS_NOSUID | MS_NODEV, options.encode()))
+
+
+def mount_own_scratch(folder, size, user):
+    """Give this process alone a scratch folder in memory; it vanishes with the process."""
+    _call("unshare", _library.unshare(CLONE_NEWNS))
+    _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
+    _mount_memory(folder, f"size={size},nr_inodes={max(64, size // 4096)},mode=0700,uid={user},gid={user}")
+
+
+# ---- Landlock
+
+CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444, 445, 446
+EXECUTE, WRITE_FILE, READ_FILE, READ_FOLDER = 1 << 0, 1 << 1, 1 << 2, 1 << 3
+MAKE_CHARACTER_DEVICE, MAKE_BLOCK_DEVICE, MAKE_SOCKET, IOCTL_DEVICE = 1 << 6, 1 << 11, 1 << 9, 1 << 15
+
+
+def landlock_version():
+    """The version of Landlock's interface; 0 if there is none."""
+    return max(0, _library.syscall(ctypes.c_long(CREATE_RULESET), None, ctypes.c_long(0), ctypes.c_long(1)))
+
+
+def restrict_files(readable, scratch):
+    """Let this process read `readable`, do what it likes in `scratch`, and reach no other file."""
+    version = landlock_version()
+    if version == 0:
+        raise IsolationError(errno.ENOSYS, "the kernel has no Landlock")
+    # Each right is a bit, in the order in which the versions brought them.
+    handled = (1 << 13 + (version >= 2) + (version >= 3) + (version >= 5)) - 1
+    packed = struct.pack("=QQQ", handled, 3 if version >= 4 else 0, 3 if version >= 6 else 0)
+    packed = packed[: 8 if version < 4 else 16 if version < 6 else 24]
+    rules = _system_call("landlock", CREATE_RULESET, packed, len(packed), 0)
+
+    def allow(path, access):
+        try:
+            handle = os.open(path, os.O_PATH | os.O_CLOEXEC)
+        except OSError:
+            return  # what is not there needs no permission
+        if not stat.S_ISDIR(os.fstat(handle).st_mode):
+            access &= EXECUTE | WRITE_FILE | READ_FILE | (1 << 14) | IOCTL_DEVICE
+        rule = struct.pack("=Qi", access & handled, handle)
+        _system_call("landlock", ADD_RULE, rules, 1, rule, 0)
+        os.close(handle)
+
+    for path in readable:
+        allow(path, READ_FILE | READ_FOLDER)
+    for device in DEVICES:
+        allow(device, READ_FILE | WRITE_FILE if device == "/dev/null" else READ_FILE)
+    allow(scratch, handled & ~(EXECUTE | MAKE_CHARACTER_DEVICE | MAKE_BLOCK_DEVICE | MAKE_SOCKET | IOCTL_DEVICE))
+    _system_call("landlock", RESTRICT_SELF, rules, 0)
+    os.close(rules)
+
+
+# ---- limits and privileges
+
+
+def limit_resources(limits, memory_in_use, threads_in_use):
+    """Lower this process's limits for good.
+
+    `limits` has `memory_bytes` and `threads` (beyond those in use at the start), `processor_seconds`,
+    `file_bytes` and `open_files`.
+    """
+    seconds = int(limits["processor_seconds"])
+    for which, value in (
+        (resource.RLIMIT_AS, memory_in_use + limits["memory_bytes"]),
+        (resource.RLIMIT_FSIZE, limits["file_bytes"]),
+        (resource.RLIMIT_NOFILE, limits["open_files"]),
+        (resource.RLIMIT_NPROC, threads_in_use + limits["threads"]),
+        # Not 0: a program that handles crashes is started for that all the same, and for 1 it is not (core(5)).
+        (resource.RLIMIT_CORE, 1),
+        (resource.RLIMIT_MEMLOCK, 0),
+        (resource.RLIMIT_MSGQUEUE, 0),
+    ):
+        _, most = resource.getrlimit(which)
+        if most != resource.RLIM_INFINITY:
+            value = min(value, most)
+        resource.setrlimit(which, (value, value))
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
+
+
+def drop_privileges(user):
+    """Become `user` if this is root and may, and give up every capability for good."""
+    if os.geteuid() == 0 and user != 0:
+        os.setgroups([])
+        os.setresgid(user, user, user)
+        os.setresuid(user, user, user)
+    header = struct.pack("=Ii", 0x20080522, 0)
+    _call("capset", _library.capset(header, b"\0" * 24))
+    forbid_new_privileges()
+    # No other process of this user looks into this one, and what handles crashes here, perhaps as root, is not
+    # handed the memory of one. The limit of core files alone does not stop a handler.
+    _call("dumpable", _library.prctl(4, 0, 0, 0, 0))
+
+
+def forbid_new_privileges():
+    """No program that this process starts can have more rights than it has; seccomp asks for it."""
+    _call("no_new_privs", _library.prctl(38, 1, 0, 0, 0))
+
+
+def user_for_students(preferred, uid_map):
+    """The user that root runs student code as: one that nobody else is, if this system has it.
+
+    Raises
+    ------
+    RuntimeError
+        There is no other user than root here.
+    """
+    if os.geteuid() != 0:
+        return os.geteuid()
+    known = [tuple(map(int, line.split())) for line in uid_map.splitlines()]
+    for user in (preferred, OUTSIDER):
+        if any(first <= user < first + count for first, _, count in known):
+            return user
+    raise RuntimeError(
+        "Here is no other user than root, as in a container or namespace of one user, so that student code could not "
+        "be run as anybody else. Start the grading as an ordinary user, or in a container that has more users "
+        "(unshare --map-auto, podman --userns=auto)."
+    )
+
+
+def die_with_parent():
+    """Have the kernel end this process when the one that forked it ends."""
+    _call("prctl", _library.prctl(1, signal.SIGKILL, 0, 0, 0))
+
+
+def adopt_orphans():
+    """Processes below this one that lose their parent become its own, so that none gets away."""
+    _call("prctl", _library.prctl(36, 1, 0, 0, 0))
+
+
+def confine(layers, *, limits, readable, scratch, own_scratch, user, memory_in_use, threads_in_use):
+    """Put `layers` in force on this process, for good; raise if one cannot be."""
+    die_with_parent()
+    if NAMESPACES in layers and own_scratch:
+        mount_own_scratch(scratch, limits["scratch_bytes"], user)
+    os.chdir(scratch)
+    if LIMITS in layers:
+        limit_resources(limits, memory_in_use, threads_in_use)
+    if PRIVILEGES in layers:
+        drop_privileges(user)
+        die_with_parent()  # a change of user forgets it
+    else:
+        forbid_new_privileges()
+    if LANDLOCK in layers:
+        restrict_files(readable, scratch)
+    if SECCOMP in layers:
+        system_calls.install()
+
+
+# ---- trying
+
+
+def _read(target):
+    for path in target["files"]:
+        with contextlib.suppress(OSError):
+            return Path(path).read_bytes()
+    raise PermissionError("no file outside can be read")
+
+
+def _write(target):
+    for path in target["files"]:
+        for flags in (os.O_WRONLY, os.O_RDONLY | os.O_TRUNC):
+            with contextlib.suppress(OSError):
+                return os.close(os.open(path, flags))
+        with contextlib.suppress(OSError):
+            return os.close(os.open(path + ".new", os.O_WRONLY | os.O_CREAT))
+    raise PermissionError("no file outside can be written")
+
+
+def _change_mode(target):
+    for path in target["files"]:
+        with contextlib.suppress(OSError):
+            return os.chmod(path, 0o666)
+    raise PermissionError("no mode outside can be changed")
+
+
+def _socket(target):
+    socket.socket(socket.AF_UNIX, socket.SOCK_STREAM).close()
+
+
+def _tcp(target):
+    socket.create_connection(("127.0.0.1", target["tcp"]), timeout=1).close()
+
+
+def _udp(target):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        udp.connect(("127.0.0.1", target["udp"]))
+        for _ in range(2):  # the second hears that nobody received the first
+            udp.send(b"x")
+
+
+def _local(target):
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as local:
+        local.connect("\0" + target["local"])
+
+
+def _signal(target):
+    os.kill(-1, 0)  # whether there is any process that it could end; sends nothing
+
+
+def _process(target):
+    if os.fork() == 0:
+        os._exit(0)
+    os.wait()
+
+
+def _program(target):
+    try:
+        os.execv("/no/such/program", ["program"])
+    except FileNotFoundError:
+        return  # it was looked for, so one that exists would have been started
+
+
+def _namespace(target):
+    _call("unshare", _library.unshare(CLONE_NEWUSER))
+
+
+def _trace(target):
+    _call("ptrace", _library.ptrace(0, 0, None, None))
+
+
+def _privilege(target):
+    # Only who has privileges may give one up for good; it takes nothing from anybody else.
+    _call("prctl", _library.prctl(24, 0, 0, 0, 0))
+
+
+def _dump(target):
+    if _library.prctl(3, 0, 0, 0, 0) == 0:
+        raise PermissionError("its memory is not dumped")
+
+
+def _memory(target):
+    mmap.mmap(-1, target["limits"]["memory_bytes"] + (1 << 20)).close()
+
+
+def _file(target):
+    with open("long", "wb") as file:
+        file.truncate(target["limits"]["file_bytes"] + 1)
+
+
+def _files(target):
+    opened = []
+    try:
+        for _ in range(target["limits"]["open_files"] + 1):
+            opened.append(os.dup(2))
+    finally:
+        for handle in opened:
+            os.close(handle)
+
+
+def _threads(target):
+    done = threading.Event()
+    threading.stack_size(64 * 1024)
+    started = []
+    try:
+        # Others of the same user may have ended since they were counted.
+        for _ in range(target["threads in use"] + target["limits"]["threads"] + 1):
+            started.append(threading.Thread(target=done.wait))
+            started[-1].start()
+    except RuntimeError:
+        started.pop()
+        raise PermissionError("no more threads") from None
+    finally:
+        done.set()
+        for thread in started:
+            thread.join()
+
+
+#: What student code must not be able to do: how it is tried, and which layers must stop it on their own.
+#: The ones that change the process that tries come last.
+ATTEMPTS = {
+    "read a file outside": (_read, {NAMESPACES, LANDLOCK}),
+    "write a file outside": (_write, {NAMESPACES, LANDLOCK}),
+    "change the mode of a file outside": (_change_mode, {NAMESPACES, SECCOMP}),
+    "open a socket": (_socket, {SECCOMP}),
+    "connect by TCP": (_tcp, {NAMESPACES, SECCOMP}),
+    "send by UDP": (_udp, {NAMESPACES, SECCOMP}),
+    "connect to a local socket": (_local, {NAMESPACES, SECCOMP}),
+    "signal another process": (_signal, {NAMESPACES, SECCOMP}),
+    "start a process": (_process, {SECCOMP}),
+    "start a program": (_program, {SECCOMP}),
+    "use a privilege": (_privilege, {PRIVILEGES}),
+    "have its memory dumped": (_dump, {PRIVILEGES}),
+    "take more memory than allowed": (_memory, {LIMITS}),
+    "write a longer file than allowed": (_file, {LIMITS}),
+    "open more files than allowed": (_files, {LIMITS}),
+    "start more threads than allowed": (_threads, {LIMITS}),
+    "make new namespaces": (_namespace, {SECCOMP}),
+    "trace a process": (_trace, {SECCOMP}),
+}
+
+
+def attempt_all(target, names=None):
+    """Try, in this process, what student code must not do; return the names of what succeeded."""
+    succeeded = []
+    for name in names or ATTEMPTS:
+        attempt, _ = ATTEMPTS[name]
+        try:
+            attempt(target)
+        except (OSError, MemoryError):
+            continue
+        succeeded.append(name)
+    return succeeded
+
+
+def must_stop(layer):
+    """The attempts that `layer` must stop on its own to count as in force."""
+    return [name for name, (_, layers) in ATTEMPTS.items() if layer in layers]
+
+
+def lacking(report):
+    """Say, one line for each, what the layers in force do not stop; empty when they are enough."""
+    lines = []
+    for name in report["not stopped"]:
+        if name not in ATTEMPTS:
+            lines.append(name)
+            continue
+        missing = [layer for layer in LAYERS if layer in ATTEMPTS[name][1] and not report["layers"][layer]["in force"]]
+        reasons = "; or ".join(
+            f"{layer} ({report['layers'][layer]['why not']}): {HOW_TO_GET[layer]}" for layer in missing
+        )
+        lines.append(f"student code could {name}. Missing: {reasons or 'no layer stopped it'}")
+    return lines

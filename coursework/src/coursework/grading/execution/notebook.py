@@ -1,0 +1,483 @@
+"""Runs the cells of one notebook in a process that is already confined, and records the answers.
+
+Everything here shares its process with the student's code, which may change any of it. That is
+allowed for: all that leaves is a line of JSON for each event, read strictly outside; the worst that a
+student can do is hand in another answer of his own.
+
+A line is one of
+
+    {"begin": step}                       step: ["cell", i] or ["answer", question]
+    {"end": step, "outcome": o, ...}      for a cell: "done", "error", "timeout", "memory", with "error"
+                                          and "line", and "threads": true if it left any running
+    {"answer": question, "from": "check" or "variable", "cell": i or null, "plain": data}
+    {"answer": question, "from": ..., "cell": ..., "unreadable": text}
+    {"tried": text, "cell": i or null}    what a notebook has no business with: a hint for a person
+    {"done": true}
+    {"secret": question, "plain": data} or {"secret": question, "unreadable": text}
+
+and is written the moment it is known, so that what comes later cannot lose it. Only after "done" come the
+arguments of the secret calls: what knows them then can hand in no answer any more in which they would be shown.
+"""
+
+import ast
+import base64
+import contextlib
+import gc
+import inspect
+import json
+import os
+import random
+import re
+import resource
+import select
+import signal
+import socket
+import sys
+import threading
+import time
+import types
+import warnings
+
+from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.variants import Given
+from coursework.grading.execution.event_loop import PipeEventLoop
+
+LONGEST_ERROR = 500
+WAIT_FOR_SECRET = 30  # seconds; whoever swallowed the records is not answered
+MOST_TRIED = 10  # hints of one notebook
+# Magics whose body is the student's code; the others are about the notebook and do nothing here.
+MAGICS_WITH_CODE = ("time", "capture", "prun")
+
+
+OURS = []  # the modules of this package, which a notebook is to find none of
+AWAIT = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
+PROMPT = "In ["  # pasted with its prompt a line may pass for an annotation
+TICK = 0.5  # seconds by the clock between two looks at whether a step waits
+#: Of a tick what waits spends less than this share.
+WAITING = 0.02
+#: Events of the interpreter that honest notebooks do not bring about, and what to say of them.
+SUSPICIOUS = {
+    "socket.__new__": "tried to use a network",
+    "socket.getaddrinfo": "tried to use a network",
+    "socket.connect": "tried to use a network",
+    "socket.bind": "opened a server",
+    "os.fork": "started a process",
+    "os.forkpty": "started a process",
+    "os.posix_spawn": "started a program",
+    "os.exec": "started a program",
+    "os.system": "started a program",
+    "subprocess.Popen": "started a program",
+    "os.kill": "sent a signal",
+    "os.killpg": "sent a signal",
+    "ctypes.string_at": "read memory by address",
+    "ctypes.dlopen": "loaded a library of the system",
+    "ctypes.dlsym": "called the system directly",
+    "sys._getframe": "looked into the frames that call it",
+    "sys._current_frames": "looked into the frames that call it",
+    "gc.get_objects": "searched the memory",
+    "gc.get_referrers": "searched the memory",
+    "sys.settrace": "traced the grader",
+    "sys.setprofile": "traced the grader",
+    "code.__new__": "made code by hand",
+}
+
+
+#: How many frames above an event a cell is looked for: what a library opens or starts on its own is nobody's. A network
+#: is used by none on its own, and what uses one lies far below the cell that asks for it.
+DEPTH, DEPTH_OF_NETWORK = 6, 40
+
+
+class OutOfTime(BaseException):
+    """Raised in the student's code when its time is up; not an Exception, so that few catch it."""
+
+
+class Shell:
+    """What `get_ipython()` gives: enough of a shell that magics and `!commands` break nothing."""
+
+    def __init__(self, execute):
+        self._execute = execute
+
+    def run_line_magic(self, name, line, *rest):
+        if name in MAGICS_WITH_CODE:
+            self._execute(line)
+
+    def run_cell_magic(self, name, line, cell):
+        if name in MAGICS_WITH_CODE:
+            self._execute(cell)
+        elif name in ("writefile", "file") and line.strip():
+            *options, path = line.split()
+            with open(path.strip("'\""), "a" if options in (["-a"], ["--append"]) else "w", encoding="utf8") as file:
+                file.write(cell)
+
+    def system(self, command):
+        return None
+
+    def getoutput(self, command, *rest, **options):
+        return []
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return lambda *arguments, **options: None
+
+
+class Reply:
+    """What `check` gives here. Marks are not decided in this process."""
+
+    def __repr__(self):
+        return "The answer is recorded."
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return None  # neither right nor wrong
+
+
+def nothing(*arguments, **options):
+    """Stands for what only shows something."""
+
+
+def arguments_of(calls):
+    """The arguments of each call to a function, made anew: it may change them."""
+    arguments = json.loads(json.dumps(calls["arguments"]))
+    if calls["as"] == "arrays":
+        import numpy
+
+        arguments = [[numpy.array(a) if isinstance(a, list) else a for a in call] for call in arguments]
+    return arguments
+
+
+def warm_up():
+    """Load what is imported on first use, before the children are forked."""
+    import IPython.display  # noqa: F401
+
+    transformer().transform_cell("%time x = 1\n")
+    import sympy
+
+    to_plain(sympy.Matrix([[sympy.cos(sympy.Symbol("a")), 0.5]]))
+    # A child that looked through all modules itself would get a copy of every page that one of their names is on.
+    OURS[:] = [name for name in sys.modules if name.partition(".")[0] == "coursework"]
+
+
+def transformer():
+    from IPython.core.inputtransformer2 import TransformerManager
+
+    return TransformerManager()
+
+
+def run(job, records, secret, limits, folder):
+    """Run the job that is read from the handle `job`; write records to the handle `records`.
+
+    The secret calls are read from the handle `secret` at the end.
+    """
+    with open(job, "rb") as file:
+        job = json.load(file)
+    random.seed(job["seed"])
+    gc.set_threshold(20_000, 20, 50)  # a short life: what goes round in circles is seldom worth looking for
+    sys.modules["numpy"].random.seed(job["seed"])
+    _Notebook(job, records, secret, limits, folder).run()
+
+
+class _Notebook:
+    def __init__(self, job, records, secret, limits, folder):
+        self.job = job
+        self.records = records
+        self.secret = secret
+        self.functions = {}
+        self.number = None
+        self.loop = None
+        self.tried = set()
+        self.noticing = False
+        self.limits = limits
+        self.folder = folder
+        self.encode = json.JSONEncoder(check_circular=False, allow_nan=False).encode
+        self.write = os.write
+        self.writing = False
+        self.cell = None
+        self.answered = set()
+        self.wall_left, self.looked = 0, (0, 0, 0)
+        self.skipped = {tuple(step) for step in job["skip"]}
+        self.recursion_limit = sys.getrecursionlimit()
+        self.module = types.ModuleType("__main__")
+        self.names = self.module.__dict__
+        self.transformer = transformer()
+
+    def run(self):
+        self.prepare()
+        for index in self.job["order"]:
+            if ("cell", index) not in self.skipped:
+                self.cell = index
+                # As Jupyter numbered it when it was run last; a cell that never ran follows the one before.
+                self.number = self.job["numbers"][index] or (self.number or 0) + 1
+                if isinstance(self.names.get("In"), dict):
+                    self.names["In"][self.number] = self.job["cells"][index]
+                self.step(["cell", index], lambda: self.execute(self.job["cells"][index]), self.limits["cell"])
+        self.cell = None
+        for question, variable in self.job["variables"].items():
+            if question not in self.answered and variable in self.names:
+                self.record(question, self.names[variable], "variable")
+        if self.package.check != self.check:
+            self.hint("replaced the check")
+        self.emit({"done": True})
+        self.call_secretly()
+
+    def call_secretly(self):
+        """Call the functions that are answers with arguments that nobody could prepare them for."""
+        if not self.functions or not select.select([self.secret], [], [], WAIT_FOR_SECRET)[0]:
+            return
+        os.set_blocking(self.secret, True)
+        with open(self.secret, "rb") as file:
+            calls = json.loads(file.read() or b"{}")
+        for question, about in calls.items():
+            if question not in self.functions or ("answer", question) in self.skipped:
+                continue
+            function, names = self.functions[question]
+            # As it was when it was checked, though a later cell may have used its names for something else.
+            self.names.clear()
+            self.names.update(names)
+            found = {"secret": question}
+
+            def read(function=function, about=about, found=found):
+                try:
+                    found["plain"] = to_plain(function, arguments_of(about))
+                except NotPlain as error:
+                    found["unreadable"] = str(error)[:LONGEST_ERROR]
+
+            end = self.step(["answer", question], read, self.limits["answer"])
+            if end["outcome"] != "done":
+                found = {"secret": question, "unreadable": end["error"]}
+            self.emit(found)
+
+    def prepare(self):
+        sys.modules["__main__"] = self.module
+        shell = Shell(self.execute)
+        self.names.update(get_ipython=lambda: shell, display=nothing, In={}, Out={})
+        for name in OURS:
+            sys.modules.pop(name, None)
+        package = self.package = types.ModuleType("coursework")
+        package.check = self.check
+        package.hint = package.progress = package.me = package.worked_solution = nothing
+        package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
+        sys.modules["coursework"] = package
+        for name, data in self.job["files"].items():
+            path = os.path.normpath(os.path.join(self.folder, name))
+            if path.startswith(f"{self.folder}/"):
+                os.makedirs(os.path.dirname(path), exist_ok=True)
+                with open(path, "wb") as file:
+                    file.write(base64.b64decode(data))
+        sys.argv = ["notebook"]
+        sys.path.insert(0, self.folder)
+        sys.addaudithook(self.notice)
+        warnings.resetwarnings()
+        warnings.simplefilter("ignore")
+
+    def execute(self, source):
+        """Run source as a notebook's cell is run; the value of its last line becomes ``_`` and ``Out[number]``."""
+        name = f"<cell {self.cell}>"
+        tree = self.parsed(source, name)
+        last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+        self.evaluate(compile(tree, name, "exec", AWAIT, dont_inherit=True))
+        # What ends in a semicolon is shown neither, and is a value all the same.
+        if last is not None:
+            value = self.evaluate(compile(ast.Expression(last.value), name, "eval", AWAIT, dont_inherit=True))
+            if value is not None:
+                self.keep(value)
+
+    def parsed(self, source, name):
+        """The syntax tree of a cell. What is Python as it stands has no magics, and is not searched for them."""
+        if PROMPT not in source:
+            with contextlib.suppress(SyntaxError, ValueError):
+                return ast.parse(source, name)
+        return ast.parse(self.transformer.transform_cell(source), name)
+
+    def evaluate(self, code):
+        """Run code, to the end of what it awaits if it awaits something."""
+        value = eval(code, self.names)
+        if code.co_flags & inspect.CO_COROUTINE:
+            if self.loop is None:
+                self.loop = PipeEventLoop()
+            return self.loop.run_until_complete(value)
+        return value
+
+    def keep(self, value):
+        names = self.names
+        names["___"], names["__"], names["_"] = names.get("__", ""), names.get("_", ""), value
+        if isinstance(names.get("Out"), dict) and self.number is not None:
+            names["Out"][self.number] = names[f"_{self.number}"] = value
+
+    def check(self, question, answer=None, *rest, **options):
+        """Stands for `coursework.checking.check` here: records the answer and tells nothing."""
+        self.record(str(question)[:200], answer, "check")
+        return Reply()
+
+    def record(self, question, answer, source):
+        if ("answer", question) in self.skipped:
+            return
+        found = {"answer": question, "from": source, "cell": self.cell}
+
+        def read():
+            try:
+                found["plain"] = to_plain(answer, self.calls(question))
+            except NotPlain as error:
+                found["unreadable"] = str(error)[:LONGEST_ERROR]
+            self.emit(found)
+
+        end = self.step(["answer", question], read, self.limits["answer"])
+        if end["outcome"] != "done":
+            found.pop("plain", None)
+            self.emit(found | {"unreadable": end["error"]})
+        elif "plain" in found and found["plain"]["value"] != ["blank"]:
+            self.answered.add(question)
+            if found["plain"]["value"][0] == "function":
+                self.functions[question] = answer, dict(self.names)
+
+    def calls(self, question):
+        calls = self.job["calls"].get(question)
+        return None if calls is None else arguments_of(calls)
+
+    def notice(self, event, arguments):
+        """Hear of what the interpreter is asked to do, and note what no exercise needs."""
+        if self.noticing or (event != "open" and event not in SUSPICIOUS):
+            return
+        self.noticing = True  # what is done here is no event of the notebook's
+        try:
+            self.note_event(event, arguments)
+        finally:
+            self.noticing = False
+
+    def note_event(self, event, arguments):
+        if event == "open":
+            path, mode, _ = arguments
+            if not isinstance(path, str) or not self.is_elsewhere(path, mode):
+                return
+            said = f"opened {path[:100]}"
+        elif event == "socket.__new__" and arguments[1] not in (socket.AF_INET, socket.AF_INET6):
+            return  # such as the pair through which an event loop wakes itself up
+        elif self.is_from_a_cell(DEPTH_OF_NETWORK if event.startswith("socket.") else DEPTH):
+            said = SUSPICIOUS[event]
+        else:
+            return
+        self.hint(said)
+
+    def hint(self, said):
+        """Note once what a person may want to know."""
+        if said not in self.tried and len(self.tried) < MOST_TRIED:
+            self.tried.add(said)
+            self.emit({"tried": said, "cell": self.cell})
+
+    def is_elsewhere(self, path, mode):
+        """Whether a file is none of the notebook's own and none of Python's."""
+        if not os.path.isabs(path):
+            return ".." in path.split("/") and self.is_from_a_cell()
+        if path.startswith((self.folder, "/dev/", sys.prefix, sys.base_prefix, "/usr/share/zoneinfo")):
+            return False
+        return self.is_from_a_cell()
+
+    def is_from_a_cell(self, most=DEPTH):
+        """Whether the code of a cell asks for it itself, and no library on its behalf."""
+        frame, depth = sys._getframe(2), 0
+        while frame is not None and depth < most:
+            if frame.f_code.co_filename.startswith("<cell "):
+                return True
+            frame, depth = frame.f_back, depth + 1
+        return False
+
+    # -- one step: a cell, or the reading of an answer
+
+    def step(self, step, action, seconds):
+        """Do one thing within its time. Steps may be nested: a check within a cell."""
+        self.emit({"begin": step})
+        outer = self.time_left()
+        end = {"end": step, "outcome": "done"}
+        try:
+            try:
+                self.start_timers(seconds["processor"], seconds["wall"])
+                action()
+            finally:
+                sys.setrecursionlimit(self.recursion_limit)
+                self.stop_timers()
+        except OutOfTime:
+            end |= {"outcome": "timeout", "error": "It took longer than it may."}
+        except MemoryError:
+            end |= {"outcome": "memory", "error": "It took more memory than it may."}
+        except BaseException as error:
+            end |= {"outcome": "error", **self.described(error)}
+        if step[0] == "cell" and threading.active_count() > 1:
+            end["threads"] = True
+        self.emit(end)
+        if outer[0]:
+            self.start_timers(*outer)
+        return end
+
+    def start_timers(self, processor, wall):
+        # Afresh each time: an earlier cell may have ignored or blocked them.
+        for number in (signal.SIGPROF, signal.SIGALRM):
+            signal.signal(number, self.time_is_up)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGPROF, signal.SIGALRM))
+        self.wall_left, self.looked = wall, self.moment()
+        signal.setitimer(signal.ITIMER_PROF, processor)
+        signal.setitimer(signal.ITIMER_REAL, min(wall, TICK), TICK)
+
+    @staticmethod
+    def moment():
+        """The time by the clock and of the processor, and how often this process gave it away by itself."""
+        return time.monotonic(), time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_nvcsw
+
+    def time_left(self):
+        """What is left of the processor's time and of the clock's, with both stopped."""
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        return signal.setitimer(signal.ITIMER_PROF, 0)[0], self.wall_left
+
+    @staticmethod
+    def stop_timers():
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+    def time_is_up(self, number, frame):
+        if self.writing:  # half a record would be worse than being late
+            signal.setitimer(signal.ITIMER_REAL, 0.02, TICK)
+            self.wall_left = self.wall_left if number == signal.SIGALRM else 0
+            return
+        if number == signal.SIGALRM:
+            now = self.moment()
+            elapsed, used, gave_way = (moment - before for moment, before in zip(now, self.looked, strict=True))
+            self.looked = now
+            # What computes on a busy machine is charged for what it got, and not for what others got: only what gave
+            # the processor away by itself has waited. It is woken at each tick, unless the machine is late.
+            waited = gave_way and used < WAITING * elapsed
+            self.wall_left -= min(elapsed, TICK) if waited else used
+            if self.wall_left > 0:
+                return
+        raise OutOfTime
+
+    def emit(self, record):
+        # Each record has a line of its own even after other bytes that a student may have written.
+        data = b"\n" + self.encode(record).encode() + b"\n"
+        self.writing = True
+        try:
+            while data:
+                data = data[self.write(self.records, data) :]
+        finally:
+            self.writing = False
+
+    def described(self, error):
+        """An error as text: its type, its message, and the line of the cell. May run student code."""
+        try:
+            self.start_timers(0.2, 0.4)
+            try:
+                text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+                line, trace = None, error.__traceback__
+                while trace is not None:
+                    if trace.tb_frame.f_code.co_filename == f"<cell {self.cell}>":
+                        line = trace.tb_lineno
+                    trace = trace.tb_next
+                if isinstance(error, SyntaxError) and isinstance(error.lineno, int):
+                    line = error.lineno
+            finally:
+                self.stop_timers()
+        except BaseException:
+            return {"error": "An error whose message cannot be read."}
+        # The same text on every run: no addresses, no name of this folder.
+        text = re.sub(r"0x[0-9a-fA-F]{6,}", "0x...", text[: 4 * LONGEST_ERROR])
+        text = text.replace(self.folder, "scratch")[:LONGEST_ERROR]
+        return {"error": text} | ({"line": line} if line is not None else {})

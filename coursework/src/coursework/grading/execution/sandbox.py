@@ -1,0 +1,801 @@
+"""Runs students' notebooks in isolation and hands back their answers as plain data.
+
+:func:`run_notebooks` takes jobs and gives results, both plain JSON. Three kinds of process take part:
+
+- this one, which is trusted: it starts warm parents, keeps the time, reads the records strictly
+  (:mod:`coursework.grading.execution.records`) and puts the results together. It never runs or unpickles
+  anything of a student's, and never repeats it to the console;
+- a warm parent for each worker (:mod:`coursework.grading.execution.warm_parent`), which only forks;
+- a child for each notebook, confined (:mod:`coursework.grading.execution.isolation`), in which the cells run
+  (:mod:`coursework.grading.execution.notebook`).
+
+No verdict is made here, and no right answer is here: marks are decided elsewhere, from the results.
+
+A cell that ends or hangs its process costs only itself: what was recorded before is kept, and the
+notebook is run again without that cell, a limited number of times.
+"""
+
+import contextlib
+import dataclasses
+import fcntl
+import json
+import os
+import random
+import secrets
+import select
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from coursework.grading.execution import isolation, records, scratch, steady
+from coursework.grading.execution.isolation import LAYERS, NAMESPACES
+from coursework.grading.execution.warm_parent import NOT_CONFINED
+from coursework.grading.workers import side_by_side
+
+WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
+WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
+OUTSIDE = "outside"  # the folder of the file that the isolation is tried on
+PAUSE = 0.005  # seconds in which records gather: to be woken for each takes both processes longer than the record
+DEEPEST_STEPS = 10
+MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
+SIZE_OF_CREDENTIALS = struct.calcsize("3i")
+ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
+
+
+class WeakIsolation(RuntimeError):
+    """This machine cannot keep student code apart well enough; says what is missing and how to get it."""
+
+
+class WorkerDied(RuntimeError):
+    """The warm parent is gone."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Limits:
+    """What one notebook may use. Seconds are of processor time unless they say wall.
+
+    Wall times are for code that waits. The time in which it could have run and the machine was busy with others
+    does not count, so that load costs nobody an answer.
+    """
+
+    cell_seconds: float = 20
+    cell_wall_seconds: float = 40
+    answer_seconds: float = 10
+    answer_wall_seconds: float = 20
+    notebook_seconds: float = 60
+    notebook_wall_seconds: float = 180  # for all runs of the notebook together
+    grace_seconds: float = 1  # wall, after a limit, before the process is killed
+    memory_bytes: int = 1 << 30  # beyond the libraries
+    file_bytes: int = 32 << 20
+    scratch_bytes: int = 64 << 20
+    open_files: int = 256
+    threads: int = 64
+    runs: int = 8  # of one notebook, in each order
+
+    def for_child(self):
+        """The limits in the words of the process that they bind."""
+        return {
+            "cell": {"processor": self.cell_seconds, "wall": self.cell_wall_seconds},
+            "answer": {"processor": self.answer_seconds, "wall": self.answer_wall_seconds},
+            "processor_seconds": max(1, round(self.notebook_seconds)),
+            "memory_bytes": self.memory_bytes,
+            "file_bytes": self.file_bytes,
+            "scratch_bytes": self.scratch_bytes,
+            "open_files": self.open_files,
+            "threads": self.threads,
+        }
+
+
+class Sandbox:
+    """One warm parent, isolated and tried, that runs one notebook at a time.
+
+    Parameters
+    ----------
+    limits : Limits, optional
+    allow_weak_isolation : bool
+        Run student code although some of what must be stopped is not. Every result says so.
+    without : collection of str
+        Layers to leave out, of :data:`coursework.grading.execution.isolation.LAYERS`; then the isolation is weak.
+    namespaces_by : collection of str
+        Which makers of namespaces to try, in order.
+    like : Sandbox, optional
+        One that runs no notebooks: this one gets a copy of its warm parent, if that can be copied.
+
+    Raises
+    ------
+    WeakIsolation
+        The layers in force do not stop every attempt.
+    """
+
+    def __init__(
+        self,
+        limits=None,
+        *,
+        allow_weak_isolation=False,
+        without=(),
+        namespaces_by=("bubblewrap", "unshare"),
+        like=None,
+    ):
+        unknown = set(without) - set(LAYERS)
+        if unknown:
+            raise ValueError(f"there are no layers {sorted(unknown)}; the layers are {', '.join(LAYERS)}")
+        if not sys.platform.startswith("linux"):
+            raise WeakIsolation("Student code is isolated with means of Linux. Elsewhere, use WSL or a container.")
+        self.limits = limits or Limits()
+        self.allow_weak_isolation = allow_weak_isolation
+        self.without = frozenset(without)
+        self.namespaces_by = () if NAMESPACES in self.without else tuple(namespaces_by)
+        self.like = like
+        self.process = None
+        self.warm_parent = None  # its number
+        self.control = None
+        self.errors = None
+        self.base = None
+        self.report = None
+        self.start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.close()
+
+    # -- the warm parent
+
+    def start(self):
+        """Start the warm parent and try its isolation."""
+        try:
+            with contextlib.ExitStack() as stack:
+                target = self.target(stack)
+                why_not = "switched off"
+                for made_by in (*self.namespaces_by, None) if not self.copied(target) else ():
+                    bubblewrap = shutil.which("bwrap")
+                    if made_by == "bubblewrap" and bubblewrap is None:
+                        why_not = "bubblewrap is not installed"
+                        continue
+                    command = []
+                    if made_by == "bubblewrap":
+                        command = isolation.bubblewrap_command(bubblewrap, isolation.readable_paths())
+                    try:
+                        self.report = self.launched(command, made_by, why_not, target)
+                        break
+                    except WorkerDied as error:
+                        self.close()
+                        if made_by is None:
+                            raise
+                        why_not = str(error)
+        except BaseException:
+            self.close()
+            raise
+        if self.process is None:
+            self.remove_base()  # a copy is tried there and works in memory
+        else:
+            scratch.remove_folder(os.path.join(self.base, OUTSIDE))
+        lacking = isolation.lacking(self.report)
+        if lacking and not self.allow_weak_isolation:
+            self.close()
+            raise WeakIsolation(
+                "This machine does not keep student code apart well enough, so none is run:\n"
+                + "\n".join(f"- {line}" for line in lacking)
+                + "\nTo run it all the same, on a machine that you can afford to lose, say "
+                "--allow-weak-isolation; every result will record it."
+            )
+
+    def copied(self, target):
+        """Have the warm parent of another sandbox copied, and the copy tried; whether it serves."""
+        if self.like is None or self.like.control is None or not self.like.report["scratch in memory"]:
+            return False
+        self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
+        # Within the folder of the other: should this process be killed, it goes with that.
+        self.base = tempfile.mkdtemp(dir=self.like.base)
+        os.chmod(self.base, 0o755)
+        about = {"user": new_user(), "target": target | {"files": [self.file_outside()]}}
+        try:
+            with other:
+                socket.send_fds(self.like.control, [json.dumps({"copy": about}).encode()], [other.fileno()])
+            waiting = select.poll()
+            waiting.register(self.control, select.POLLIN)
+            if not waiting.poll(WAIT_FOR_START * 1000):
+                raise WorkerDied("a copy of the warm parent said nothing")
+            data, ancillary, _, _ = self.control.recvmsg(1 << 20, socket.CMSG_SPACE(SIZE_OF_CREDENTIALS))
+            self.report = json.loads(data)["ready"]
+            # The kernel says who speaks, by the number that the process has here.
+            (credentials,) = (value for _, kind, value in ancillary if kind == socket.SCM_CREDENTIALS)
+            self.warm_parent = struct.unpack("3i", credentials)[0]
+        except (OSError, ValueError, WorkerDied):
+            self.close()
+            return False
+        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 0)
+        return True
+
+    def target(self, stack):
+        """What the isolation is tried on: two ports and a local socket of our own, and later a file."""
+        tcp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
+        udp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        local = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
+        for inet in (tcp, udp):
+            inet.bind(("127.0.0.1", 0))
+        name = f"coursework-{secrets.token_hex(8)}"
+        local.bind("\0" + name)
+        for listener in (tcp, local):
+            listener.listen(64)
+        return {
+            "tcp": tcp.getsockname()[1],
+            "udp": udp.getsockname()[1],
+            "local": name,
+            "limits": self.limits.for_child(),
+        }
+
+    def file_outside(self):
+        """A file that everybody may change, for the isolation to be tried on."""
+        outside = Path(self.base, OUTSIDE)
+        outside.mkdir()
+        file = outside / "file"
+        file.write_text("a file outside")
+        file.chmod(0o666)
+        outside.chmod(0o777)
+        return str(file)
+
+    def launched(self, command, made_by, why_not, target):
+        """Start the warm parent behind `command`; give its report."""
+        self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
+        self.errors = tempfile.TemporaryFile()
+        self.base = tempfile.mkdtemp(prefix="coursework-")
+        os.chmod(self.base, 0o755)
+        try:
+            with other:
+                handles = (other.fileno(), processes)
+                self.process = subprocess.Popen(
+                    [
+                        # First a process that removes the folder at the end, also if this one is killed.
+                        sys.executable,
+                        "-I",
+                        "-S",
+                        scratch.__file__,
+                        self.base,
+                        *command,
+                        sys.executable,
+                        "-I",
+                        "-S",
+                        steady.__file__,
+                        sys.executable,
+                        "-s",
+                        "-P",
+                        "-B",
+                        "-X",
+                        "utf8",
+                        "-c",
+                        "from coursework.grading.execution.warm_parent import main; main()",
+                        *map(str, handles),
+                    ],
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=self.errors,
+                    cwd="/",
+                    pass_fds=handles,
+                    start_new_session=True,
+                    env={
+                        "LANG": "C.UTF-8",
+                        "TZ": "UTC",
+                        "PYTHONHASHSEED": "0",
+                        "MPLBACKEND": "Agg",
+                        "OPENBLAS_NUM_THREADS": "1",
+                        "OMP_NUM_THREADS": "1",
+                        "MKL_NUM_THREADS": "1",
+                    },
+                )
+        finally:
+            os.close(processes)
+        start = {
+            "without": sorted(self.without),
+            # Not before there is somebody to tidy up: a folder that is open to all is not left behind.
+            "target": target | {"files": [self.file_outside()]},
+            "base": self.base,
+            "namespaces made by": made_by,
+            "why no namespaces": why_not,
+            "user": new_user(),
+            "threads in use": 0 if os.geteuid() == 0 else threads_of(os.geteuid()),
+        }
+        self.send({"start": start})
+        try:
+            message = self.receive(WAIT_FOR_START)
+        except WorkerDied:
+            self.process.wait(WAIT_FOR_END)
+            raise WorkerDied(self.last_error()) from None
+        self.warm_parent = self.process.pid
+        return message["ready"]
+
+    def last_error(self):
+        """The last line that the warm parent, never a student, wrote on its error stream."""
+        errors = self.errors or self.like.errors
+        errors.seek(0)
+        lines = errors.read().decode(errors="replace").strip().splitlines()
+        return lines[-1][:500] if lines else "the warm parent ended without a word"
+
+    def send(self, message, handles=()):
+        try:
+            socket.send_fds(self.control, [json.dumps(message).encode()], handles)
+        except OSError as error:
+            raise WorkerDied(str(error)) from None
+
+    def receive(self, seconds):
+        waiting = select.poll()
+        waiting.register(self.control, select.POLLIN)
+        if not waiting.poll(seconds * 1000):
+            raise WorkerDied(f"the warm parent said nothing for {seconds} seconds")
+        try:
+            data = self.control.recv(1 << 20)
+        except OSError as error:
+            raise WorkerDied(str(error)) from None
+        if not data:
+            raise WorkerDied("the warm parent is gone")
+        return json.loads(data)
+
+    def close(self):
+        """End the warm parent; with it ends all that it started."""
+        if self.control is not None:
+            self.control.close()
+        if self.process is not None:
+            try:
+                self.process.wait(5)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        elif self.warm_parent is not None:
+            end_copy(self.warm_parent)
+        if self.errors is not None:
+            self.errors.close()
+        self.control = self.process = self.warm_parent = self.errors = None
+        self.remove_base()
+
+    def remove_base(self):
+        if self.base is not None:
+            with contextlib.suppress(FileNotFoundError):  # the process that waits for the end removes it too
+                scratch.remove_folder(self.base)
+            self.base = None
+
+    # -- one notebook
+
+    def run(self, job):
+        """Run one notebook; give its result. A worker that dies is replaced, and the job tried again."""
+        for _ in range(ATTEMPTS_OF_A_JOB):
+            try:
+                if self.control is None:
+                    self.start()
+                return _Run(self, job).result()
+            except WorkerDied:
+                self.close()
+        raise WorkerDied(f"the worker died {ATTEMPTS_OF_A_JOB} times while it ran notebook {job['id']!r}")
+
+    def isolation_in_force(self):
+        """The isolation, as every result records it."""
+        layers = self.report["layers"]
+        return {
+            "layers": [layer for layer in LAYERS if layers[layer]["in force"]],
+            "namespaces made by": layers[NAMESPACES]["made by"],
+            "weak": bool(self.report["not stopped"]),
+            "not stopped": self.report["not stopped"],
+        }
+
+
+class _Run:
+    """All runs of one notebook, and what came of them."""
+
+    def __init__(self, sandbox, job):
+        self.sandbox = sandbox
+        self.limits = sandbox.limits
+        self.job = job
+        self.questions = job["questions"]
+        self.deadline = time.monotonic() + self.limits.notebook_wall_seconds
+        self.number_of_runs = 0
+        self.damaged = 0
+        self.unknown = {}
+        self.tried = {}
+        self.notes = []
+        if not isinstance(job["id"], str) or not all(isinstance(cell["source"], str) for cell in job["cells"]):
+            raise TypeError("a job has an id and cells with sources, all texts")
+
+    def result(self):
+        number = len(self.job["cells"])
+        cells, answers, finished = self.in_order(list(range(number)))
+        if any(has_not(answers, question) for question in self.questions) and any(
+            cell.get("error", "").startswith("NameError") for cell in cells.values()
+        ):
+            self.try_order_of_execution(answers)
+        if self.damaged:
+            self.notes.append("wrote into the records")
+        return {
+            "id": self.job["id"],
+            "finished": finished,
+            "cells": [cells.get(index, {"outcome": "not run"}) for index in range(number)],
+            "answers": {question: answers.get(question, {"outcome": "missing"}) for question in self.questions},
+            "unknown questions": list(self.unknown)[:MOST_UNKNOWN],
+            "notes": self.notes,
+            "tried": list(self.tried),
+            "runs": self.number_of_runs,
+            "seed": self.job.get("seed", 0),
+            "isolation": self.sandbox.isolation_in_force(),
+        }
+
+    def try_order_of_execution(self, answers):
+        """Fill in the answers that the notebook gives only in the order in which its cells once ran."""
+        cells = self.job["cells"]
+        moments, last = [], 0
+        for cell in cells:  # one that was never run goes with the one above it
+            count = cell.get("execution_count")
+            last = count if type(count) is int and count > 0 else last
+            moments.append(last)
+        order = sorted(range(len(cells)), key=lambda index: moments[index])
+        if order == list(range(len(cells))):
+            return
+        _, others, _ = self.in_order(order)
+        gained = [q for q in self.questions if has_not(answers, q) and not has_not(others, q)]
+        for question in gained:
+            answers[question] = others[question]
+        if gained:
+            self.notes.append("works only out of order")
+
+    def in_order(self, order):
+        """Run in one order, without the cells that end the process, until it comes through."""
+        cells, answers, skip, finished = {}, {}, [], False
+        for number in range(self.limits.runs):
+            once = _Once(self, order, skip)
+            self.number_of_runs += 1
+            once.watch()
+            self.damaged += once.records.damaged
+            cells |= {index: cell for index, cell in once.cells.items() if ["cell", index] not in skip}
+            self.unknown |= once.unknown
+            self.tried |= once.tried
+            for question, answer in once.answers.items():
+                if "plain" in answer or answers.get(question, {}).get("outcome") != "recorded":
+                    answers[question] = answer
+            if once.finished:
+                finished = True
+                break
+            culprit = next((step for step in reversed(once.blamed or once.steps) if step not in skip), None)
+            if number and once.left_threads:
+                # Twice, in different cells: the blame is with threads that an earlier cell left.
+                skip, culprit = [], ["cell", once.left_threads[0]]
+            if culprit is None:
+                break
+            if culprit[0] == "cell":
+                cells[culprit[1]] = once.ending
+            elif culprit[1] in self.questions and answers.get(culprit[1], {}).get("outcome") != "recorded":
+                answers[culprit[1]] = once.ending
+            self.deadline += once.kept_waiting
+            if time.monotonic() >= self.deadline:
+                break
+            skip = [*skip, culprit]
+        return cells, answers, finished
+
+
+def has_not(answers, question):
+    """Whether there is no answer yet to a question: a blank is none."""
+    answer = answers.get(question, {})
+    return answer.get("outcome") != "recorded" or answer["plain"]["value"] == ["blank"]
+
+
+class _Once:
+    """One child, from its start to its end."""
+
+    def __init__(self, run, order, skip):
+        self.sandbox = run.sandbox
+        self.limits = run.limits
+        self.notebook_deadline = run.deadline
+        job = run.job
+        self.job = json.dumps(
+            {
+                "cells": [cell["source"] for cell in job["cells"]],
+                "numbers": [cell.get("execution_count") for cell in job["cells"]],
+                "order": order,
+                "skip": skip,
+                "seed": job.get("seed", 0),
+                "files": job.get("files", {}),
+                "variables": {q: about["variable"] for q, about in job["questions"].items() if about.get("variable")},
+                "calls": {q: about["calls"] for q, about in job["questions"].items() if about.get("calls")},
+                "given": {q: about["given"] for q, about in job["questions"].items() if about.get("given")},
+            }
+        ).encode()
+        self.secret_calls = {
+            q: about["secret calls"] for q, about in job["questions"].items() if about.get("secret calls")
+        }
+        self.records = records.Records(len(job["cells"]))
+        self.process = None
+        self.kept_waiting = 0.0  # seconds in which the machine was busy with others
+        self.steps = []  # begun and not ended, outermost first
+        self.begun = []
+        self.deadlines = []
+        self.cells = {}
+        self.questions = job["questions"]
+        self.answers = {}
+        self.unknown = {}
+        self.tried = {}
+        self.left_threads = []
+        self.finished = False
+        self.killed_for = None
+        self.blamed = []  # the steps that were under way when it was killed
+        self.ending = None
+
+    def watch(self):
+        """Start the child, take its records, keep its time; return when all of it is gone."""
+        with contextlib.ExitStack() as stack:
+            # What it gets and what it gives; the secret calls are written when it has nothing more to give.
+            job = os.memfd_create("job")
+            ends = [job, *os.pipe(), *os.pipe()]
+            handles = [
+                stack.enter_context(open(end, "rb+" if end == job else mode, 0))
+                for end, mode in zip(ends, ("rb", "rb", "wb", "rb", "wb"), strict=True)
+            ]
+            job, reading, writing, secret, self.secret = handles
+            os.set_blocking(secret.fileno(), False)  # to a notebook that reads it too early it is empty
+            job.write(self.job)
+            job.seek(0)
+            self.sandbox.send(
+                {"run": {"limits": self.limits.for_child()}}, [job.fileno(), writing.fileno(), secret.fileno()]
+            )
+            writing.close()
+            secret.close()
+            ended = self.follow(reading.fileno())
+        self.conclude(ended)
+
+    def tell_the_secret(self):
+        """Give the secret calls; what does not fit into the pipe at once is not given, and nobody waits."""
+        data = json.dumps(self.secret_calls).encode() if self.secret_calls else b""
+        with contextlib.suppress(OSError):
+            os.set_blocking(self.secret.fileno(), False)
+            if len(data) > fcntl.fcntl(self.secret, fcntl.F_GETPIPE_SZ):
+                fcntl.fcntl(self.secret, fcntl.F_SETPIPE_SZ, 1 << 20)
+            self.secret.write(data)
+        self.secret.close()
+
+    def follow(self, reading):
+        control = self.sandbox.control
+        waiting = select.poll()
+        waiting.register(control, select.POLLIN)
+        last_moment, look_again = None, 0.0  # None where there is nothing more to be read
+        while True:
+            now = time.monotonic()
+            if self.killed_for is None:
+                deadline, reason = self.next_deadline()
+                if now >= deadline and self.give_back():
+                    continue
+                if now >= deadline or self.records.too_many:
+                    self.killed_for = "output" if self.records.too_many else reason
+                    self.blamed = list(self.steps)
+                    self.sandbox.send({"kill": True})
+                    last_moment = deadline = now + WAIT_FOR_END
+            else:
+                deadline = last_moment
+                if now >= deadline:
+                    raise WorkerDied("a killed notebook did not end")
+            if look_again is not None and now >= look_again:
+                waiting.register(reading, select.POLLIN)
+            until = deadline if look_again is None or now >= look_again else min(deadline, look_again)
+            for handle, _ in waiting.poll(max(1, (until - now) * 1000)):
+                if handle == reading:
+                    waiting.unregister(reading)
+                    look_again = time.monotonic() + PAUSE if self.take(reading) else None
+                elif handle == control.fileno():
+                    ended = self.sandbox.receive(0)
+                    while self.take(reading):  # what it wrote last; nobody is left to write more
+                        pass
+                    return ended
+
+    def take(self, reading):
+        """Take what the child has written; False when there is no more to come."""
+        data = os.read(reading, 1 << 18)
+        if not self.records.too_many:
+            for record in self.records.feed(data):
+                self.note(record)
+        return bool(data)
+
+    def give_back(self):
+        """Put all deadlines off by the time in which the machine was busy with others; whether there was any."""
+        if self.process is None:
+            self.process = running_below(self.sandbox.warm_parent)
+        waited = kept_waiting(self.process) - self.kept_waiting
+        if waited < 0.01:
+            return False
+        self.kept_waiting += waited
+        self.notebook_deadline += waited
+        self.deadlines = [deadline + waited for deadline in self.deadlines]
+        if self.finished:
+            self.done_by += waited
+        return True
+
+    def next_deadline(self):
+        if self.finished and self.steps:
+            return self.deadlines[-1], "done"
+        if self.finished:  # it only has to exit now
+            return self.done_by, "done"
+        if self.deadlines and self.deadlines[-1] < self.notebook_deadline:
+            return self.deadlines[-1], "timeout"
+        return self.notebook_deadline, "timeout"
+
+    def note(self, record):
+        now = time.monotonic()
+        if self.finished:
+            self.done_by = now + self.limits.grace_seconds
+            if "secret" in record and record["secret"] in self.secret_calls:
+                answer = self.answers.get(record["secret"], {})
+                if "plain" in answer:
+                    answer["secret"] = {name: record[name] for name in ("plain", "unreadable") if name in record}
+            if not ("begin" in record or "end" in record) or (record.get("begin") or record["end"])[0] != "answer":
+                return  # it knows the secret calls now: nothing that it says of anything else is heard
+        if "tried" in record:
+            if len(self.tried) < MOST_UNKNOWN:
+                self.tried[record["tried"]] = True
+        elif "begin" in record:
+            step = record["begin"]
+            wall = self.limits.cell_wall_seconds if step[0] == "cell" else self.limits.answer_wall_seconds
+            if len(self.steps) < DEEPEST_STEPS:
+                self.steps.append(step)
+                self.begun.append(now)
+                self.deadlines.append(now + wall + self.limits.grace_seconds)
+        elif "end" in record:
+            if self.steps and self.steps[-1] == record["end"]:
+                self.steps.pop()
+                self.deadlines.pop()
+                begun = self.begun.pop()
+                if self.deadlines:  # the reading of an answer is not the cell's time
+                    self.deadlines[-1] += now - begun
+            if record["end"][0] == "cell":
+                index = record["end"][1]
+                self.cells[index] = {name: record[name] for name in ("outcome", "error", "line") if name in record}
+                if "threads" in record:
+                    self.left_threads.append(index)
+        elif "answer" in record:
+            question = record["answer"]
+            if question not in self.questions:
+                if len(self.unknown) < MOST_UNKNOWN:
+                    self.unknown[question] = True
+                return
+            answer = (
+                {"outcome": "recorded", "plain": record["plain"]}
+                if "plain" in record
+                else {"outcome": "unreadable", "why": record["unreadable"]}
+            )
+            answer |= {"from": record["from"], "cell": record["cell"]}
+            if not has_not({question: answer}, question) or has_not(self.answers, question):
+                self.answers[question] = answer
+        elif "done" in record and not self.finished:
+            self.finished = True
+            self.done_by = now + self.limits.grace_seconds
+            self.steps, self.begun, self.deadlines = [], [], []
+            self.tell_the_secret()
+
+    def conclude(self, ended):
+        """Name how the child ended."""
+        how = ended["ended"]
+        if how.get("code") == NOT_CONFINED and not self.records.received:
+            raise WeakIsolation(
+                "A notebook's process could not be confined, so it did not run: " + self.sandbox.last_error()
+            )
+        if self.finished:
+            return
+        outcome, error = "exited", f"The process was left with code {how.get('code')}."
+        if ended["scratch full"]:
+            outcome, error = "disk", "It filled its scratch folder."
+        elif self.killed_for == "output":
+            outcome, error = "output", "It wrote more than may be handed in."
+        elif self.killed_for == "timeout" or how.get("signal") == signal.SIGXCPU:
+            outcome, error = "timeout", "It took longer than it may."
+        elif "signal" in how:
+            outcome, error = "killed", f"The process was ended by {signal.Signals(how['signal']).name}."
+        self.ending = {"outcome": outcome, "error": error}
+
+
+def given_up(job, why):
+    """The result of a notebook that could not be run: a person must look."""
+    return {
+        "id": job["id"],
+        "finished": False,
+        "cells": [{"outcome": "not run"}] * len(job["cells"]),
+        "answers": {name: {"outcome": "missing"} for name in job["questions"]},
+        "unknown questions": [],
+        "notes": ["could not be run"],
+        "runs": 0,
+        "seed": job["seed"],
+        "isolation": {"layers": [], "weak": False, "given up": why},
+    }
+
+
+def copies_are_apart():
+    """Whether copies of a warm parent are as much apart as warm parents that are started one by one.
+
+    They share its user namespace. There the threads of an ordinary user are counted together, and one notebook could
+    take another's; root gives each copy a user of its own.
+    """
+    return os.geteuid() == 0
+
+
+def new_user():
+    """A user that nobody else is: root gives the code to it, and its limit of threads counts only these."""
+    return 1_900_000_000 + random.SystemRandom().randrange(10**8)
+
+
+def end_copy(process):
+    """Wait until the copy of a warm parent has ended, of which the other end of its control is closed."""
+    with contextlib.suppress(OSError):  # it has ended
+        handle = os.pidfd_open(process)
+        with open(handle, "rb"):
+            if not select.select([handle], [], [], 5)[0]:
+                signal.pidfd_send_signal(handle, signal.SIGKILL)
+
+
+def running_below(process):
+    """The number of the last process below another: a notebook's, which has none below itself; ``None`` if hidden."""
+    with contextlib.suppress(OSError, ValueError, IndexError):
+        while children := Path(f"/proc/{process}/task/{process}/children").read_text().split():
+            process = int(children[-1])
+        return process
+    return None
+
+
+def kept_waiting(process):
+    """The seconds for which a process could have run and others did; 0 where the system does not tell."""
+    try:
+        return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) / 1e9
+    except (OSError, ValueError, IndexError):
+        return 0.0
+
+
+def threads_of(user):
+    """How many threads `user` has on this machine: they count against a limit of threads."""
+    total = 0
+    for status in Path("/proc").glob("[0-9]*/status"):
+        with contextlib.suppress(OSError, ValueError, KeyError):
+            fields = dict(line.split(":", 1) for line in status.read_text().splitlines())
+            if int(fields["Uid"].split()[0]) == user:
+                total += int(fields["Threads"])
+    return total
+
+
+def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, without=()):
+    """Run notebooks on several workers, each a process of its own; give the results as they come.
+
+    Parameters
+    ----------
+    jobs : iterable of dict
+        Each plain JSON::
+
+            {"id": text,
+             "cells": [{"source": text, "execution_count": number or None}, ...],   # code cells
+             "questions": {name: {"variable": text or None,
+                                  "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or None,
+                                  "secret calls": the same, optional}},
+             "files": {name: base64 text},                                          # optional, beside it
+             "seed": number}                                                        # optional, 0
+    workers : int
+        How many notebooks run at a time; each worker is a warm parent of its own.
+    limits, allow_weak_isolation, without
+        As for :class:`Sandbox`.
+
+    Yields
+    ------
+    dict
+        One result for each job, in the order in which they are ready; each names its job by `id` and
+        does not depend on the others or on the number of workers.
+
+    Raises
+    ------
+    WeakIsolation
+        Before any student code is run.
+    """
+
+    options = {"allow_weak_isolation": allow_weak_isolation, "without": without}
+    with contextlib.ExitStack() as outer:
+        first = outer.enter_context(Sandbox(limits, **options)) if copies_are_apart() else None
+
+        def prepare(stack):
+            return stack.enter_context(Sandbox(limits, **options, like=first)).run
+
+        yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))

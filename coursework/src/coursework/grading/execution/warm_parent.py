@@ -1,0 +1,442 @@
+"""The warm parent: a process that has loaded the libraries and forks one child for each notebook.
+
+It is started by `exec` with an empty environment. It holds no answer and no student's work: the
+notebook goes to the child, and the records come back, through handles that this process passes on
+without reading, so a child that searches its memory finds nothing of its neighbours.
+
+It speaks with the process that started it in JSON, one message each:
+
+    in   {"start": {...}}                      once: how to isolate, what to try
+    out  {"ready": report}
+    in   {"run": {"limits": {...}}}            with three handles: the job, where records go, and the secret calls
+    out  {"ended": {"signal": n} or {"code": n}, "scratch full": bool}
+    in   {"kill": true}                        while a notebook runs
+    in   {"copy": {...}}                       with one handle: a copy of this process says "ready" there, and serves
+
+The libraries take most of a second to load, so where several notebooks run at a time one warm parent loads them and
+is copied. One that is copied runs no notebook itself.
+"""
+
+import contextlib
+import ctypes
+import errno
+import gc
+import importlib
+import json
+import os
+import select
+import signal
+import socket
+import sys
+from pathlib import Path
+
+from coursework.checking.plugins import packages
+from coursework.grading.execution import isolation, scratch
+from coursework.grading.execution.isolation import LAYERS, LIMITS, NAMESPACES, PRIVILEGES, IsolationError
+
+# The handles that a notebook's process has, beside input and output to nowhere; the last is where it learns of the
+# secret calls, at its end.
+JOB, RECORDS, SECRET = 3, 4, 5
+NOT_CONFINED = 120
+LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on disk is
+LONGEST_MESSAGE = 1 << 16
+LARGE_PAGE, MADV_COLLAPSE = 2 << 20, 25
+
+
+def into_namespaces(control, readable):
+    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot be."""
+    reading, writing = os.pipe()
+    outer = os.getpid()
+    if os.fork() == 0:
+        try:
+            isolation.die_with_parent()
+            if os.getppid() != outer:
+                os._exit(1)
+            isolation.unshare_all()
+            inner = os.fork()
+            if inner == 0:
+                isolation.die_with_parent()
+                isolation.enter_own_root(readable)
+                os.write(writing, b"in")
+                os.close(writing)
+                os.close(reading)
+                return None
+            control.close()
+            os.close(writing)
+            _, status = os.waitpid(inner, 0)
+            os._exit(0 if status == 0 else 1)
+        except OSError as error:
+            os.write(writing, str(error).encode())
+            os._exit(1)
+    os.close(writing)
+    said = b""
+    while part := os.read(reading, 1000):
+        said += part
+    os.close(reading)
+    if said == b"in":
+        control.close()  # the process inside has its own handle
+        os.wait()
+        os._exit(0)
+    os.wait()
+    return said.decode(errors="replace") or "it ended without a word"
+
+
+def load_libraries():
+    """Import what notebooks import, once for all of them."""
+    import numpy
+    import sympy
+    import sympy.physics.mechanics as mechanics
+
+    from coursework.grading.execution import notebook
+
+    for package in packages():
+        with contextlib.suppress(ImportError):
+            importlib.import_module(package)
+    with contextlib.suppress(ImportError):
+        import matplotlib.pyplot  # noqa: F401
+    # What SymPy and the answers' reader import only when first used.
+    angle = sympy.Symbol("angle")
+    one, other = mechanics.ReferenceFrame("N"), mechanics.ReferenceFrame("A")
+    other.orient_axis(one, one.z, angle)
+    sympy.simplify(sympy.trigsimp(other.dcm(one) * other.dcm(one).T))
+    third = sympy.Rational(1, 3)
+    for inverse in (sympy.asin, sympy.acos, sympy.atan, sympy.acot, sympy.asec, sympy.acsc):
+        inverse(third)  # looks it up in a table of known values, which takes ten milliseconds to make
+    sympy.atan2(third, 1), sympy.cos(sympy.pi / 5)
+    sympy.lambdify(angle, sympy.sin(angle), "numpy")(numpy.zeros(1))
+    notebook.warm_up()
+
+
+def about_itself(processes, name):
+    """A file of this process's own in /proc, which is a handle here: the folder may be out of sight."""
+    with open(os.open(f"self/{name}", os.O_RDONLY, dir_fd=processes)) as file:
+        return file.read()
+
+
+def into_large_pages(maps):
+    """Have the kernel gather this process's memory in large pages, of which it copies one entry for each to a child.
+
+    Of small ones there are 500 times as many, and a child would take milliseconds longer to be made and to end.
+    ``maps`` is what the system says of the memory. Where it cannot be done, everything works as before.
+    """
+    madvise = ctypes.CDLL(None).madvise
+    madvise.argtypes = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
+    for line in maps.splitlines():
+        place, rights, *rest = line.split()
+        if rights.startswith("rw") and rest[3:] in ([], ["[heap]"]):
+            start, end = (int(address, 16) for address in place.split("-"))
+            for address in range(-(-start // LARGE_PAGE) * LARGE_PAGE, end - LARGE_PAGE + 1, LARGE_PAGE):
+                madvise(address, LARGE_PAGE, MADV_COLLAPSE)
+
+
+class WarmParent:
+    """What the children need to be started, and how they are tried out, watched and ended."""
+
+    def __init__(self, control, processes, start, readable, made_by, why_no_namespaces):
+        self.control = control
+        self.off = set(start["without"])
+        self.target = start["target"]
+        self.readable = readable
+        self.made_by = made_by
+        self.why_no_namespaces = why_no_namespaces
+        self.first_of_its_namespace = made_by is not None and os.getpid() == 1
+        self.base = isolation.SCRATCH if made_by else start["base"]
+        # Namespaces of an ordinary user count their own threads only.
+        self.threads_in_use = 0 if made_by else start["threads in use"]
+        self.user = isolation.user_for_students(start["user"], about_itself(processes, "uid_map"))
+        if not self.first_of_its_namespace:
+            isolation.adopt_orphans()
+        os.environ["MPLCONFIGDIR"] = self.base
+        load_libraries()
+        gc.collect()
+        gc.freeze()
+        into_large_pages(about_itself(processes, "maps"))
+        self.memory_in_use = int(about_itself(processes, "statm").split()[0]) * os.sysconf("SC_PAGE_SIZE")
+        os.close(processes)
+        self.own_scratch = made_by is not None
+        self.layers = []
+        self.count = 0
+
+    # -- one child
+
+    def new_scratch(self, layers):
+        """The next child's scratch folder: memory that it mounts over the base, or a folder in it."""
+        if self.own_scratch and NAMESPACES in layers:
+            return self.base
+        self.count += 1
+        folder = os.path.join(self.base, f"{self.count}")
+        os.mkdir(folder, 0o700)
+        if os.geteuid() == 0:
+            os.chown(folder, self.user, self.user)
+        return folder
+
+    def remove_scratch(self, folder):
+        if folder != self.base:  # memory went with its process
+            scratch.remove_folder(folder)
+
+    def confine(self, layers, limits, folder):
+        isolation.confine(
+            layers,
+            limits=limits,
+            readable=self.readable,
+            scratch=folder,
+            own_scratch=self.own_scratch,
+            user=self.user,
+            memory_in_use=self.memory_in_use,
+            threads_in_use=self.threads_in_use,
+        )
+
+    def end_all(self, child):
+        """Kill the child and everything it may have left behind. The only one who reaps."""
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(child, signal.SIGKILL)
+        status = os.waitpid(child, 0)[1]
+        while True:
+            if self.first_of_its_namespace:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(-1, signal.SIGKILL)  # all of this namespace, at one stroke
+            else:
+                for orphan in self.children():
+                    with contextlib.suppress(ProcessLookupError):
+                        os.kill(orphan, signal.SIGKILL)
+            try:
+                os.waitpid(-1, 0)
+            except ChildProcessError:
+                return status
+
+    @staticmethod
+    def children():
+        path = Path(f"/proc/self/task/{os.getpid()}/children")
+        return [int(number) for number in path.read_text().split()] if path.exists() else []
+
+    # -- trying the layers
+
+    def tried(self, layers, attempts, target):
+        """Confine a child by `layers`; give the names of the attempts that succeeded there."""
+        folder = self.new_scratch(layers)
+        reading, writing = os.pipe()
+        child = os.fork()
+        if child == 0:
+            try:
+                os.close(reading)
+                self.confine(layers, target["limits"], folder)
+                answer = {"succeeded": isolation.attempt_all(target, attempts)}
+                if attempts is None:
+                    answer["succeeded"] += self.cannot_work()
+            except Exception as error:
+                answer = {"failed": str(error) or type(error).__name__}
+            os.write(writing, json.dumps(answer).encode())
+            os._exit(0)
+        os.close(writing)
+        said = b""
+        while select.select([reading], [], [], 20)[0] and (part := os.read(reading, 4096)):
+            said += part
+        os.close(reading)
+        self.end_all(child)
+        self.remove_scratch(folder)
+        answer = json.loads(said) if said else {"failed": "the process that tried it ended early"}
+        if "failed" in answer:
+            raise IsolationError(errno.EPERM, answer["failed"])
+        return answer["succeeded"]
+
+    @staticmethod
+    def cannot_work():
+        """What a notebook needs and does not have under all layers together."""
+        import sympy
+
+        problems = []
+        try:
+            for module in (os, sympy):
+                Path(module.__file__).read_bytes()
+        except OSError as error:
+            problems.append(
+                f"the isolated process cannot read Python's own libraries ({error}); "
+                "start grading as the user who owns them"
+            )
+        try:
+            Path("trial").write_bytes(b"x" * 100)
+        except OSError as error:
+            problems.append(f"the isolated process cannot write in its scratch folder ({error})")
+        return problems
+
+    def report(self):
+        """Try every layer alone, then all that are in force together."""
+        self.target["threads in use"] = self.threads_in_use
+        with self.file_within() as own:
+            everywhere = self.target | {"files": [*self.target["files"], own]}
+            layers = {}
+            for layer in LAYERS:
+                why_not = self.why_not(layer, self.target if layer == NAMESPACES else everywhere)
+                layers[layer] = {"in force": why_not is None, "why not": why_not or ""}
+                if why_not is None:
+                    self.layers.append(layer)
+            layers[NAMESPACES]["made by"] = self.made_by if layers[NAMESPACES]["in force"] else ""
+            not_stopped = self.not_stopped(everywhere)
+        self.said = {
+            "layers": layers,
+            "not stopped": not_stopped,
+            "landlock version": isolation.landlock_version(),
+            "scratch in memory": self.own_scratch,
+        }
+        return self.said
+
+    @contextlib.contextmanager
+    def file_within(self):
+        """A file that everybody may change. Namespaces hide the other one that it is tried on from all layers."""
+        outside = os.path.join(self.base, f"inside namespaces, {self.user}")
+        os.mkdir(outside, 0o777)
+        own = os.path.join(outside, "file")
+        Path(own).write_text("a file outside")
+        os.chmod(own, 0o666)
+        os.chmod(outside, 0o777)
+        yield own
+        scratch.remove_folder(outside)
+
+    def not_stopped(self, target):
+        """What the layers in force do not stop together."""
+        try:
+            return self.tried(self.layers, None, target)
+        except IsolationError as error:
+            return [f"the layers do not work together: {error}"]
+
+    def why_not(self, layer, target):
+        if layer in self.off:
+            return "switched off"
+        if layer == NAMESPACES and self.made_by is None:
+            return self.why_no_namespaces
+        # A limit binds users, and root is none: it is tried as the user it is for.
+        alone = [LIMITS, PRIVILEGES] if layer == LIMITS else [layer]
+        try:
+            succeeded = self.tried(alone, isolation.must_stop(layer), target)
+        except IsolationError as error:
+            if layer == NAMESPACES and self.own_scratch:
+                self.own_scratch = False
+                return self.why_not(layer, target)
+            return error.strerror
+        return f"it did not stop these attempts: {', '.join(succeeded)}" if succeeded else None
+
+    # -- serving
+
+    def serve(self):
+        while True:
+            message, handles = receive(self.control)
+            if message is None:
+                return
+            if "copy" in message:
+                self.copy(message["copy"], *handles)
+                continue
+            if "run" not in message:
+                continue  # a late "kill": what it was meant for has ended
+            send(self.control, self.run(message["run"], handles))
+
+    def copy(self, about, handle):
+        """Have a copy of this process serve at another handle, as the first process of a namespace of its own."""
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:  # copies that have ended
+                pass
+        if os.fork() == 0:
+            with contextlib.suppress(Exception):
+                self.be_copy(about, handle)
+            os._exit(0)
+        os.close(handle)
+
+    def be_copy(self, about, handle):
+        isolation.die_with_parent()
+        self.control.close()
+        self.control = socket.socket(fileno=handle)
+        isolation.unshare_processes()
+        inner = os.fork()
+        if inner:
+            self.control.close()
+            os.waitpid(inner, 0)
+            return
+        isolation.die_with_parent()
+        self.user, self.target = about["user"], about["target"] | {"threads in use": self.threads_in_use}
+        with self.file_within() as own:
+            not_stopped = self.not_stopped(self.target | {"files": [*self.target["files"], own]})
+        gc.collect()
+        gc.freeze()
+        with contextlib.suppress(ConnectionError):
+            send(self.control, {"ready": self.said | {"not stopped": not_stopped}})
+            self.serve()
+
+    def run(self, run, handles):
+        folder = self.new_scratch(self.layers)
+        parent = os.getpid()
+        child = os.fork()
+        if child == 0:
+            self.be_notebook(parent, run, handles, folder)
+        for handle in handles:
+            os.close(handle)
+        full = self.wait(child, None if folder == self.base else folder, run["limits"]["scratch_bytes"])
+        status = self.end_all(child)
+        self.remove_scratch(folder)
+        how = {"signal": os.WTERMSIG(status)} if os.WIFSIGNALED(status) else {"code": os.WEXITSTATUS(status)}
+        return {"ended": how, "scratch full": full}
+
+    def wait(self, child, folder, most_bytes):
+        """Wait until the child has ended, must be killed, or has filled its folder on disk (then: True)."""
+        handle = os.pidfd_open(child)
+        try:
+            while True:
+                ready, _, _ = select.select([handle, self.control], [], [], LOOK_EVERY if folder else None)
+                if ready:
+                    return False  # it ended, or whatever came in, or nobody is there: it is to end
+                if scratch.used_bytes(folder, most_bytes) > most_bytes:
+                    return True
+        finally:
+            os.close(handle)
+
+    def be_notebook(self, parent, run, handles, folder):
+        """In the child: give up all that a notebook must not have, and run it. Does not return."""
+        code = NOT_CONFINED
+        try:
+            # Away from the low numbers first, so that none is written over.
+            handles = [os.dup2(handle, 200 + order, False) for order, handle in enumerate(handles)]
+            for handle, place in zip(handles, (JOB, RECORDS, SECRET), strict=True):
+                os.dup2(handle, place, False)
+            os.closerange(SECRET + 1, 1 << 20)
+            self.confine(self.layers, run["limits"], folder)
+            os.dup2(1, 2)  # from here on nothing is heard of it but records
+            if os.getppid() != parent:
+                raise ProcessLookupError("the warm parent ended before it could be watched")
+            os.environ.update(HOME=folder, TMPDIR=folder, MPLCONFIGDIR=folder)
+            code = 1
+            from coursework.grading.execution import notebook
+
+            notebook.run(JOB, RECORDS, SECRET, run["limits"], folder)
+            code = 0
+        except Exception as error:
+            os.write(2, f"{type(error).__name__}: {error}\n".encode(errors="replace"))
+        finally:
+            os._exit(code)
+
+
+def receive(control):
+    """The next message and its handles; (None, []) when the other side is gone."""
+    data, handles, _, _ = socket.recv_fds(control, LONGEST_MESSAGE, 3)
+    return (json.loads(data) if data else None), handles
+
+
+def send(control, message):
+    control.send(json.dumps(message).encode())
+
+
+def main():
+    control = socket.socket(fileno=int(sys.argv[1]))
+    message, _ = receive(control)
+    if message is None:
+        return  # whoever started it has ended
+    start = message["start"]
+    readable = isolation.readable_paths()
+    made_by, why_not = start["namespaces made by"], start["why no namespaces"]
+    if made_by == "unshare":
+        why_not = into_namespaces(control, readable)
+        made_by = None if why_not else "unshare"
+    server = WarmParent(control, int(sys.argv[2]), start, readable, made_by, why_not)
+    report = server.report()
+    gc.collect()
+    gc.freeze()
+    with contextlib.suppress(ConnectionError):  # whoever started it may have ended
+        send(control, {"ready": report})
+        server.serve()

@@ -1,0 +1,1 @@
+"""Handed on: marks for the systems that others keep."""

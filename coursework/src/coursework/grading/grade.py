@@ -1,0 +1,767 @@
+"""Grades a class: from what was handed in to a record of each student's work, and reports of all records.
+
+A record is written as soon as a student's work on an assignment is graded. Its key follows from everything
+that it depends on: the bytes of the notebooks, the questions, the limits, the versions of the software. A
+run that finds a record with the right key leaves it alone, so a run that was killed goes on where it was.
+"""
+
+import base64
+import contextlib
+import hashlib
+import importlib.util
+import itertools
+import json
+import platform
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+from ..authoring.course import edition_of, find_course, links_of
+from ..checking.plugins import kinds
+from ..checking.variants import plain_identity
+from .judging import marking
+from .judging import secret as in_secret
+from .judging.cases import Contracts
+from .judging.judge import Judge
+from .judging.ledger import DECISIONS, Ledger, with_decisions
+from .judging.secret import secret_beside
+from .store import FORMAT, REFUSED, Store, as_text, write
+from .submissions import intake
+from .submissions.identity import BadRoster, Roster
+from .tables import in_a_line, lines, number
+from .versions import software
+from .workers import processors, side_by_side
+
+COURSE, WHOSE, ROSTER = "course.json", "whose.csv", "roster.json"
+
+
+MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
+
+
+class NothingToGrade(ValueError):
+    """There is nothing that could be graded; the message says what was looked for."""
+
+
+class Work(NamedTuple):
+    """What one student handed in for one assignment: the notebooks that count, and those that do not."""
+
+    student: str
+    assignment: str
+    notebooks: list
+    superseded: list
+
+
+class Course:
+    """The assignments, and the names of the questions of each.
+
+    Parameters
+    ----------
+    solutions : path
+        The folder of the notebooks with solutions.
+    assignments : dict, optional
+        The notebooks that make up each assignment, where they are not one each.
+    """
+
+    def __init__(self, solutions=None, assignments=None):
+        folder = self.folder = Path(solutions or find_course().sources)
+        self.edition = edition_of(folder)
+        self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
+        if not self.sources:
+            raise NothingToGrade(f"There is no notebook with solutions in {folder}.")
+        self.assignments = assignments or {stem: [stem] for stem in self.sources}
+        unknown = sorted({stem for stems in self.assignments.values() for stem in stems} - set(self.sources))
+        if unknown:
+            raise NothingToGrade(
+                f"There is no notebook with solutions {', '.join(map(repr, unknown))} in {folder}; "
+                f"there are {', '.join(self.sources)}."
+            )
+        self.names = {
+            assignment: [name for stem in stems for name in marking.names_asked(self.sources[stem])]
+            for assignment, stems in self.assignments.items()
+        }
+
+    def assignments_of(self, notebook):
+        """The assignments that a notebook answers, by the names in its cells, or else by its own name."""
+        by_cell = {name.replace("/", "-"): name for names in self.names.values() for name in names}
+        named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
+        counts = {assignment: len(named & set(names)) for assignment, names in self.names.items()}
+        most = max(counts.values())
+        if most:
+            # The one it names most of; and any other of which it names half: some work in a single notebook.
+            first = next(assignment for assignment, count in counts.items() if count == most)
+            return [
+                assignment
+                for assignment, count in counts.items()
+                if assignment == first or 2 * count >= len(self.names[assignment]) > 0
+            ]
+        for place in (notebook.folder, notebook.file.rpartition("/")[2]):
+            fitting = [assignment for assignment in self.assignments if assignment in place]
+            if fitting:
+                return [max(fitting, key=len)]
+        return list(self.assignments) if len(self.assignments) == 1 else []
+
+    def questions(self, assignments, kept):
+        """The questions of some assignments, by assignment and name."""
+        stems = sorted({stem for assignment in assignments for stem in self.assignments[assignment]})
+        secret = secret_beside(self.folder)
+        found = marking.load_questions([self.sources[stem] for stem in stems], kept, secret, self.edition)
+        return {assignment: {name: found[name] for name in self.names[assignment]} for assignment in assignments}
+
+
+def sort_work(notebooks, course, refused):
+    """Sort notebooks by student and assignment; say of each which counts.
+
+    Of several notebooks for one assignment the newest counts, and older ones only for questions that no newer
+    one has: an assignment may be handed in as several notebooks.
+    """
+    handed_in = {}
+    for notebook in notebooks:
+        assignments = course.assignments_of(notebook)
+        if not assignments:
+            refused.append(
+                intake.Refused(notebook.file, notebook.student, "No question of any assignment is named in it.")
+            )
+        for assignment in assignments:
+            handed_in.setdefault((notebook.student, assignment), []).append(notebook)
+    found = []
+    for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0]):
+        counting, superseded, taken = [], [], set()
+        for notebook in sorted(mine, key=_by_age, reverse=True):
+            names = set(notebook.named) & set(course.names[assignment])
+            if counting and (names & taken or not names):
+                superseded.append(notebook)
+            else:
+                counting.append(notebook)
+                taken |= names
+        found.append(Work(student, assignment, sorted(counting, key=lambda notebook: notebook.file), superseded))
+    return found
+
+
+def _by_age(notebook):
+    declared, when = notebook.order
+    return declared, when if isinstance(when, tuple) else (when,), notebook.file
+
+
+# --- grading ------------------------------------------------------------------------------------
+
+
+def grade(
+    submissions,
+    out,
+    *,
+    solutions=None,
+    assignments=None,
+    roster=None,
+    student=None,
+    only_list=False,
+    workers=None,
+    scheduler=None,
+    allow_weak_isolation=False,
+    as_listed=False,
+    limits=None,
+    show=None,
+):
+    """Grade what was handed in and write records and reports to the folder ``out``.
+
+    Parameters
+    ----------
+    submissions, out : path
+    solutions : path, optional
+        The folder of the notebooks with solutions, beside which the course's secret is kept.
+    assignments : dict, optional
+        As for :class:`Course`.
+    roster : path, optional
+        Who is in the course; then nothing else says whose a notebook is.
+    student : str, optional
+        The one student who handed all of it in.
+    only_list : bool
+        Say whose each file is, and run nothing.
+    workers : int, optional
+        How many notebooks run at a time; as many as there are processors if it is not said.
+    scheduler : str, optional
+        The address of a Dask cluster.
+    allow_weak_isolation : bool
+    as_listed : bool
+        Go on although many notebooks say that they are somebody else's.
+    limits : Limits, optional
+    show : file, optional
+        Where it says how far it is.
+
+    Returns
+    -------
+    dict
+        How many were ``graded`` now, were graded before (``kept``), and were ``refused``.
+
+    Raises
+    ------
+    NothingToGrade, BadRoster, InUse, WeakIsolation
+    """
+    from .execution.sandbox import Limits
+    from .reporting import reports
+
+    workers = processors() if workers is None else workers
+    if workers < 1:
+        raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
+    if scheduler and importlib.util.find_spec("distributed") is None:
+        raise ValueError("To give notebooks to a cluster, install what speaks to it: python -m pip install distributed")
+    store, limits, show = Store(out), limits or Limits(), show or sys.stderr
+    roster = Roster(roster) if roster else None
+    if student is not None and roster and student not in roster.people:
+        raise BadRoster(f"There is no student {student!r} in the roster.")
+    with contextlib.ExitStack() as closing:
+        closing.enter_context(store.locked())
+        course = Course(solutions, assignments)
+        try:
+            notebooks, refused = intake.take_in(submissions, course.assignments, roster, student)
+        except intake.Unfit as error:
+            raise NothingToGrade(str(error)) from None
+        if not notebooks and not refused:
+            raise NothingToGrade(f"There is nothing in {submissions}: no notebook, and no other file.")
+        work = sort_work(notebooks, course, refused)
+        _say_whose(work, refused, roster, store, show)
+        foreign = _say_foreign(work, course, show)
+        if roster:
+            write(store.folder / ROSTER, as_text(sorted(roster.people)))
+        if only_list:
+            return {"graded": 0, "kept": 0, "refused": len(refused)}
+        _demand_a_class(work, roster, student)
+        questions = course.questions(sorted({one.assignment for one in work}), store.folder / "questions")
+        if not as_listed:
+            _demand_own_numbers(work, questions, foreign, roster)
+        known = _read(store.folder / COURSE)
+        write(store.folder / COURSE, as_text({**known, **course.assignments}))
+        ledger = Ledger(store.folder)
+        for line in _put_renamed_aside(store, work, ledger):
+            print(line, file=show)
+        _take_in_decisions(ledger, store, show)
+
+        def key(one):
+            return key_of(one, questions[one.assignment], limits, allow_weak_isolation)
+
+        waiting, kept = [], []
+        for one in work:
+            (kept if _is_done(store, one, key(one)) else waiting).append(one)
+        print(
+            f"{len(work)} to grade, {len(work) - len(waiting)} of them graded before, {len(refused)} files refused.",
+            file=show,
+        )
+        store.log(f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on {platform.node()}")
+        decisions, contracts = ledger.current(), Contracts(store.folder)
+
+        def before(one):
+            """The record of the same student before, from which it is known which variants are whose."""
+            return store.read(one.student, one.assignment)
+
+        jobs = _Jobs(waiting, questions, store, contracts, before)
+        judge = closing.enter_context(Judge(questions, contracts, store.log))
+
+        def finish(order, results):
+            """Judge one student's work, and write its record."""
+            one = waiting[order]
+            asked = questions[one.assignment]
+            of_student, cases = marking.of_student(asked, one.student, before(one), contracts)
+            record = record_of(one, results, key(one), of_student, limits)
+            record["cases"] = {name: case.answered(of_student[name]).as_json() for name, case in cases.items()}
+            store.save(marked(record, judge, decisions))
+            return order, record["notebooks"][0]["isolation"]
+
+        progress = _Progress(len(waiting), show)
+        finished = (
+            _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store)
+            if scheduler
+            else _here(jobs, finish, workers, limits, allow_weak_isolation, store)
+        )
+        for order, isolation in finished:
+            store.log(f"graded: {waiting[order].student!r} {waiting[order].assignment}")
+            progress.one_more(isolation)
+        # What was kept may have been decided on since.
+        for one in kept:
+            record = store.read(one.student, one.assignment)
+            again = marked(record, judge, decisions)
+            if again != record:
+                store.save(again)
+        write(store.folder / REFUSED, as_text(sorted(refused)))
+        write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
+        reports.write_all(store)
+        store.log("end")
+    _say_guessable(questions, show)
+    _say_other_numbers(store, work, questions, show)
+    return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
+
+
+def _say_whose(work, refused, roster, store, show):
+    """Say before anything is run whose each file is, and how that is known."""
+
+    def rows():
+        for one in work:
+            for notebook in (*one.notebooks, *one.superseded):
+                yield one.student, one.assignment, notebook.file, notebook.matched, notebook.says
+
+    write(store.folder / WHOSE, lines(("student", "assignment", "file", "known by", "says it is of"), rows()))
+    around = {one.file.partition(one.claim.place)[0].strip("/") for each in work for one in each.notebooks} - {""}
+    if len(around) == 1:
+        (folder,) = around
+        print(f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for nobody's name.", file=show)
+    for student, assignment, file, matched, _ in itertools.islice(rows(), MOST_SHOWN):
+        print(f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})", file=show)
+    more = sum(len(one.notebooks) + len(one.superseded) for one in work) - MOST_SHOWN
+    if more > 0:
+        print(f"  ... and {more} more: {store.folder / WHOSE}", file=show)
+    asked = [one for one in refused if one.why.endswith(("whose are they?", intake.NOT_MATCHED))]
+    for one in asked[:MOST_SHOWN]:
+        print(f"  ? <- {in_a_line(one.file, 120)}: {in_a_line(one.why, 300)}", file=show)
+    if roster:
+        damaged = {one.student for one in refused} & set(roster.people) - {one.student for one in work}
+        missing = sorted(set(roster.people) - {one.student for one in work} - damaged)
+        for names, what in ((missing, "handed in nothing"), (sorted(damaged), "handed in what cannot be graded")):
+            if names:
+                shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
+                print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
+
+
+def _say_foreign(work, course, show):
+    """Say which notebooks say that they are of somebody else than whose they are graded as; give these."""
+    foreign = [
+        (one, notebook)
+        for one in work
+        for notebook in one.notebooks
+        if notebook.says and plain_identity(notebook.says) != plain_identity(one.student)
+    ]
+    for one, notebook in foreign[:MOST_SHOWN]:
+        print(
+            f"  ! {in_a_line(notebook.file, 120)} says that it is of {in_a_line(notebook.says, 60)!r}, and is graded "
+            f"as that of {in_a_line(one.student, 60)!r}",
+            file=show,
+        )
+    if len(foreign) > MOST_SHOWN:
+        print(f"  ... and {len(foreign) - MOST_SHOWN} more.", file=show)
+    return foreign
+
+
+#: Of the notebooks that say whose they are, so many may be wrong before it is the roster that is.
+FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
+
+
+def _demand_own_numbers(work, questions, foreign, roster):
+    """Numbers follow from who one is: where many say to be somebody else, all would be judged by wrong numbers."""
+    varied = {name for name, asked in questions.items() if any("others" in one for one in asked.values())}
+    saying = sum(bool(notebook.says) for one in work if one.assignment in varied for notebook in one.notebooks)
+    wrong = [(one, notebook) for one, notebook in foreign if one.assignment in varied]
+    if len(wrong) <= max(FEW_FOREIGN, SHARE_FOREIGN * saying):
+        return
+    (one, notebook), *_ = wrong
+    why = (
+        "The roster knows them by another word than they wrote: of `student`, `email` and `name` the first column that "
+        "it has is the one that their numbers follow from."
+        if roster
+        else "Give the --roster in which they are called as they wrote, or name their folders so."
+    )
+    raise NothingToGrade(
+        f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else than they are graded "
+        f"as: {notebook.says!r} as {one.student!r}, say. Each student's numbers follow from that word, so their "
+        f"answers would be judged by other numbers than they were given. {why} If all of it is right as it is listed: "
+        "--as-listed."
+    )
+
+
+#: From this share of the answers to questions with variants on, right answers to other numbers are no accident.
+MANY_OTHER_NUMBERS = 0.1
+
+
+def _say_other_numbers(store, work, questions, show):
+    """Say it where many answers are right for other numbers than those that their authors are believed to have had."""
+    for assignment, asked in questions.items():
+        varied = {name for name, question in asked.items() if "others" in question}
+        given = other = 0
+        for one in work:
+            record = store.read(one.student, assignment) if varied and one.assignment == assignment else None
+            for name, mark in record["marks"].items() if record else ():
+                given += name in varied and mark["outcome"] != "not attempted"
+                other += mark["note"] == "other numbers"
+        if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
+            print(
+                f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for other numbers than "
+                "those of the student whose they are, and earn nothing. Are the students called here as they have "
+                "written into their notebooks? If not, grade again with the right --roster: nothing is lost.",
+                file=show,
+            )
+
+
+def _demand_a_class(work, roster, student):
+    """Everything from one student is a question, not a result: a folder around it may have been taken for one."""
+    students = {one.student for one in work}
+    doubtful = [notebook for one in work for notebook in one.superseded if not notebook.claim.given_by_system]
+    if len(students) == 1 and doubtful and roster is None and student is None:
+        (only,) = students
+        raise NothingToGrade(
+            f"The notebooks would all be of one student, {only!r}, and all but the newest would not count. If that is "
+            f"so, say --student {only!r}; if not, name the folder in which each student has one of their own, or "
+            "give a --roster."
+        )
+
+
+def _put_renamed_aside(store, work, ledger):
+    """Move the record of a student away whose very notebooks are now another's: the folder was renamed.
+
+    What people decided on the answers is entered for the new name too.
+    """
+    present = {(one.student, one.assignment) for one in work}
+    known, absent = set(), []
+    for record in store.all():
+        known.add((record["student"], record["assignment"]))
+        if (record["student"], record["assignment"]) not in present:
+            files = {(notebook["file"], notebook["sha256"]) for notebook in record["notebooks"]}
+            absent.append((record["student"], record["assignment"], files))
+    owners = {}
+    for one in work if absent else ():
+        if (one.student, one.assignment) not in known:
+            digests = frozenset(notebook.digest for notebook in one.notebooks)
+            owners.setdefault((one.assignment, digests), []).append(one)
+    for student, assignment, files in absent:
+        fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
+        # Of equal notebooks, those that lie where they lay: then a roster has given the student another name.
+        there = [one for one in fitting if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}]
+        names = [one.student for one in there or fitting]
+        if names:
+            place = store.put_aside(student, assignment)
+            said = (
+                f"{student!r} is now {' or '.join(map(repr, names))}: the record of {assignment} was moved to {place}."
+            )
+            decisions = ledger.of(student, assignment)
+            if decisions and len(names) == 1:
+                ledger.hand_on(decisions, names[0])
+                said += f" So were {len(decisions)} of the decisions, to the new name."
+            elif decisions:
+                said += f" Whose are the {len(decisions)} decisions? They count for nobody now."
+            yield said
+
+
+def _take_in_decisions(ledger, store, show):
+    if said := ledger.said_of_cut():
+        print(said, file=show)
+    for line in ledger.take_in_table(store.folder / DECISIONS, store.all()):
+        print(f"{DECISIONS}, not used: {line}.", file=show)
+
+
+def _say_guessable(questions, show):
+    """Say which points a script could have guessed: whoever tries answers in the check earns them."""
+    for assignment, asked in questions.items():
+        worth = sum(question["worth"] for question in asked.values())
+        cheap = {name: question for name, question in asked.items() if question["guessable"] is not None}
+        if cheap:
+            print(
+                f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} "
+                f"points could be guessed by a script that tries answers ({', '.join(sorted(cheap))}).",
+                file=show,
+            )
+
+
+def _read(path):
+    return json.loads(path.read_text("utf8")) if path.exists() else {}
+
+
+def _is_done(store, one, key):
+    record = store.read(one.student, one.assignment)
+    # A notebook that this machine could not run is tried again.
+    return (
+        record is not None
+        and record["key"] == key
+        and not any("given up" in notebook["isolation"] for notebook in record["notebooks"])
+    )
+
+
+def key_of(work, questions, limits, weak):
+    """What a record depends on, as one short text."""
+    depends = [
+        FORMAT,
+        [
+            [notebook.digest, notebook.handed_in, [[one.name, one.digest] for one in notebook.beside]]
+            for notebook in work.notebooks
+        ],
+        [notebook.digest for notebook in work.superseded],
+        reply_of(work),
+        {
+            name: [one["version"] for one in (question, *question.get("others", []))]
+            for name, question in questions.items()
+        },
+        vars(limits),
+        weak,
+        software(),
+    ]
+    return hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
+
+
+def reply_of(work):
+    """How the name of a page begins that goes back to the student: what the system wrote of the newest notebook."""
+    return max((*work.notebooks, *work.superseded), key=_by_age).claim.reply
+
+
+class _Jobs:
+    """The jobs of the sandbox, one for each notebook, and which work each belongs to."""
+
+    def __init__(self, work, questions, store, contracts, before):
+        self.work = work
+        self.questions = questions
+        self.store = store
+        self.contracts = contracts
+        self.before = before
+
+    def __len__(self):
+        return sum(len(one.notebooks) for one in self.work)
+
+    def __iter__(self):
+        for order in range(len(self.work)):
+            yield from self.of(order)
+
+    def of(self, order):
+        """The jobs of one student's work."""
+        one = self.work[order]
+        named = {name for notebook in one.notebooks for name in notebook.named}
+        own, _ = marking.of_student(self.questions[one.assignment], one.student, self.before(one), self.contracts)
+        asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
+        for_a_person = any(kinds()[question["public"]["kind"]].by_a_person for question in own.values())
+        for part, notebook in enumerate(one.notebooks):
+            cells = notebook.cells
+            self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
+            if for_a_person:
+                self.store.keep_pictures(notebook.digest, notebook.pictures)
+            files = {name: base64.b64encode(data).decode() for name, data in notebook.files.items()}
+            job = {"id": f"{order} {part}", "cells": cells, "questions": asked, "seed": 0}
+            yield {**job, "files": files} if files else job
+
+    def given_up(self, order, why):
+        """The results of work that could not be run."""
+        from .execution.sandbox import given_up
+
+        return [given_up(job, why) for job in self.of(order)]
+
+    def whole(self, results):
+        """Give the order of each work with the results of its notebooks, once it has them all."""
+        found = {}
+        for result in results:
+            order, part = map(int, result["id"].split())
+            parts = found.setdefault(order, {})
+            parts[part] = result
+            if len(parts) == len(self.work[order].notebooks):
+                yield order, [found[order][part] for part in range(len(parts))]
+                del found[order]
+
+
+MARKING_ENDED = "The process that ran and judged it ended again and again."
+
+
+def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
+    """Run and judge on this machine: each process has a sandbox, and does one student's work after another."""
+    from .execution.sandbox import Sandbox, WeakIsolation, WorkerDied, copies_are_apart, given_up
+
+    first = None
+
+    def prepare(stack):
+        store.in_copy_of_process()
+        sandbox = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation, like=first))
+
+        def run(job):
+            try:
+                return sandbox.run(job)
+            except WorkerDied as error:  # it costs only the notebook under which the sandbox dies again and again
+                return given_up(job, str(error))
+
+        return lambda order: finish(order, [run(job) for job in jobs.of(order)])
+
+    number = len(jobs.work)
+    with contextlib.ExitStack() as stack:
+        if number and copies_are_apart():
+            first = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation))
+        yield from side_by_side(
+            range(number),
+            min(workers, number),
+            prepare,
+            (WeakIsolation, WorkerDied, intake.Unfit),
+            lambda order: finish(order, jobs.given_up(order, MARKING_ENDED)),
+        )
+
+
+def _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store):
+    """Run on a cluster and judge here: right answers do not leave this machine."""
+    from .execution.cluster import run_on_cluster
+
+    def prepare(stack):
+        store.in_copy_of_process()
+        return lambda task: finish(*task)
+
+    def results():
+        # Not before the processes are there, which are to have no part in the connection.
+        if jobs.work:
+            yield from jobs.whole(run_on_cluster(jobs, scheduler, limits, allow_weak_isolation=allow_weak_isolation))
+
+    def lost(task):
+        return finish(task[0], jobs.given_up(task[0], MARKING_ENDED))
+
+    return side_by_side(results(), min(workers, len(jobs.work)), prepare, lost=lost)
+
+
+def record_of(work, results, key, questions, limits):
+    """The record of a student's work, before it is judged."""
+    notebooks = []
+    for notebook, result in zip(work.notebooks, results, strict=True):
+        notebooks.append(
+            {
+                "file": notebook.file,
+                "sha256": notebook.digest,
+                "finished": result["finished"],
+                "cells": result["cells"],
+                "notes": result["notes"],
+                "tried": result.get("tried", []),
+                "beside": [one.name for one in notebook.beside],
+                "unknown questions": result["unknown questions"],
+                "runs": result["runs"],
+                "seed": result["seed"],
+                "isolation": result["isolation"],
+                "late": notebook.late,
+                "handed in": notebook.handed_in,
+            }
+        )
+    known = marking.with_second_chances(questions)
+    answers, finished = {}, all(result["finished"] for result in results)
+    for name in results[0]["answers"]:
+        given = [result["answers"][name] for result in results]
+        # Of several notebooks the one that says something; they have no question in common.
+        answers[name] = min(given, key=_says_little)
+        if "secret" in answers[name]:
+            answers[name]["secret"]["calls"] = in_secret.digest(known[name]["secret"])
+    return {
+        "format": FORMAT,
+        "key": key,
+        "student": work.student,
+        "assignment": work.assignment,
+        "identity": work.notebooks[0].identity,
+        "says": sorted({notebook.says for notebook in work.notebooks if notebook.says}),
+        "reply": reply_of(work),
+        "notebooks": notebooks,
+        "superseded": [{"file": notebook.file, "sha256": notebook.digest} for notebook in work.superseded],
+        "software": software(),
+        "limits": vars(limits),
+        "finished": finished,
+        "answers": answers,
+        "remembered": {name: about for notebook in work.notebooks for name, about in notebook.remembered.items()},
+    }
+
+
+def _says_little(answer):
+    blank = answer["outcome"] == "recorded" and answer["plain"]["value"] == ["blank"]
+    return (
+        ("recorded", "unreadable").index(answer["outcome"]) + 3 * blank
+        if answer["outcome"] in ("recorded", "unreadable")
+        else 2 + 2 * (answer["outcome"] == "missing")
+    )
+
+
+def marked(record, judge, decisions=None):
+    """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
+    own, cases = marking.of_student(judge.questions[record["assignment"]], record["student"], record, judge.contracts)
+    for question in own.values():
+        for one in (question, question.get("contract"), *question.get("second chances", {}).values()):
+            if one is not None:
+                judge.contracts.keep(one)
+    found = judge.marks(record)
+    marks = {name: {**found[name], "title": question["title"]} for name, question in own.items()}
+    cases = {name: case.as_json() for name, case in cases.items()}
+    return with_decisions({**record, "format": FORMAT, "cases": cases, "marks": marks}, decisions or {})
+
+
+class _Progress:
+    """How far it is and how long it will take, on one line that is written over."""
+
+    def __init__(self, total, show):
+        self.total, self.show, self.done = total, show, 0
+        self.start = self.last = time.monotonic()
+        self.told = False
+
+    def one_more(self, isolation):
+        self.done += 1
+        if not self.told:
+            self.told = True
+            kind = "WEAK isolation" if isolation["weak"] else "Isolation"
+            print(f"{kind}: {', '.join(isolation['layers']) or 'none'}.", file=self.show)
+            for line in isolation.get("not stopped", ()):
+                print(f"  not stopped: {line}", file=self.show)
+        now = time.monotonic()
+        on_screen = self.show.isatty()
+        if self.done == 1:
+            # What comes before the first is the start of the sandboxes, which takes no longer for more.
+            self.first = self.last = now
+        if self.done == self.total or now - self.last > (0.2 if on_screen else 10):
+            self.last = now
+            left = (now - self.first) / max(1, self.done - 1) * (self.total - self.done)
+            said = f"{self.done} of {self.total} graded, " + (
+                f"{_span(left)} left" if self.done < self.total else f"in {_span(now - self.start)}"
+            )
+            end = "\n" if not on_screen or self.done == self.total else ""
+            print(f"\r\x1b[K{said}" if on_screen else said, end=end, file=self.show, flush=True)
+
+
+def _span(seconds):
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+
+
+# --- grading again ------------------------------------------------------------------------------
+
+
+class Moved(NamedTuple):
+    """A student whose points changed."""
+
+    student: str
+    assignment: str
+    before: float
+    after: float
+    questions: list
+
+
+def regrade(out, *, solutions=None, show=None):
+    """Judge the stored answers again, by the questions and people's decisions as they are now.
+
+    Returns
+    -------
+    list of Moved
+
+    Nothing is run. A question that was added since has no answers in the records; grade again for that.
+    """
+    from .reporting import reports
+
+    store = Store(out)
+    with contextlib.ExitStack() as closing:
+        closing.enter_context(store.locked())
+        names = sorted({record["assignment"] for record in store.all()})
+        if not names:
+            raise NothingToGrade(f"There are no records in {store.folder}.")
+        known = _read(store.folder / COURSE)
+        unknown = sorted(set(names) - set(known))
+        if unknown:
+            raise NothingToGrade(
+                f"{store.folder / COURSE} does not say which notebooks make up {', '.join(map(repr, unknown))}; "
+                "grade again with --assignment."
+            )
+        course = Course(solutions, {name: known[name] for name in names})
+        questions = course.questions(names, store.folder / "questions")
+        ledger = Ledger(store.folder)
+        _take_in_decisions(ledger, store, show or sys.stderr)
+        decisions, moved = ledger.current(), []
+        judge = closing.enter_context(Judge(questions, Contracts(store.folder), store.log))
+        for record in store.all():
+            again = marked(record, judge, decisions)
+            if again == record:
+                continue
+            store.save(again)
+            changed = [
+                name
+                for name in again["marks"]
+                if (again["marks"][name]["points"], again["marks"][name]["outcome"])
+                != (record["marks"].get(name, {}).get("points"), record["marks"].get(name, {}).get("outcome"))
+            ]
+            if changed:
+                moved.append(Moved(record["student"], record["assignment"], record["points"], again["points"], changed))
+        store.log(f"graded again: {len(moved)} moved")
+        write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
+        reports.write_all(store)
+    return moved

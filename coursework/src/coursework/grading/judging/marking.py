@@ -1,0 +1,499 @@
+"""Verdicts: from a student's answers, as plain data, to outcomes and points.
+
+Only here are right answers held. What is judged came out of the sandbox as JSON and is checked again; no code
+that a student wrote runs in this process, and the verdict is the one that the student's own check gives,
+reached by the same functions. An answer that cannot be decided is put aside for a person and never counted
+as wrong; nothing is earned by default.
+"""
+
+import contextlib
+import hashlib
+import importlib
+import io
+import itertools
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+from ...authoring.author import AuthorError
+from ...authoring.source import DECLARED, checked_names, declared_strengths, read_source, texts_of_questions
+from ...checking.evaluate import MP
+from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
+from ...checking.plain import NotPlain, read_plain
+from ...checking.plugins import packages
+from ...checking.questions import compare
+from ...checking.reply import HELP, Reply
+from ..store import write
+from ..versions import software
+from ..workers import processors, side_by_side
+from . import secret as in_secret
+from .cases import asked_of, case_by_rule, case_of
+
+#: An exact question is not decided by an answer that is off by less than this: it may be rounded.
+NEARLY = MP.mpf("1.5e-3")
+#: The share of the points of an answer that was reached with help, where its author names none, until a sibling of
+#: the question is solved without.
+WITH_HELP = 0.8
+#: A wrong answer of more nodes is not tried on the other variants of its question: nothing depends on it but what the
+#: student is told, and one that was made to cost time would cost it for each of them.
+LONGEST_FOR_SIBLINGS = 1_000
+#: Verdicts that are kept for those who hand in the same, at most.
+MOST_KEPT = 4096
+#: The mark of an answer under which the process that judges ended, but for what the question says.
+UNJUDGED = {
+    "outcome": "undecided",
+    "note": "too much work",
+    "details": {},
+    "messages": ["Working this answer out takes more time or memory than it may: a person decides."],
+    "points": 0,
+    "group": "",
+    "tries": None,
+}
+#: How a cell ends that a limit ended: what is missing then may have been lost to it.
+BY_A_LIMIT = ("timeout", "memory", "disk", "output")
+#: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
+CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
+
+
+# --- what is known of each question -------------------------------------------------------------
+
+
+def names_asked(path):
+    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
+    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
+    cells = [
+        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
+        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
+    ]
+    return checked_names(SimpleNamespace(cells=cells))
+
+
+def questions_of(path, secret, edition=""):
+    """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
+    with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
+        return _questions_of(path, secret, edition)
+
+
+def _questions_of(path, secret, edition):
+    declared = declared_strengths(Path(path).parent)
+    source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
+    texts = texts_of_questions(source.notebook)
+    found = {
+        name: about(question, secret, declared.get(name), texts.get(name, ""))
+        for name, question in source.questions.items()
+    }
+    for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
+        having = [name for name, rule in source.rules.items() if number < rule.count]
+        for name, question in read_source(path, number, edition, having, pictures=True).questions.items():
+            found[name].setdefault("others", []).append(about(question, secret, declared.get(name)))
+    return found
+
+
+def of_student(questions, identity, record=None, contracts=None):
+    """The questions of a student, each in the student's own variant, and the case of each.
+
+    Parameters
+    ----------
+    questions : dict
+        As :func:`load_questions` gives them.
+    identity : str
+        Of the student, as the roster has it: what a notebook says of itself does not count.
+    record : dict, optional
+        What was graded of the student before: a student's variant stays, whatever became of the others.
+    contracts : Contracts, optional
+        The questions as they stood then.
+
+    Returns
+    -------
+    questions : dict
+        As :func:`coursework.grading.judging.cases.asked_of` gives each.
+    cases : dict of str to Case
+    """
+    own, cases = {}, {}
+    for name, question in questions.items():
+        today = case_by_rule(name, question, identity)
+        case = case_of(record, name, question, contracts) if record else None
+        if case is None or case.edition != today.edition:
+            case = today
+        own[name], cases[name] = asked_of(name, question, case, contracts), case
+        if case.own.variant != today.own.variant:
+            own[name]["newer"] = asked_of(name, question, today, contracts)
+    return own, cases
+
+
+def with_second_chances(questions, named=None):
+    """The questions of a student, and their siblings beside them: those that are ``named``, or all."""
+    chances = {
+        sibling: question
+        for one in questions.values()
+        for sibling, question in one.get("second chances", {}).items()
+        if named is None or sibling in named
+    }
+    return {**questions, **chances}
+
+
+def about(question, secret, guessable=None, text=""):
+    """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it.
+
+    ``guessable`` is how many tries of a script it withstands, where its author declared that it can be guessed;
+    ``text`` is that of a question without variants: one that has them holds its own.
+    """
+    found = json.loads(
+        json.dumps(
+            {
+                "title": question.title,
+                "variable": question.variable,
+                "worth": question.worth,
+                "credit": question.credit,
+                "public": question.public,
+                "known": {
+                    **{text: {"cases": []} for text in question.near},
+                    **{text: {"cases": entry.cases} for text, entry in question.entries.items()},
+                },
+                "right": _canonical_of(question),
+                "plain": question.plain if question.public["kind"] != "function" else None,
+                "secret": in_secret.secret_of(question, secret),
+                "guessable": guessable,
+                "partial": read(question.public, question.plain).text if question.partial else None,
+                "rubric": question.rubric,
+                "text": "" if "text" in question.public else text,
+            }
+        )
+    )
+    return {**found, "version": hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]}
+
+
+def _canonical_of(question):
+    reading = read(question.public, question.plain)
+    if reading.text is not None or question.public.get("tolerance") is not None:
+        return None
+    return [MP.nstr(number, 30) for number in canonical(question.public, reading)]
+
+
+def load_questions(paths, kept, secret, edition=""):
+    """The questions of several notebooks with solutions, by name.
+
+    What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
+    notebook and from the versions of the software.
+    """
+    places = {}
+    for path in map(Path, paths):
+        declared = path.with_name(DECLARED)
+        declared = declared.read_bytes() if declared.is_file() else b""
+        ours = hashlib.sha256(json.dumps(software()).encode() + secret + declared).digest()
+        depends = hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]
+        places[path] = Path(kept) / f"{path.stem}-{depends}.json"
+
+    def work_out(path):
+        write(places[path], json.dumps(questions_of(path, secret, edition), ensure_ascii=False), private=True)
+
+    missing = [path for path, place in places.items() if not place.exists()]
+    if len(missing) == 1:
+        work_out(missing[0])
+    else:
+        for module in ("nbformat", "sympy.physics.mechanics", *packages()) if missing else ():
+            importlib.import_module(module)  # once, and not in each process
+        number = min(len(missing), processors())
+        list(side_by_side(map(str, missing), number, lambda stack: lambda path: work_out(Path(path)), [AuthorError]))
+    found = {}
+    for place in places.values():
+        found.update(json.loads(place.read_text("utf8")))
+    return found
+
+
+def asked_of_sandbox(questions):
+    """What the sandbox is told of each question: the answer's name and the calls of a function, no more.
+
+    Of the secret calls a notebook learns when it has handed in everything else.
+    """
+    variables = [question["variable"] for question in questions.values()]
+    return {
+        name: {
+            # Two questions may call their answers the same, in two notebooks that were joined: then only the
+            # checks tell them apart.
+            "variable": question["variable"] if variables.count(question["variable"]) == 1 else None,
+            "calls": None
+            if question["public"]["kind"] != "function"
+            else {"arguments": question["public"]["calls"], "as": question["public"]["takes"]},
+            "secret calls": None
+            if question["public"]["kind"] != "function" or not question["secret"]
+            else {"arguments": question["secret"]["calls"], "as": question["public"]["takes"]},
+        }
+        # The numbers of the student's own variant, which its notebook may use by name.
+        | ({"given": question["public"]["given"]} if question["public"].get("given") else {})
+        for name, question in questions.items()
+    }
+
+
+def was_limited(record):
+    """Whether a limit ended one of the cells of a record."""
+    return any(
+        cell["outcome"] in BY_A_LIMIT or "SIGKILL" in cell.get("error", "")
+        for notebook in record["notebooks"]
+        for cell in notebook["cells"]
+    )
+
+
+# --- one answer ---------------------------------------------------------------------------------
+
+
+def mark(name, question, answer, finished=True, limited=False):
+    """Judge what the sandbox says of an answer.
+
+    Parameters
+    ----------
+    name : str
+    question : dict
+        As :func:`questions_of` gives it.
+    answer : dict
+        As :mod:`coursework.grading.execution.sandbox` gives it.
+    finished : bool
+        Whether the notebook came to its end; if not, an answer that is missing may be due to that.
+    limited : bool
+        Whether a cell was stopped by a limit: an answer that is missing may be due to that, too.
+
+    Returns
+    -------
+    dict
+        ``outcome``, ``note`` with its ``details``, ``messages``, ``points``, ``worth``, the ``version`` of the
+        question, ``group``, which identical answers have in common, and ``guessable``, after how many tries a
+        script finds the right answer, or ``None``.
+    """
+    # Many hand in the same. What is judged follows from the version of the question and from these texts alone.
+    contract = question.get("contract", question)["version"]
+    of_question = name, question["version"], contract, len(question.get("siblings", [])), "newer" in question
+    known = *of_question, json.dumps(answer), finished, limited
+    if known not in _marked:
+        if len(_marked) >= MOST_KEPT:
+            _marked.clear()
+        _marked[known] = _mark(name, question, answer, finished, limited)
+    return dict(_marked[known])
+
+
+_marked = {}
+
+
+def _mark(name, question, answer, finished, limited):
+    reply, text = judge(name, question, answer, finished, limited)
+    short = reply.outcome == "wrong" and len(answer["plain"]["nodes"]) <= LONGEST_FOR_SIBLINGS
+    if short and "newer" in question and _is_right(name, question["newer"], answer):
+        said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
+        reply = _undecided(name, "numbers of another edition", said)
+    elif short and any(_is_right(name, other, answer) for other in question.get("siblings", [])):
+        reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
+    share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
+    if reply.outcome == "wrong" and question["partial"] and reply.note != "other numbers":
+        right, parts, beyond_chance = parts_right(question, text)
+        share = max(share, beyond_chance)
+        pairs = "pairs stand in the right order" if question["public"]["kind"] == "order" else "are right"
+        reply.messages.append(f"{right} of {parts} {pairs}.")
+    return {
+        "outcome": reply.outcome,
+        "note": reply.note,
+        "details": reply.details,
+        "messages": reply.messages,
+        "points": round(question["worth"] * share, 4),
+        "worth": question["worth"],
+        "group": hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
+        "version": question["version"],
+        "guessable": question["guessable"],
+    }
+
+
+def _is_right(name, question, answer):
+    """Whether an answer is right for a question. Of most it takes one look to see that they are not."""
+    with contextlib.suppress(ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable):
+        text = fingerprint(question["public"], read(question["public"], answer["plain"]))
+        return text in question["known"] and judge(name, question, answer)[0].outcome == "correct"
+    return False
+
+
+def parts_right(question, text):
+    """How many parts of an answer in words are right, of how many, and the share of credit that this earns.
+
+    The parts of an order are its pairs: which of the two comes first. Of the share, what a guess has right on average
+    is taken off, so that guessing earns nothing on average: with m words to choose from, it has 1/m right.
+    """
+    public, right = question["public"], question["partial"]
+    if public["kind"] == "order":
+        given, places = text.split(PARTS["order"]), {part: k for k, part in enumerate(right.split(PARTS["order"]))}
+        good = [places[first] < places[second] for first, second in itertools.combinations(given, 2)]
+        chance = 1 / 2
+    else:
+        between = PARTS[public["kind"]]
+        given, wanted = ((one.split(between) if between else list(one)) for one in (text, right))
+        good = [one == other for one, other in zip(given, wanted, strict=True)]
+        chance = 1 / len(public.get("options", "TF"))
+    return sum(good), len(good), max(0, (sum(good) / len(good) - chance) / (1 - chance))
+
+
+def mark_with_siblings(name, question, answers, remembered, finished=True, limited=False):
+    """The mark of a question, with regard to the help that a student had and to the siblings that were solved.
+
+    Parameters
+    ----------
+    answers : dict
+        Those of the record, by the names of questions and of siblings.
+    remembered : dict
+        As :func:`coursework.grading.submissions.intake.remembered_in` gives it.
+
+    Returns
+    -------
+    dict
+        As :func:`mark` gives it, and ``tries``, which the notebook remembers, or ``None``.
+    """
+    found = mark(name, question, answers.get(name, {"outcome": "missing"}), finished, limited)
+    found["tries"] = remembered.get(name, {}).get("tries")
+    had = remembered.get(name, {}).get("help", "")
+    for sibling, other in question.get("second chances", {}).items():
+        helped = remembered.get(sibling, {}).get("help")
+        if sibling in answers and not helped and (had or found["outcome"] != "correct"):
+            if judge(sibling, other, answers[sibling])[0].outcome == "correct":
+                return found | _by_a_sibling(question, found, sibling)
+    if found["outcome"] == "correct" and had and "second chances" in question:
+        share = question["credit"].get("help", WITH_HELP)
+        said = (
+            f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without help earns the rest."
+        )
+        found |= {"note": "with help", "points": round(question["worth"] * share, 4)}
+        found["messages"] = [said] if share < 1 else []
+    return found
+
+
+def _by_a_sibling(question, found, sibling):
+    """What a sibling that was solved without help makes of the mark of a question.
+
+    It earns what help cost. Where the question itself was not answered right, whose numbers were solved is anybody's
+    guess, and with each sibling a friend's answer would have one more chance: a person looks.
+    """
+    if found["outcome"] == "correct":
+        said = f"`{sibling}` was solved without help, and counts for this question."
+        return {"note": "by a sibling", "points": question["worth"], "messages": [said]}
+    said = f"`{sibling}` was solved without help, and the question itself was not answered right: a person decides."
+    messages = [*found["messages"], said]
+    return {"outcome": "undecided", "note": "by a sibling alone", "points": 0, "messages": messages}
+
+
+def judge(name, question, answer, finished=True, limited=False):
+    """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
+    state = answer["outcome"]
+    if state == "missing":
+        if not finished:
+            return _undecided(
+                name, "not reached", "The notebook did not come to its end, and this answer was not reached."
+            ), ""
+        if limited:
+            return _undecided(
+                name, "lost to a limit", "A cell was stopped by a limit of time or memory, and this answer is missing."
+            ), ""
+        variable = f" under the name `{question['variable']}`" if question["variable"] else ""
+        return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
+    if state == "unreadable" and answer["why"] not in CUT_SHORT:
+        return Reply(name, "invalid", "unreadable", [answer["why"]]), ""
+    if state != "recorded":
+        return _undecided(
+            name,
+            "stopped while it was read",
+            f"Reading this answer was stopped. {answer.get('why') or answer.get('error', '')}".strip(),
+        ), ""
+    found = []
+
+    def look_up(text):
+        if not found:  # what is looked up after that is another reading of the same answer
+            found.append(text)
+        return question["known"].get(text)
+
+    try:
+        plain = in_calls_of(question, read_plain(answer["plain"]))
+        if plain is None:
+            said = "The function was not called with the arguments that this question has now. Grade again: it is run."
+            return _undecided(name, "not called", said), ""
+        reply = compare(name, question["public"], plain, look_up)
+        rounded = reply.outcome == "wrong" and reply.note in ("", "rounded too far")
+        if rounded and _nearly_right(question, plain):
+            reply = _undecided(
+                name,
+                "nearly right",
+                "The value agrees with the right one to about three digits: it "
+                "may have been rounded where an exact answer is asked for.",
+            )
+        if reply.outcome == "not attempted":
+            reply.messages = ["Nothing was answered."]  # there is no "yet" any more
+        if reply.outcome == "correct" or (reply.note and question["credit"].get(reply.note)):
+            reply = _in_secret(name, question, answer, plain, reply, found[-1])
+    except NotPlain as error:
+        reply = Reply(name, "invalid", "unreadable", [str(error)])
+    except MemoryError:
+        raise  # the process that judges is at its limit, and what else it would judge is not to suffer
+    except Exception as error:  # a fault of ours costs no student a mark
+        reply = _undecided(name, "not worked out", f"This answer could not be worked out ({type(error).__name__}).")
+    return reply, "".join(found)
+
+
+def in_calls_of(question, plain):
+    """What a function returned, in the order of the calls that a question has now; ``None`` if it was not called so.
+
+    What was recorded are the results of the calls of the contract, one after another.
+    """
+    calls = question["public"].get("calls")
+    called = question.get("contract", question)["public"].get("calls")
+    kind, *value = plain["value"]
+    if kind != "function" or calls == called:
+        return plain
+    results, *rest = value
+    if calls is None or called is None or len(results) != len(called) or any(call not in called for call in calls):
+        return None
+    return {**plain, "value": [kind, [results[called.index(call)] for call in calls], *rest]}
+
+
+def _in_secret(name, question, answer, plain, reply, text):
+    """The reply, if the answer is what it seems to be also where its author could not look."""
+    place, public = question["secret"], question["public"]
+    if place is None:
+        return reply
+    right = place["right"] if reply.outcome == "correct" else place["partly"].get(text)
+    if right is None:
+        return reply  # a mistaken function: what it would return elsewhere is not known
+    elsewhere = {**public, **{name: place[name] for name in ("salt", "calls") if name in place}}
+    if "calls" in place:
+        said = answer.get("secret", {})
+        if "unreadable" in said and said["unreadable"] not in CUT_SHORT:
+            return _elsewhere_wrong(name)
+        if "plain" not in said or said.get("calls") != in_secret.digest(place):
+            return _undecided(
+                name, "not called", "The function could not be called with other arguments than those of the check."
+            )
+        plain = read_plain(said["plain"])
+    try:
+        numbers = in_secret.numbers_of(elsewhere, plain)
+    except (Blank, Fault):
+        return _elsewhere_wrong(name)
+    except Undecidable as error:
+        return _undecided(name, "undecidable", str(error))
+    return reply if in_secret.agree(public, numbers, right) else _elsewhere_wrong(name)
+
+
+def _elsewhere_wrong(name):
+    return Reply(
+        name,
+        "wrong",
+        "right only where it is checked",
+        ["This agrees with the right answer where the check looks, and not everywhere."],
+    )
+
+
+def _undecided(name, note, message):
+    return Reply(name, "undecided", note, [message])
+
+
+def _nearly_right(question, plain):
+    if question["right"] is None:
+        return False
+    try:
+        numbers = canonical(question["public"], read(question["public"], plain))
+    except (Blank, Fault, Undecidable):
+        return False
+    right = [MP.mpf(number) for number in question["right"]]
+    return len(numbers) == len(right) and all(
+        abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right, strict=True)
+    )

@@ -1,0 +1,237 @@
+"""Points and calls that no student holds: marks are not decided only where a student can look.
+
+The check that a student has compares answers at points that follow from the question; whoever reads them can
+hand in a parabola through them, or a table of what a friend's function returned. So an answer that earns points
+is compared once more, at points and calls that follow from a secret of the instructor's. Right answers agree there
+in all their forms: they are worked out with 40 digits, and told apart far above any rounding.
+"""
+
+import copy
+import hashlib
+import hmac
+import json
+import math
+import os
+import random
+import secrets
+from pathlib import Path
+
+from ...checking.check import calls_for
+from ...checking.evaluate import MP
+from ...checking.kinds import Blank, Fault, Undecidable, canonical, read, tolerances
+from ...checking.plain import NotPlain, to_plain
+from ...checking.plugins import kinds
+
+FILE = ".grading-secret"
+CALLS = 3
+#: Farther apart than this share of the value, two answers are not the same: no rounding reaches it, and no guess.
+APART = MP.mpf("1e-6")
+#: What is within its tolerance where a student looked may be off by so many tolerances elsewhere.
+SLACK = 4
+ATTEMPTS = 60
+
+
+def secret_beside(folder):
+    """The secret of a course, from the file beside its notebooks with solutions; made at the first run.
+
+    Raises
+    ------
+    ValueError
+        It can neither be read nor made.
+    """
+    path = Path(folder) / FILE
+    try:
+        try:
+            handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        except FileExistsError:
+            return bytes.fromhex(path.read_text("ascii").strip())
+        with open(handle, "w") as file:
+            file.write(secrets.token_hex(32) + "\n")
+        return bytes.fromhex(path.read_text("ascii").strip())
+    except (OSError, ValueError) as error:
+        raise ValueError(
+            f"The secret of this course cannot be kept in {path} ({error}). It belongs beside the solutions: marks are "
+            "decided at points that follow from it, too."
+        ) from None
+
+
+def secret_of(question, secret):
+    """What is compared in secret for a question: ``None`` where there is nothing to look up.
+
+    Parameters
+    ----------
+    question : coursework.authoring.author.Question
+    secret : bytes
+
+    Returns
+    -------
+    dict
+        ``salt`` or ``calls``, and ``right``, the numbers of the right answer there; ``partly``, those of each
+        mistake that earns something, by its fingerprint.
+    """
+    public = question.public
+    is_function = public["kind"] == "function"
+    if not is_function and (kinds()[public["kind"]].text or not public.get("symbols")):
+        return None  # a word or a number is the same everywhere
+    known = None
+    for attempt in range(ATTEMPTS):
+        seed = hmac.digest(secret, f"{question.name} {attempt}".encode(), "sha256").hex()
+        if is_function:
+            found = _of_function(question, seed)
+        else:
+            found = _of_expression(question, seed)
+        if found is not None and is_function and all(call in public["calls"] for call in found["calls"]):
+            known, found = known or found, None  # rather calls that no check has made; of a few words there are none
+        if found is not None:
+            return found
+    return known
+
+
+def _of_expression(question, seed):
+    place = {"salt": seed[:16]}
+    elsewhere = {**question.public, **place}
+    try:
+        right = numbers_of(elsewhere, question.plain)
+    except (Blank, Fault, Undecidable):
+        return None
+    partly = {}
+    for text, entry in question.entries.items():
+        if any(question.credit.get(note) for note, _ in entry.notes):
+            try:
+                partly[text] = numbers_of(elsewhere, entry.plain)
+            except (Blank, Fault, Undecidable):
+                return None
+    return {**place, "right": right, "partly": partly}
+
+
+def _of_function(question, seed):
+    public, dice = question.public, random.Random(seed)
+    columns = _columns(public["calls"])
+    calls = [[_another(values, dice) for values in columns] for _ in range(CALLS)]
+    near = [_moved(call, dice) for call in calls]
+    try:
+        right, moved = (
+            numbers_of({**public, "calls": some}, to_plain(question.answer, calls_for({**public, "calls": some})))
+            for some in (calls, near)
+        )
+    except (Blank, Fault, Undecidable, NotPlain):
+        return None
+    # Not where the right answer itself jumps: there two right functions may differ.
+    return {"calls": calls, "right": right, "partly": {}} if agree(public, right, moved) else None
+
+
+def numbers_of(public, plain):
+    """The numbers that an answer stands for, as text that JSON keeps exactly enough.
+
+    Raises
+    ------
+    Blank, Fault, Undecidable
+    """
+    return [MP.nstr(number, 30) for number in canonical(public, read(public, plain))]
+
+
+def agree(public, numbers, others):
+    """Whether two lists of numbers are the same but for rounding."""
+    if len(numbers) != len(others):
+        return False
+    absolute, relative = tolerances(public)
+    pairs = [(MP.mpf(number), MP.mpf(other)) for number, other in zip(numbers, others, strict=True)]
+    return all(
+        abs(number - other) <= max(SLACK * (absolute + relative * abs(other)), APART * max(1, abs(other)))
+        for number, other in pairs
+    )
+
+
+def digest(place):
+    """A short text that follows from the calls: answers to other calls are not compared with these."""
+    return hashlib.sha256(json.dumps(place["calls"]).encode()).hexdigest()[:16]
+
+
+# --- arguments like those that an author chose --------------------------------------------------
+
+
+def _columns(calls):
+    """For each argument the values that it has in the calls."""
+    return [list(values) for values in zip(*calls, strict=True)]
+
+
+def _another(values, dice):
+    """A value that is to the question what the given ones are: of their kind, length and range."""
+    if all(isinstance(value, list) for value in values) and len({len(value) for value in values}) == 1:
+        return _another_list(values, dice)
+    if all(isinstance(value, list) for value in values) and any(values):
+        # Of several lengths: as long as one of them, and each part like those of its form in all of them.
+        parts = [part for value in values for part in value]
+        chosen = dice.choice([value for value in values if value])
+        return [_another([other for other in parts if _form(other) == _form(part)], dice) for part in chosen]
+    numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
+    if not numbers or min(values) == max(values):
+        return copy.deepcopy(dice.choice(values))
+    if all(isinstance(value, int) for value in values):
+        return dice.randint(min(values), max(values))
+    return dice.uniform(min(values), max(values))
+
+
+def _form(value):
+    """How a value is built: of lists, numbers and texts."""
+    if isinstance(value, list):
+        return [_form(part) for part in value]
+    return "number" if isinstance(value, (int, float)) and not isinstance(value, bool) else type(value).__name__
+
+
+def _another_list(values, dice):
+    length = len(values[0])
+    if length == 3 and all(map(_is_rotation, values)):
+        return _rotation(dice)
+    if length in (2, 3, 4) and all(map(_is_unit, values)):
+        found = _unit(length, dice)
+        # A quaternion whose scalar is never negative may be asked for so.
+        return [abs(found[0]), *found[1:]] if all(value[0] >= 0 for value in values) else found
+    found = [_another([value[place] for value in values], dice) for place in range(length)]
+    if length > 1 and all(map(_increases, values)) and _increases(sorted(found)):
+        return sorted(found)
+    return found
+
+
+def _moved(value, dice):
+    """The same but for the last digits."""
+    if isinstance(value, list):
+        return [_moved(part, dice) for part in value]
+    return value * (1 + 1e-9 * dice.uniform(-1, 1)) if isinstance(value, float) else value
+
+
+def _is_vector(value):
+    return isinstance(value, list) and all(
+        isinstance(part, (int, float)) and not isinstance(part, bool) for part in value
+    )
+
+
+def _is_unit(value):
+    return _is_vector(value) and abs(math.hypot(*value) - 1) < 1e-9
+
+
+def _is_rotation(rows):
+    if not all(isinstance(row, list) and len(row) == 3 and _is_unit(row) for row in rows):
+        return False
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    mixed = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+    return abs(mixed - 1) < 1e-9  # of three unit vectors only a right-handed triad reaches 1
+
+
+def _increases(value):
+    return _is_vector(value) and all(first < second for first, second in zip(value, value[1:], strict=False))
+
+
+def _unit(length, dice):
+    found = [dice.gauss(0, 1) for _ in range(length)]
+    size = math.hypot(*found)
+    return [part / size for part in found]
+
+
+def _rotation(dice):
+    w, x, y, z = _unit(4, dice)
+    return [
+        [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
+        [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
+        [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
+    ]

@@ -1,0 +1,1 @@
+"""Told: pages and tables made of the records."""

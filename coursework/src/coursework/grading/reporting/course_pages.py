@@ -1,0 +1,218 @@
+"""What is written about a whole course: a table of all marks, a page for each student, and pages on the questions."""
+
+import datetime
+import json
+from pathlib import Path
+
+from ..judging import term
+from ..judging.ledger import Ledger, with_decisions
+from ..store import as_text, file_name, write
+from ..tables import number, table
+from . import pages
+from .statistics import FORMAT, Statistics
+from .templates_of_pages import ENVIRONMENT, page
+
+FOLDER = "course"
+ROSTER = "roster.json"
+#: How the state of an assignment is told to a student; where it simply counts there is nothing to tell.
+STATES = {
+    "counted": "",
+    "dropped": "dropped: it does not count",
+    "excused": "excused",
+    "missing": "nothing was handed in",
+    "not due": "not due yet",
+}
+OUTCOMES = {
+    "correct": "right",
+    "wrong": "wrong",
+    "invalid": "not in the form asked for",
+    "undecided": "undecided",
+    "decided": "decided by a person",
+    "not attempted": "not attempted",
+}
+MOST_ANSWERS = 100  # of one group on one page
+ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %Z")
+
+
+def write_course(store, rules, *, earlier=(), now=None):
+    """Write what a course comes to into the folder ``course`` of the results.
+
+    Parameters
+    ----------
+    store : Store
+    rules : Rules
+    earlier : iterable of path
+        Counts that were kept of other years.
+    now : datetime, optional
+
+    Returns
+    -------
+    list of str
+        What a person should know.
+
+    Raises
+    ------
+    BadRules
+        An extension is for nobody in the course, or counts cannot be read.
+    """
+    now = now or datetime.datetime.now(datetime.UTC)
+    counts = [_earlier(path) for path in earlier]
+    statistics, worth, students = Statistics(), {}, set()
+    decisions = Ledger(store.folder).current()
+    for record in store.all():
+        statistics.add(with_decisions(record, decisions))
+        worth[record["assignment"]] = record["worth"]
+        students.add(record["student"])
+    roster = store.folder / ROSTER
+    if roster.exists():
+        students.update(store.json_in(roster))
+    said = _misspelt(rules, students, worth)
+    folder, rows, unknown, marked = store.folder / FOLDER, [], [], []
+    for student in sorted(students):
+        records = {
+            name: with_decisions(found, decisions)
+            for name in rules.assignments
+            if (found := store.read(student, name)) is not None
+        }
+        results, total = term.results_of(student, records, rules, worth, now)
+        _write_student(folder, student, records, results, total, rules)
+        rows.append(_row(student, results, total))
+        unknown += [one.assignment for one in results if one.assignment in records and one.due and not one.handed_in]
+        marked += [one.assignment for one in results if one.late and not one.handed_in]
+    for name in sorted(set(unknown)):
+        said.append(
+            f"{name}: of {unknown.count(name)} nobody knows when they were handed in, and lateness cost nothing. "
+            f'A table of your system says it: times = "worksheet.csv" in [assignments.{name}].'
+        )
+    if marked and rules.marked is None and rules.late_costs:
+        said.append(term.say_what_marked_costs(marked))
+    write(folder / "course.csv", table(_header(rules), rows))
+    _write_questions(folder, statistics, rules.name, counts)
+    write(folder / "counts.json", as_text(statistics.counts(rules.name)))
+    return said
+
+
+def _misspelt(rules, students, worth):
+    strangers = sorted({student for student, _ in rules.extensions} - students)
+    if strangers:
+        raise term.BadRules(f"An extension is for {strangers[0]!r}, and nobody in the course is called so.")
+    missing = [name for name in rules.assignments if name not in worth]
+    others = sorted(set(worth) - set(rules.assignments))
+    return [f"{name}: nothing of it was graded, so it does not count yet." for name in missing] + [
+        f"{name} was graded and is not in the rules: it counts nowhere." for name in others
+    ]
+
+
+def _header(rules):
+    parts = ("points", "state", "handed in", "late: share lost", "share that counts")
+    return ["student", "total in %", "undecided", *(f"{name}: {part}" for name in rules.assignments for part in parts)]
+
+
+def _row(student, results, total):
+    row = [student, "" if total is None else round(100 * total, 2), sum(one.undecided for one in results)]
+    for one in results:
+        graded = one.state not in ("missing", "not due")
+        row += [
+            one.points if graded else "",
+            one.state,
+            one.handed_in.isoformat() if one.handed_in else "",
+            one.penalty or "",
+            round(one.share, 4) if one.state in ("counted", "missing", "dropped") else "",
+        ]
+    return row
+
+
+def _write_student(folder, student, records, results, total, rules):
+    links = {name: f"../../feedback/{file_name(student)}/{file_name(name)}.html" for name in records}
+    content = page(
+        "student.html",
+        name=rules.name,
+        student=student,
+        total=total,
+        results=results,
+        waiting=sum(one.undecided for one in results),
+        links=links,
+        weights={name: about.weight for name, about in rules.assignments.items()},
+        words=STATES,
+    )
+    write(folder / "students" / f"{file_name(student)}.html", content, lasting=False)
+
+
+def _write_questions(folder, statistics, name, counts):
+    assignments = {}
+    for (assignment, question), found in statistics.questions.items():
+        place = f"answers/{file_name(assignment + ' ' + question)}.html"
+        groups, anchors = _groups(found, assignment)
+        write(
+            folder / place,
+            page("answers.html", found=found, question=question, groups=groups, words=OUTCOMES),
+            lasting=False,
+        )
+        before = [_share_then(year, question, found) for year in counts]
+        assignments.setdefault(assignment, []).append(
+            {"found": found, "page": place, "anchors": anchors, "earlier": before}
+        )
+    content = page(
+        "statistics.html",
+        name=name,
+        assignments=sorted(assignments.items()),
+        labels=[year["name"] for year in counts],
+    )
+    write(folder / "statistics.html", content)
+
+
+def _groups(found, assignment):
+    """The answers of a question, by what the machine or a person said of them, the most frequent first."""
+    groups, anchors = {}, {}
+    for (outcome, did, _), same in found.answers.items():
+        groups.setdefault((outcome, did), []).append(same)
+    order = list(OUTCOMES)
+    made, outcomes = [], set()
+    ranked = sorted(groups.items(), key=lambda entry: (order.index(entry[0][0]), -sum(a["number"] for a in entry[1])))
+    for place, ((outcome, did), answers) in enumerate(ranked, 1):
+        anchor = f"group-{place}" if outcome in outcomes else outcome.replace(" ", "-")
+        outcomes.add(outcome)
+        anchors.setdefault(did, anchor)
+        answers.sort(key=lambda same: (-same["number"], same["who"]))
+        made.append(
+            {
+                "anchor": anchor,
+                "outcome": outcome,
+                "did": did,
+                "number": sum(same["number"] for same in answers),
+                "left": max(0, len(answers) - MOST_ANSWERS),
+                "answers": [
+                    {
+                        **same,
+                        "text": pages.answer_as_text(same["plain"], 600),
+                        "who": [
+                            {
+                                "student": student,
+                                "page": f"../../feedback/{file_name(student)}/{file_name(assignment)}.html",
+                            }
+                            for student in same["who"]
+                        ],
+                    }
+                    for same in answers[:MOST_ANSWERS]
+                ],
+            }
+        )
+    return made, anchors
+
+
+def _earlier(path):
+    try:
+        found = json.loads(Path(path).read_text("utf8"))
+        if found["format"] != FORMAT or not isinstance(found["questions"], dict):
+            raise ValueError("it is of another format")
+        return {"name": str(found["name"]), "questions": found["questions"]}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise term.BadRules(f"{path} holds no counts of a course ({error}).") from None
+
+
+def _share_then(year, question, found):
+    then = year["questions"].get(question)
+    if not then or then["share"] is None:
+        return ""
+    same = then["version"] in found.versions
+    return f"{number(round(100 * then['share']))} %{'' if same else ' *'}"

@@ -1,0 +1,381 @@
+"""What is made of the records: marks as a table, a page for each student, and a page on the class.
+
+Everything here can be made again from the records at any time, and comes out the same.
+"""
+
+import functools
+import json
+from collections import Counter
+from statistics import mean, median
+from urllib.parse import quote
+
+from ...checking.plugins import plugins
+from ...checking.reply import OUTCOMES
+from ..judging.ledger import stable_id
+from ..store import file_name, write
+from ..tables import lines, table
+from . import pages
+from .templates_of_pages import page
+
+#: The addresses that feedback leads to, as the course had them when it was graded.
+LINKS = "links.json"
+#: What is said of an outcome once there is no "yet" any more.
+FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
+#: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
+DEEDS = {
+    "transposed": "gave the transpose",
+    "in degrees": "answered in degrees",
+    "in radians": "answered in radians where degrees are asked for",
+    "sign of a symbol": "gave {symbol} the wrong sign",
+    "symbols interchanged": "interchanged {first} and {second}",
+    "opposite": "gave the opposite",
+    "reciprocal": "gave the reciprocal",
+    "factor": "gave {factor} times the answer",
+    "one wrong": "has one of the {number} wrong",
+    "rounded too far": "rounded too far",
+    "half": "gave half of it",
+    "double": "gave twice of it",
+    "supplement": "gave the supplementary angle",
+    "complement": "gave the complementary angle",
+    "not turned": "left the components as they were, along the first frame",
+    "turned the wrong way": "multiplied by the transpose",
+    "other numbers": "answered with other numbers than those given to them",
+    "stray symbol": "used a symbol that the question does not have",
+    "undefined": "gave something without a finite value",
+    "too large": "gave something too large to be worked out",
+    "not real": "gave complex numbers",
+    "shape": "gave something of another shape or kind",
+    "frame": "gave another frame than the one asked for",
+    "raised an error": "gave a function that stops with an error",
+    "returned nothing": "gave a function that returns nothing",
+    "printed": "gave a function that prints and returns nothing",
+    "not unit length": "gave something that has not unit length",
+    "degrees": "gave angles in degrees",
+    "unreadable": "gave something that cannot be read as an answer",
+    "right only where it is checked": "gave something that is right only where the check looks",
+}
+MOST_UNDECIDED, MOST_NAMES = 200, 200  # that the report names; all are in the tables
+MOST_STOPPED = 10  # cells of a notebook that did not come to their end, which feedback names
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+NOTES = {
+    "works only out of order": "It works only if its cells are run in another order than they stand in. The answers "
+    "count; before you hand in, choose *Restart the kernel and run all cells*.",
+    "wrote into the records": "Its code wrote where answers are recorded. What it wrote was not taken for more than "
+    "an answer.",
+    "could not be run": "It could not be run here. Your instructor will look at it.",
+}
+
+
+class _Assignment:
+    """What the report says of an assignment, from one record after another.
+
+    What is kept grows with the number of different answers, not with the class.
+    """
+
+    def __init__(self):
+        self.students, self.points, self.worth, self.titles = 0, Counter(), 0, {}
+        self.parts, self.mixups, self.same, self.tries = {}, Counter(), {}, {}
+        self.undecided, self.odd, self.ways, self.versions = [], {}, Counter(), Counter()
+        self.waiting = 0
+
+    def add(self, record):
+        self.students += 1
+        self.points[record["points"]] += 1
+        self.worth = max(self.worth, record["worth"])
+        for name, mark in record["marks"].items():
+            self.titles.setdefault(name, mark["title"])
+            self.parts.setdefault(name, Counter())[_part(mark)] += 1
+            if mark.get("tries"):
+                self.tries.setdefault(name, Counter())[mark["tries"]] += 1
+            if mark["outcome"] in ("wrong", "invalid") and mark["note"]:
+                self.mixups[name, deed(mark)] += 1
+            elif mark["outcome"] == "wrong" and mark["group"]:
+                if (name, mark["group"]) not in self.same:
+                    self.same[name, mark["group"]] = [0, pages.answer_as_text(record["answers"].get(name))]
+                self.same[name, mark["group"]][0] += 1
+            if mark["outcome"] == "undecided":
+                self.waiting += 1
+                if len(self.undecided) < MOST_UNDECIDED:
+                    answer = pages.answer_as_text(record["answers"].get(name))
+                    self.undecided.append((record["student"], name, mark["messages"], answer))
+        for kind in _oddities(record):
+            found = self.odd.setdefault(kind, [0, []])
+            found[0] += 1
+            if len(found[1]) < MOST_NAMES:
+                found[1].append(record["student"])
+        for notebook in record["notebooks"]:
+            isolation = notebook["isolation"]
+            self.ways[("WEAK: " if isolation["weak"] else "") + (", ".join(isolation["layers"]) or "none")] += 1
+        self.versions[", ".join(f"{name} {version}" for name, version in record["software"].items())] += 1
+
+    @property
+    def numbers(self):
+        """The number of each question."""
+        return {name: order for order, name in enumerate(self.titles, 1)}
+
+
+def write_all(store):
+    """Make the tables and the pages of all records; no more than one record is held at a time."""
+    classes, names, links = {}, {}, _read(store.folder / LINKS, {})
+    for record in _readable(store):
+        place = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
+        _write_if_new(place, feedback(record, links))
+        classes.setdefault(record["assignment"], _Assignment()).add(record)
+        names.update(dict.fromkeys(record["marks"]))
+    refused = [tuple(entry) for entry in _read(store.folder / "refused.json", [])]
+    write(store.folder / "grades.csv", grades(store.all(), list(names)))
+    write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(_readable(store))))
+    write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
+    write(store.folder / "report.html", report(classes, refused))
+
+
+def _readable(store):
+    for record in store.all():
+        record["answers"] = {name: answer.get("plain") for name, answer in record["answers"].items()}
+        yield record
+
+
+UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer")
+
+
+def _undecided_of(records):
+    for record in records:
+        for name, mark in record["marks"].items():
+            if mark["outcome"] == "undecided":
+                yield (
+                    stable_id(record["student"], record["assignment"], name),
+                    record["student"],
+                    name,
+                    "",
+                    "",
+                    mark["worth"],
+                    mark["note"],
+                    " ".join(mark["messages"]),
+                    pages.answer_as_text(record["answers"].get(name)),
+                )
+
+
+def _read(path, otherwise):
+    return json.loads(path.read_text("utf8")) if path.exists() else otherwise
+
+
+def _write_if_new(path, content):
+    if not path.exists() or path.read_text("utf8") != content:
+        write(path, content, lasting=False)
+
+
+def grades(records, names):
+    """All marks as CSV, line by line: one for each student and assignment."""
+    header = ["student", "assignment", "points", "worth", "undecided", "late", *names]
+    return lines([*header, *(f"{name}: outcome" for name in names)], (_grades_of(record, names) for record in records))
+
+
+def _grades_of(record, names):
+    marks = [record["marks"].get(name) for name in names]
+    return [
+        record["student"],
+        record["assignment"],
+        record["points"],
+        record["worth"],
+        record["undecided"],
+        "late" if any(notebook["late"] for notebook in record["notebooks"]) else "",
+        *(mark["points"] if mark else "" for mark in marks),
+        *(mark["outcome"] if mark else "" for mark in marks),
+    ]
+
+
+# --- for a student ------------------------------------------------------------------------------
+
+
+def feedback(record, links=None):
+    """The page that a student gets; ``answers`` of the record are plain data, ``links`` addresses as a course has them."""
+    return page(
+        "feedback.html",
+        record=record,
+        questions=[
+            (name, mark, FINAL.get(mark["outcome"]) or OUTCOMES[mark["outcome"]][:2], _shown(record, name))
+            for name, mark in record["marks"].items()
+        ],
+        notebooks=[(notebook, _stopped(notebook)) for notebook in record["notebooks"]],
+        notes=NOTES,
+        links={name: _addresses(name, links or {}) for name in record["marks"]},
+    )
+
+
+#: What the addresses of a course lead to, in words.
+LEADS_TO = {"chapter": "the chapter", "solution": "the worked solution"}
+
+
+def _addresses(question, links):
+    notebook, _, own = question.partition("/")
+    return [
+        (said, links[name].replace("{notebook}", quote(notebook)).replace("{question}", quote(own)))
+        for name, said in LEADS_TO.items()
+        if name in links
+    ]
+
+
+def _shown(record, name):
+    """An answer as it was read, as mathematics and as text; nothing where there is nothing to show."""
+    plain = record["answers"].get(name)
+    # What a function returned is not repeated: a list of it would do for a friend's answer.
+    if not plain or record["marks"][name]["outcome"] == "not attempted" or plain["value"][0] == "function":
+        return None
+    return plain, pages.answer_as_text(plain)
+
+
+def _stopped(notebook):
+    """The cells of a notebook that did not come to their end, with their numbers."""
+    cells = enumerate(notebook["cells"], 1)
+    return [(order, cell) for order, cell in cells if cell["outcome"] not in ("done", "not run")][:MOST_STOPPED]
+
+
+# --- for the instructor -------------------------------------------------------------------------
+
+
+def feedback_of(student, assignment):
+    """Where a page of feedback lies, from the folder of results."""
+    return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
+
+
+def deed(mark):
+    """What was done, in words that follow "31 % of the class"."""
+    if mark["note"] == "authored":
+        return f"were told: “{mark['messages'][0]}”"
+    # Where there is only one turn, it has no number.
+    details = {
+        name: ORDINALS[value] if isinstance(value, int) and name != "number" else value or ""
+        for name, value in mark["details"].items()
+    }
+    # Two mistakes at once are named together, as in "transposed, and sign of one turn".
+    notes = [mark["note"]] if mark["note"] in _deeds() else mark["note"].split(", and ")
+    return " ".join(", and ".join(_deeds().get(note, note) for note in notes).format(**details).split())
+
+
+@functools.cache
+def _deeds():
+    return DEEDS | {note: deed for plugin in plugins() for note, deed in getattr(plugin, "DEEDS", {}).items()}
+
+
+def report(classes, refused):
+    """The page on the class."""
+    ways = sum((found.ways for found in classes.values()), Counter())
+    versions = sum((found.versions for found in classes.values()), Counter())
+    return page(
+        "report.html",
+        classes=[(name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())],
+        refused=refused,
+        ways=sorted(ways.items()),
+        versions=sorted(versions.items()),
+        parts=PARTS,
+        feedback_of=feedback_of,
+    )
+
+
+def _about(found):
+    """What the report shows of an assignment, worked out."""
+    points = list(found.points.elements())
+    return {
+        "mean": f"{mean(points):.1f}",
+        "median": median(points),
+        "bars": _histogram(found.points, found.worth),
+        "success": [(*_success(name, counts), _tries(found.tries.get(name))) for name, counts in found.parts.items()],
+        "mixups": _mixups(found),
+        "same": _same(found),
+        "odd": sorted(found.odd.items()),
+    }
+
+
+WIDTH, HEIGHT, LEFT, BASE, TALLEST = 660, 190, 34, 158, 120  # of the histogram
+
+
+def _histogram(points, worth):
+    """The bars: where each begins, how wide and tall it is, the students in it, and its points."""
+    bins = min(10, max(1, round(worth)))
+    counts = [0] * bins
+    for value, students in points.items():
+        counts[min(bins - 1, int(value / worth * bins)) if worth else 0] += students
+    step, top = (WIDTH - 2 * LEFT) / bins, max(counts)
+    return [
+        {
+            "x": LEFT + order * step,
+            "step": step,
+            "tall": count / top * TALLEST if top else 0,
+            "count": count,
+            "low": round(worth * order / bins, 1),
+            "high": round(worth * (order + 1) / bins, 1),
+        }
+        for order, count in enumerate(counts)
+    ]
+
+
+#: What a bar is made of, in order: outcomes, and what they are called.
+PARTS = (
+    ("correct", "right"),
+    ("wrong", "wrong"),
+    ("invalid", "not in the form asked for"),
+    ("undecided", "undecided"),
+    ("none", "not attempted"),
+)
+
+
+def _success(name, counts):
+    total, x, bars = sum(counts.values()), 0.0, []
+    for part, _ in PARTS:
+        if counts[part]:
+            wide = 300 * counts[part] / total
+            bars.append((part, x, wide))
+            x += wide
+    spoken = ", ".join(f"{counts[part]} {word}" for part, word in PARTS if counts[part])
+    return name, bars, spoken, _percent(counts["correct"], total)
+
+
+def _tries(counts):
+    """How many different answers were tried, as the notebooks of those remember that show it; or nothing."""
+    if not counts:
+        return ""
+    known, most = list(counts.elements()), max(counts)
+    return f"{median(known):g} ({most} at most, {len(known)} known)" if len(known) > 1 else f"{most} (1 known)"
+
+
+def _part(mark):
+    return {"not attempted": "none", "decided": "correct" if mark["points"] else "wrong"}.get(
+        mark["outcome"], mark["outcome"]
+    )
+
+
+def _percent(part, whole):
+    share = 100 * part / whole
+    return f"{share:.0f} %" if share >= 1 or not part else "under 1 %"
+
+
+def _mixups(found):
+    shown = sorted(found.mixups.items(), key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1]))[:20]
+    return [
+        (name, what, count, _percent(count, found.students), 120 * count / found.students)
+        for (name, what), count in shown
+        if count > 1 or found.students < 30
+    ]
+
+
+def _same(found):
+    shown = sorted(
+        (entry for entry in found.same.items() if entry[1][0] > 1),
+        key=lambda entry: (-entry[1][0], found.numbers[entry[0][0]], entry[0][1]),
+    )[:15]
+    return [(name, students, answer) for (name, _), (students, answer) in shown]
+
+
+def _oddities(record):
+    """What is worth a look in a record, each kind once."""
+    found = {}
+    for notebook in record["notebooks"]:
+        found.update(dict.fromkeys(notebook["notes"]))
+        found.update(dict.fromkeys(f"its code {said}" for said in notebook.get("tried", ())))
+        if notebook["unknown questions"]:
+            found["it checks an answer to a question that there is not"] = None
+        outcomes = sorted({cell["outcome"] for cell in notebook["cells"]} - {"done", "not run", "error"})
+        found.update(dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes))
+    if record["superseded"]:
+        found["handed in more than once; the newest counts"] = None
+    return found

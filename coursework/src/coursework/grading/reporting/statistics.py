@@ -1,0 +1,148 @@
+"""What the class says of each question: how hard it is, whether it tells students apart, and what was mixed up.
+
+One record after another is taken in, and what is kept grows with the number of different answers, not with the
+class. The counts of a year hold nobody's name and nobody's answer; they can be kept, and the next year stands beside
+them.
+"""
+
+import math
+from collections import Counter, defaultdict
+
+from ..judging.ledger import digest_of_answer
+from .reports import deed
+
+FEWEST = 10  # students, below which a correlation says nothing
+#: What fewer did is put together with the others, so that a count points at nobody.
+HIDDEN_BELOW = 3
+MOST_NAMES = 40  # of those who gave one answer
+FORMAT = 1
+
+
+class Correlation:
+    """Pearson's correlation of pairs that come one after another."""
+
+    def __init__(self):
+        self.number = self.x = self.y = self.xx = self.yy = self.xy = 0
+
+    def add(self, x, y):
+        self.number += 1
+        self.x += x
+        self.y += y
+        self.xx += x * x
+        self.yy += y * y
+        self.xy += x * y
+
+    @property
+    def value(self):
+        """``None`` for too few pairs, or where one of the two does not vary."""
+        spread = (self.number * self.xx - self.x**2) * (self.number * self.yy - self.y**2)
+        if self.number < FEWEST or spread <= 1e-9 * self.number**4:
+            return None
+        return max(-1.0, min(1.0, (self.number * self.xy - self.x * self.y) / math.sqrt(spread)))
+
+    @property
+    def interval(self):
+        """The 95 % interval by Fisher's transformation, or ``None``."""
+        value = self.value
+        if value is None:
+            return None
+        middle, half = math.atanh(max(-0.999999, min(0.999999, value))), 1.96 / math.sqrt(self.number - 3)
+        return math.tanh(middle - half), math.tanh(middle + half)
+
+
+class Question:
+    """What is known of one question.
+
+    Attributes
+    ----------
+    outcomes : Counter
+    earned : float
+        The sum of the shares of credit, without answers that wait for a person.
+    discrimination : Correlation
+        Of the share earned here with the share earned in the rest of the assignment.
+    notes : Counter
+        What was mixed up, in words.
+    answers : dict
+        For each different answer its ``number``, an example and the first who gave it.
+    """
+
+    def __init__(self, assignment, mark):
+        self.assignment, self.title, self.worth = assignment, mark["title"], mark["worth"]
+        self.is_guessable = mark["guessable"] is not None
+        self.outcomes, self.notes, self.earned, self.decided = Counter(), Counter(), 0.0, 0
+        self.discrimination = Correlation()
+        self.answers, self.versions = {}, set()
+
+    @property
+    def number(self):
+        return sum(self.outcomes.values())
+
+    @property
+    def difficulty(self):
+        """The mean share of the credit; ``None`` as long as all wait."""
+        return self.earned / self.decided if self.decided else None
+
+
+class Statistics:
+    """The statistics of a class, from its records."""
+
+    def __init__(self):
+        self.questions = {}
+        self.students = defaultdict(int)
+
+    def add(self, record):
+        marks = record["marks"]
+        self.students[record["assignment"]] += 1
+        earned = sum(mark["points"] for mark in marks.values())
+        worth = sum(mark["worth"] for mark in marks.values())
+        for name, mark in marks.items():
+            key = record["assignment"], name
+            if key not in self.questions:
+                self.questions[key] = Question(record["assignment"], mark)
+            question = self.questions[key]
+            question.outcomes[mark["outcome"]] += 1
+            question.versions.add(mark["version"])
+            did = deed(mark) if mark["note"] and mark["outcome"] in ("wrong", "invalid") else ""
+            if did:
+                question.notes[did] += 1
+            answer = (mark["outcome"], did, mark["group"] or digest_of_answer(record, name))
+            same = question.answers.setdefault(
+                answer, {"number": 0, "plain": record["answers"].get(name, {}).get("plain"), "who": []}
+            )
+            same["number"] += 1
+            if len(same["who"]) < MOST_NAMES:
+                same["who"].append(record["student"])
+            if mark["outcome"] == "undecided":
+                continue
+            share = mark["points"] / mark["worth"] if mark["worth"] else 0
+            question.decided += 1
+            question.earned += share
+            if worth > mark["worth"]:
+                question.discrimination.add(share, (earned - mark["points"]) / (worth - mark["worth"]))
+
+    def counts(self, name):
+        """What can be kept for other years: numbers only, and none of so few that it points at somebody."""
+        return {
+            "format": FORMAT,
+            "name": name,
+            "questions": {
+                question: {
+                    "assignment": assignment,
+                    "version": min(found.versions) if len(found.versions) == 1 else "",
+                    "students": found.number,
+                    "share": None if found.difficulty is None else round(found.difficulty, 4),
+                    "discrimination": None
+                    if found.discrimination.value is None
+                    else round(found.discrimination.value, 4),
+                    "mix-ups": _without_few(found.notes),
+                }
+                for (assignment, question), found in sorted(self.questions.items())
+                if found.number >= HIDDEN_BELOW
+            },
+        }
+
+
+def _without_few(notes):
+    kept = {what: count for what, count in sorted(notes.items()) if count >= HIDDEN_BELOW}
+    others = sum(notes.values()) - sum(kept.values())
+    return {**kept, "others": others} if others >= HIDDEN_BELOW else kept

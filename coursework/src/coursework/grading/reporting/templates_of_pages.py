@@ -1,0 +1,30 @@
+"""The templates of pages, in which everything is text unless it is said to be mathematics or a message of ours."""
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from ..tables import number, readable
+from . import pages
+from .mathematics import answer_as_mathematics
+
+ENVIRONMENT = Environment(
+    loader=PackageLoader("coursework.grading.reporting", "templates"),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+ENVIRONMENT.filters |= {
+    "readable": lambda text, most=400: readable(str(text), most),
+    "points": number,
+    "message": lambda said: Markup(pages.message(said)),
+    "capital": lambda text: text[:1].upper() + text[1:],
+    "mathematics": lambda plain: Markup(answer_as_mathematics(plain)),
+    "count": lambda how_many, one, more: f"{how_many} {one if how_many == 1 else more}",
+    "percent": lambda share: f"{100 * share:.0f} %",
+}
+
+
+def page(template, **about):
+    """A page that is complete in one file, by the template of a name."""
+    return ENVIRONMENT.get_template(template).render(style=Markup(pages.STYLE), policy=Markup(pages.POLICY), **about)

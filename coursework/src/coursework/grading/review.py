@@ -1,0 +1,565 @@
+"""A page to judge in: answer by answer, or all equal answers at once; on this machine only.
+
+It is made from the records, and what is decided goes into the ledger (:mod:`coursework.grading.judging.ledger`);
+nothing is uploaded. Whoever knows the address may decide, so it holds a secret, and a request that another page or
+another name for this machine sent is refused. What a student wrote is shown as text and mathematics; a policy forbids
+the browser to run, load or send anything that is in it.
+"""
+
+import hashlib
+import hmac
+import itertools
+import re
+import secrets
+from collections import Counter, defaultdict
+from typing import NamedTuple
+from urllib.parse import urlencode
+
+from markupsafe import Markup
+from tornado import httpserver, ioloop, netutil, web
+
+from ..authoring.author import to_page
+from ..checking.variants import plain_identity, text_of
+from .judging.cases import Contracts
+from .judging.ledger import Collision, Ledger, digest_of_answer
+from .reporting import pages
+from .reporting.mathematics import answer_as_mathematics
+from .reporting.reports import deed
+from .reporting.templates_of_pages import ENVIRONMENT
+from .store import Store
+from .submissions.intake import SAYS
+from .tables import readable
+
+ALONE = "127.0.0.1"
+POLICY = (
+    "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; "
+    "frame-ancestors 'none'; require-trusted-types-for 'script'"
+)
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "same-origin",  # with none at all, a browser hides the origin of the own form, too
+    "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
+#: Which answers a grader may choose to see.
+SHOWN = {
+    "waiting": "waiting for a person",
+    "wrong": "wrong",
+    "correct": "correct",
+    "invalid": "not in the form asked for",
+    "not attempted": "not attempted",
+    "decided": "decided by a person",
+    "hints": "with a hint",
+    "all": "all",
+}
+LONGEST_COMMENT = 4_000
+MOST_ABOVE = 4  # cells above the one of an answer that are shown first
+#: Code that fewer share is worth a look; code that more share is what everybody writes.
+FEW = 0.05
+SHORTEST_CODE = 60
+#: What is shorter is no name that is looked for in what was written.
+SHORTEST_NAME = 3
+
+
+class Cluster(NamedTuple):
+    """Equal answers to one question.
+
+    Attributes
+    ----------
+    id : str
+    assignment, question : str
+    members : list of dict
+        The records.
+    hints : list of (str, str)
+        For each student for whom there is one: what a person may want to look at.
+    """
+
+    id: str
+    assignment: str
+    question: str
+    members: list
+    hints: list
+
+    @property
+    def mark(self):
+        return self.members[0]["marks"][self.question]
+
+    @property
+    def answer(self):
+        return self.members[0]["answers"].get(self.question, {"outcome": "missing"})
+
+
+class Class:
+    """All answers of a class, put together where they are equal.
+
+    Parameters
+    ----------
+    folder : path
+        The folder of results.
+    share : (int, int)
+        Which part of the answers a grader judges, and how many parts there are.
+    """
+
+    def __init__(self, folder, share=(1, 1)):
+        self.store = Store(folder)
+        self.ledger = Ledger(self.store.folder)
+        self.questions = {
+            name: about
+            for path in sorted(
+                (self.store.folder / "questions").glob("*.json"), key=lambda path: path.stat().st_mtime_ns
+            )
+            for name, about in self.store.json_in(path).items()
+        }
+        self.contracts = Contracts(self.store.folder)
+        self.records = list(self.store.all())
+        self.aliases = {student: f"student {order}" for order, student in enumerate(self._shuffled(), 1)}
+        self._know_names()
+        hints = hints_of(self.records, self.store.work)
+        groups = defaultdict(list)
+        for record in self.records:
+            for question, mark in record["marks"].items():
+                judged = mark.get("before", mark)
+                # An answer that has a fingerprint is equal to those that share it; another one to its very copies.
+                same = mark["group"] or digest_of_answer(record, question)
+                # Equal words to other numbers are another answer: each variant has a right answer of its own.
+                groups[record["assignment"], question, mark["version"], judged["outcome"], judged["note"], same].append(
+                    record
+                )
+        self.clusters = {}
+        for key, members in groups.items():
+            name = hashlib.sha256("\n".join(key).encode()).hexdigest()[:16]
+            if int(name, 16) % share[1] == share[0] - 1:
+                found = [(one["student"], said) for one in members for said in hints.get((one["student"], key[1]), ())]
+                self.clusters[name] = Cluster(name, key[0], key[1], members, found)
+
+    def contract(self, cluster):
+        """The question by which the answers of a cluster were judged: these students' own variant; or nothing."""
+        return self.contracts.of(cluster.mark["version"]) or {}
+
+    def without_names(self, text):
+        """A text in which who wrote it, and everybody else in the class, is called by a number."""
+        if not text:
+            return text
+        said = SAYS.sub(lambda found: found[0].replace(found["who"], self._alias(found["who"])), text)
+        return self._names.sub(lambda found: self._alias(found[0]), said) if self._names else said
+
+    def _alias(self, name):
+        return self._known.get(plain_identity(name), "somebody")
+
+    def _know_names(self):
+        """All that students are called, in records and by themselves."""
+        self._known = {}
+        for record in self.records:
+            identity = record["identity"]
+            called = [record["student"], *(identity.get(kind, "") for kind in ("name", "email", "canvas", "moodle"))]
+            for name in [*called, *identity.get("own", ()), *record.get("says", ())]:
+                if len(name) >= SHORTEST_NAME:
+                    self._known.setdefault(plain_identity(name), self.aliases[record["student"]])
+        longest_first = sorted(self._known, key=len, reverse=True)
+        joined = "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first)
+        self._names = re.compile(rf"(?<!\w)(?:{joined})(?!\w)", re.I) if joined else None
+
+    def _shuffled(self):
+        """The students in an order that follows from their names, and does not tell them."""
+        students = {record["student"] for record in self.records}
+        return sorted(students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest())
+
+    def outcome(self, cluster, current):
+        """What counts for a cluster now, and who decided: decided only if all of it is."""
+        decided = [self.decision(cluster, record, current) for record in cluster.members]
+        if all(decided):
+            return "decided", sorted({one.who for one in decided})
+        return cluster.mark.get("before", cluster.mark)["outcome"], []
+
+    @staticmethod
+    def decision(cluster, record, current):
+        found = current.get((record["student"], cluster.assignment, cluster.question))
+        return found if found and found.answer == digest_of_answer(record, cluster.question) else None
+
+    @staticmethod
+    def decision_on(cluster, record, current):
+        """What was decided last, be it on this answer or on one that was handed in before it."""
+        return current.get((record["student"], cluster.assignment, cluster.question))
+
+    def chosen(self, filters, hide_names=False):
+        """The clusters that a grader wants to see, the largest of each question first."""
+        current, text = self.ledger.current(), filters.get("search", "").casefold()
+        orders = {name: order for order, name in enumerate(self.questions)}
+        found = []
+        for cluster in self.clusters.values():
+            outcome, _ = self.outcome(cluster, current)
+            shown = filters.get("show", "waiting")
+            if not (
+                shown == "all"
+                or shown == outcome
+                or (shown == "waiting" and outcome == "undecided")
+                or (shown == "hints" and cluster.hints)
+            ):
+                continue
+            if filters.get("question") and filters["question"] != cluster.question:
+                continue
+            if text and text not in self.searchable(cluster, hide_names):
+                continue
+            found.append(cluster)
+        return sorted(found, key=lambda one: (one.assignment, orders.get(one.question, 0), -len(one.members), one.id))
+
+    def searchable(self, cluster, hide_names=False):
+        names = self.aliases if hide_names else {}
+        students = " ".join(names.get(record["student"], record["student"]) for record in cluster.members)
+        said = " ".join(cluster.mark["messages"])
+        answer = pages.answer_as_text(cluster.answer.get("plain"), 2_000)
+        return (
+            f"{students} {cluster.question} {cluster.mark['title']} {cluster.mark['note']} {said} {answer}".casefold()
+        )
+
+    def cells(self, cluster, record):
+        """The code of one student's notebook, which of its cells come first, and the pictures that it keeps.
+
+        First come the cell of the answer and those above it, up to the check of another; of several notebooks the one
+        in which it is asked.
+        """
+        cell = record["answers"].get(cluster.question, {}).get("cell")
+        kept = [(notebook["sha256"], self.store.work(notebook["sha256"])) for notebook in record["notebooks"]]
+        kept = [(digest, cells) for digest, cells in kept if cells]
+        kept.sort(key=lambda one: not any(cluster.question in source for source in one[1]))
+        for digest, cells in kept:
+            near = []
+            if isinstance(cell, int) and 0 <= cell < len(cells):
+                above = range(cell - 1, max(-1, cell - MOST_ABOVE - 1), -1)
+                own = itertools.takewhile(lambda order: "check(" not in cells[order], above)
+                near = [*sorted(own), cell]
+            return cells, near, self.store.pictures(digest)
+        return [], [], {}
+
+
+def hints_of(records, work):
+    """What a person may want to look at, by student and question; never a mark.
+
+    Equal unusual wrong answers, also among those that were tried on the way, equal code that few share, and what a
+    notebook tried that no exercise needs.
+    """
+    found = defaultdict(list)
+    students = len({record["student"] for record in records})
+    few = max(2, int(FEW * students))
+    wrong, code, tried = defaultdict(set), defaultdict(set), defaultdict(set)
+    for record in records:
+        for question, about in record.get("remembered", {}).items():
+            for one in about.get("tried", ()):
+                tried[question, one].add(record["student"])
+        for question, mark in record["marks"].items():
+            judged = mark.get("before", mark)
+            if judged["outcome"] == "wrong" and not judged["note"] and mark["group"]:
+                wrong[question, mark["group"]].add(record["student"])
+            cell = record["answers"].get(question, {}).get("cell")
+            for notebook in record["notebooks"]:
+                cells = work(notebook["sha256"])
+                if cells and isinstance(cell, int) and cell < len(cells):
+                    written = "".join(map(_bare, cells[max(0, cell - 1) : cell + 1]))
+                    if len(written) >= SHORTEST_CODE:
+                        code[question, written].add(record["student"])
+    together = Counter()
+    for same in wrong.values():
+        if 2 <= len(same) <= few:
+            together.update((one, other) for one in same for other in same if one < other)
+    for (question, _), same in wrong.items():
+        if 2 <= len(same) <= few:
+            for one in same:
+                shared = max(together[min(one, other), max(one, other)] for other in same if other != one)
+                again = f", and {shared} such answers in all" if shared > 1 else ""
+                found[one, question].append(f"the same unusual wrong answer as {len(same) - 1} other{again}")
+    for (question, _), same in code.items():
+        if 2 <= len(same) <= few:
+            for one in same:
+                found[one, question].append(f"the same code, sign by sign, as {len(same) - 1} other")
+    _note_shared_tries(found, {key: same for key, same in tried.items() if 2 <= len(same) <= few})
+    for record in records:
+        for said in dict.fromkeys(said for notebook in record["notebooks"] for said in notebook.get("tried", ())):
+            for question in record["marks"]:
+                found[record["student"], question].append(f"the notebook {said}")
+    return found
+
+
+def _note_shared_tries(found, tried):
+    """Note who tried the same wrong answers as one other, if they were several: one may be chance."""
+    together, where = Counter(), defaultdict(set)
+    for (question, _), same in tried.items():
+        for one in same:
+            for other in same - {one}:
+                together[one, other] += 1
+                where[one, other].add(question)
+    for (one, other), number in together.items():
+        if number > 1:
+            for question in sorted(where[one, other]):
+                said = f"{number} unusual wrong answers were tried on the way that one other tried, too"
+                if said not in found[one, question]:
+                    found[one, question].append(said)
+
+
+def _bare(source):
+    """Code without comments and blanks: what is left of it when somebody changes how it looks."""
+    return re.sub(r"\s+", "", re.sub(r"#[^\n]*", "", source))
+
+
+# --- the server ---------------------------------------------------------------------------------
+
+
+class _Page(web.RequestHandler):
+    """What all pages have in common: who may ask, and what the browser may do."""
+
+    def set_default_headers(self):
+        for name, value in HEADERS.items():
+            self.set_header(name, value)
+        self.clear_header("Server")
+
+    def prepare(self):
+        settings = self.settings
+        # A name that somebody else's server leads here, and a form on somebody else's page.
+        if self.request.host not in settings["hosts"]:
+            raise web.HTTPError(403, "another host")
+        if not hmac.compare_digest(self.path_args[0].encode(), settings["secret"].encode()):
+            raise web.HTTPError(404)
+        if self.request.method != "GET":
+            origin, site = self.request.headers.get("Origin"), self.request.headers.get("Sec-Fetch-Site")
+            if origin not in settings["origins"] or site not in (None, "same-origin"):
+                raise web.HTTPError(403, "another page")
+
+    @property
+    def graded(self):
+        return self.settings["class"]
+
+    def write_error(self, status_code, **about):
+        self.finish(f"{status_code}\n")
+
+    def filters(self):
+        found = {name: self.get_argument(name, "")[:200] for name in ("show", "question", "search")}
+        found["show"] = found["show"] if found["show"] in SHOWN else "waiting"
+        return found
+
+    def show(self, template, **about):
+        settings = self.settings
+        names = settings["hide_names"]
+
+        def name_of(student):
+            return self.graded.aliases[student] if names else readable(student, 120)
+
+        self.finish(
+            ENVIRONMENT.get_template(template).render(
+                root=f"/{settings['secret']}/",
+                grader=settings["grader"],
+                shown=SHOWN,
+                name_of=name_of,
+                hidden=self.graded.without_names if names else lambda text: text,
+                query=lambda **changed: urlencode({key: value for key, value in changed.items() if value}),
+                **about,
+            )
+        )
+
+
+class _Overview(_Page):
+    def get(self, secret):
+        filters, graded = self.filters(), self.graded
+        graded.ledger.read()
+        current = graded.ledger.current()
+        found = graded.chosen(filters, self.settings["hide_names"])
+        outcomes = {cluster.id: graded.outcome(cluster, current) for cluster in found}
+        left = [one for one in graded.chosen({"show": "waiting"})]
+        worth = Counter()
+        guessable = {name: about for name, about in graded.questions.items() if about["guessable"] is not None}
+        for about in graded.questions.values():
+            worth["all"] += about["worth"]
+        self.show(
+            "overview.html",
+            filters=filters,
+            clusters=found,
+            outcomes=outcomes,
+            left=sum(len(one.members) for one in left),
+            titles={one.question: one.mark["title"] for one in graded.clusters.values()},
+            text=lambda cluster: pages.answer_as_text(cluster.answer.get("plain"), 120),
+            guessable=guessable,
+        )
+
+
+class _Answer(_Page):
+    def get(self, secret, name):
+        cluster = self.graded.clusters.get(name)
+        if cluster is None:
+            raise web.HTTPError(404)
+        self.show_cluster(cluster, self.filters())
+
+    def show_cluster(self, cluster, filters, collision=None, comment="", why=""):
+        graded, name = self.graded, cluster.id
+        graded.ledger.read()
+        current = graded.ledger.current()
+        order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
+        place = order.index(name) if name in order else None
+        about = graded.contract(cluster)
+        chosen = self.get_argument("member", "")
+        place_of = {str(number): one for number, one in enumerate(cluster.members)}
+        record = place_of.get(chosen, cluster.members[0])
+        seen = [graded.decision_on(cluster, one, current) for one in cluster.members]
+        cells, near, pictures = graded.cells(cluster, record)
+        judged = cluster.mark.get("before", cluster.mark)
+        self.show(
+            "answer.html",
+            cluster=cluster,
+            filters=filters,
+            mark=cluster.mark,
+            judged=judged,
+            # What an author says stands below, word for word.
+            deed=deed({**cluster.mark, **judged})
+            if judged["outcome"] == "wrong" and judged["note"] not in ("", "authored")
+            else "",
+            record=record,
+            cells=cells,
+            near=near,
+            pictures=pictures,
+            collision=collision,
+            seen=" ".join(one.id if one else NONE for one in seen),
+            comment=comment,
+            why=why,
+            decisions={one["student"]: graded.decision(cluster, one, current) for one in cluster.members},
+            history=[
+                one
+                for one in graded.ledger.decisions
+                if (one.assignment, one.question) == (cluster.assignment, cluster.question)
+                and one.student in {member["student"] for member in cluster.members}
+            ],
+            asked=Markup(_as_asked(about)),
+            right=Markup(answer_as_mathematics(about.get("plain"))),
+            right_text=pages.answer_as_text(about.get("plain"), 2_000),
+            answer=Markup(answer_as_mathematics(cluster.answer.get("plain"))),
+            answer_text=pages.answer_as_text(cluster.answer.get("plain"), 2_000),
+            right_prose=_prose(about.get("plain")),
+            answer_prose=_prose(cluster.answer.get("plain")),
+            by_a_person=judged["note"] == "for a person",
+            place=place,
+            total=len(order),
+            following=order[place + 1] if place is not None and place + 1 < len(order) else None,
+            previous=order[place - 1] if place else None,
+            rubric=self.settings["rubrics"][cluster.question],
+        )
+
+    def post(self, secret, name):
+        graded, filters = self.graded, self.filters()
+        cluster = graded.clusters.get(name)
+        if cluster is None:
+            raise web.HTTPError(404)
+        order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
+        taken_back = self.get_argument("credit") == "back"
+        try:
+            points = None if taken_back else float(self.get_argument("credit").replace(",", "."))
+        except ValueError:
+            raise web.HTTPError(400, "no number") from None
+        worth = cluster.mark["worth"]
+        if points is not None and not 0 <= points <= worth:
+            raise web.HTTPError(400, "no such credit")
+        credit = None if points is None else points / worth if worth else 0.0
+        only, who = self.get_argument("only", ""), self.settings["grader"]
+        seen = dict(zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False))
+        members = [(place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))]
+        if not members:
+            raise web.HTTPError(400, "no such student")
+        rubric = [line.strip() for line in self.get_arguments("rubric") if line.strip()]
+        why = self.get_argument("why", "")[:LONGEST_COMMENT].strip()
+        comment = self.get_argument("comment", "")[:LONGEST_COMMENT].strip()
+        try:
+            if taken_back:
+                graded.ledger.take_back([record for _, record in members], cluster.question, who, why)
+            else:
+                graded.ledger.append(
+                    [
+                        graded.ledger.decision(
+                            record,
+                            cluster.question,
+                            credit,
+                            who=who,
+                            comment=comment,
+                            rubric=rubric,
+                            why=why,
+                            after=seen.get(place, NONE).removeprefix(NONE),
+                        )
+                        for place, record in members
+                    ],
+                    collisions=True,
+                )
+        except Collision as error:
+            self.set_status(409)
+            self.show_cluster(cluster, filters, collision=error, comment=comment, why=why)
+            return
+        self.settings["rubrics"][cluster.question].update(dict.fromkeys(rubric))
+        # On to the one that came next, though the list may be shorter now.
+        later = order[order.index(name) + 1 :] if name in order else []
+        target = later[0] if later and not only else name
+        query = urlencode({key: value for key, value in filters.items() if value})
+        self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
+
+
+#: What the page says in place of a decision where there is none.
+NONE = "-"
+
+
+def _as_asked(about):
+    """The text of a question as these students saw it, with their numbers; its author is trusted."""
+    if not about:
+        return ""
+    return to_page(text_of(about["public"]) or about.get("text", ""), pages.formula)
+
+
+def _prose(plain):
+    """The words of an answer that is a text; ``None`` if it is something else."""
+    return plain["value"][1] if plain and plain["value"][0] == "text" else None
+
+
+class _Static(_Page):
+    FILES = {"review.js": "text/javascript; charset=utf-8", "review.css": "text/css; charset=utf-8"}
+
+    def get(self, secret, name):
+        if name not in self.FILES:
+            raise web.HTTPError(404)
+        self.set_header("Content-Type", self.FILES[name])
+        source, _, _ = ENVIRONMENT.loader.get_source(ENVIRONMENT, name)
+        self.finish(source)
+
+
+def application(graded, grader, port, hide_names=False):
+    """The pages, as an application of Tornado."""
+    secret = secrets.token_urlsafe(24)
+    hosts = (f"{ALONE}:{port}", f"localhost:{port}")
+    rubrics = defaultdict(dict)
+    for name, about in graded.questions.items():
+        rubrics[name].update(dict.fromkeys(about.get("rubric", ())))
+    for one in graded.ledger.decisions:
+        rubrics[one.question].update(dict.fromkeys(one.rubric))
+    return web.Application(
+        [
+            (r"/([^/]+)/", _Overview),
+            (r"/([^/]+)/answer/([0-9a-f]{16})", _Answer),
+            (r"/([^/]+)/(review\.(?:js|css))", _Static),
+        ],
+        **{
+            "class": graded,
+            "secret": secret,
+            "grader": grader,
+            "hide_names": hide_names,
+            "hosts": hosts,
+            "origins": tuple(f"http://{host}" for host in hosts),
+            "rubrics": rubrics,
+        },
+    )
+
+
+def review(folder, grader, *, share=(1, 1), hide_names=False, port=0, say=print):
+    """Serve the page until it is stopped; ``say`` hears its address."""
+    graded = Class(folder, share)
+    if not graded.records:
+        raise ValueError(f"There are no records in {folder}: grade first.")
+    sockets = netutil.bind_sockets(port, ALONE)
+    made = application(graded, grader, sockets[0].getsockname()[1], hide_names)
+    server = httpserver.HTTPServer(made, max_body_size=1 << 20)
+    server.add_sockets(sockets)
+    say(f"http://{ALONE}:{sockets[0].getsockname()[1]}/{made.settings['secret']}/")
+    try:
+        ioloop.IOLoop.current().start()
+    finally:
+        server.stop()

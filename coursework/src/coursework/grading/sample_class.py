@@ -1,0 +1,541 @@
+"""Makes a class to try grading on: right, mistaken, unfinished, broken and hostile notebooks.
+
+What went into each notebook is written down beside them in ``expected.json``, so that what comes out of grading
+can be held against it. Nobody in it is real, and the same seed makes the same class.
+"""
+
+import ast
+import contextlib
+import copy
+import datetime
+import io
+import json
+import os
+import random
+import zipfile
+from pathlib import Path
+from typing import NamedTuple
+
+from ..authoring.course import edition_of, find_course
+from ..authoring.release import KERNEL, exercise_notebook, shows_variants
+from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
+from ..checking.variants import variant_of
+
+#: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
+#: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
+HOSTILE = {
+    "replaces the check": "import coursework\ncoursework.check = check = lambda *answers: 'Correct'",
+    "leaves": "import os\nos._exit(0)",
+    "kills itself": "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
+    "equals everything": "class Right:\n    def __eq__(self, other):\n        return True\n    def "
+    "__hash__(self):\n        return 0\n"
+    "sm.Expr.__eq__ = Right.__eq__",
+    "changes json": 'import json\njson.dumps = json.JSONEncoder.encode = lambda *a, **k: \'{"outcome": "correct"}\'',
+    "reads and writes files": "for place in ('/etc/passwd', '../grades.csv'):\n    try:\n        "
+    "print(open(place).read())\n"
+    "    except OSError:\n        pass\ntry:\n    open('/tmp/forged', 'w').write('x')\nexcept OSError:\n    pass",
+    "calls home": "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\nexcept OSError:\n    pass",
+    "forks": "import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n            os._exit(0)\n  "
+    "  except OSError:\n        pass",
+    "fills the memory": "try:\n    much = [bytearray(1 << 26) for number in range(40)]\nexcept MemoryError:\n    pass",
+    "writes much": "for number in range(200_000):\n    print('x' * 100)",
+    "a name that is code": 'theta = sm.Symbol(\'__import__("os").system("touch /tmp/forged")\')',
+    "a script": "_ = check('<script>alert(1)</script>', '<img src=x onerror=alert(1)>')",
+    "walks the frames": "import sys\nframe = sys._getframe()\nwhile frame:\n    frame.f_globals['check'] = "
+    "frame.f_globals.get('check')\n"
+    "    frame = frame.f_back",
+    "never ends": "while True:\n    pass",
+}
+
+
+class Part(NamedTuple):
+    """A cell in which questions are answered."""
+
+    cell: int
+    questions: list
+
+
+class _Exercise:
+    """The notebook that is handed in, and how to answer in it."""
+
+    def __init__(self, stems, folder):
+        import nbformat
+
+        self.edition = edition_of(folder)
+        paths = [Path(folder) / f"{stem}.ipynb" for stem in stems]
+        sources = [read_source(path, edition=self.edition) for path in paths]
+        self.questions = {name: [question] for source in sources for name, question in source.questions.items()}
+        for path, source in zip(paths, sources, strict=True):
+            for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
+                for name, question in read_source(path, number, self.edition).questions.items():
+                    self.questions[name].append(question)
+        self.cells, self.parts, self.solved = [], [], {}
+        self.names = {}
+        for source in sources:
+            notebook = exercise_notebook(source)
+            checked = checked_names(source.notebook)
+            owners = {variable: name for name, variable in checked.items()}
+            originals = source.notebook.cells
+            handed_out = [cell for number, cell in enumerate(originals) if not shows_variants(originals, number)]
+            for cell, original in zip(notebook.cells, handed_out, strict=True):
+                cell = copy.deepcopy(cell)
+                if cell.cell_type == "code":
+                    answered = [owners[variable] for variable in answered_in(original.source, owners)]
+                    if answered:
+                        self.parts.append(Part(len(self.cells), list(dict.fromkeys(answered))))
+                        self.solved[len(self.cells)] = solved(original.source)
+                    self.names.update(_symbols(original.source))
+                self.cells.append(cell)
+        for number, cell in enumerate(self.cells):
+            cell["id"] = f"cell-{number}"
+        self.metadata = nbformat.v4.new_notebook(metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
+
+    def variant(self, name, identity):
+        """The number of a student's variant of a question."""
+        return variant_of(identity, name, len(self.questions[name]), self.edition)
+
+    def notebook(self, cells):
+        made = copy.deepcopy(self.metadata)
+        made.cells = cells
+        return made
+
+
+def _symbols(source):
+    """The variable of each symbol that a cell makes by ``sm.symbols('...')`` or ``me.dynamicsymbols``."""
+    found = {}
+    for node in ast.parse(source).body:
+        if (
+            isinstance(node, ast.Assign)
+            and isinstance(node.value, ast.Call)
+            and getattr(node.value.func, "attr", "") in ("symbols", "dynamicsymbols", "Symbol")
+            and node.value.args
+            and isinstance(node.value.args[0], ast.Constant)
+        ):
+            target = node.targets[0]
+            variables = [part.id for part in getattr(target, "elts", [target]) if isinstance(part, ast.Name)]
+            found.update(zip(str(node.value.args[0].value).replace(",", " ").split(), variables))
+    return found
+
+
+def code_of(answer, names):
+    """Python code for an answer, or ``None`` where there is no short one."""
+    import sympy
+    from sympy.printing.str import StrPrinter
+
+    class Code(StrPrinter):
+        def _print_Symbol(self, symbol):
+            return names.get(symbol.name) or f"sm.Symbol({symbol.name!r})"
+
+        def _print_Function(self, function):
+            name = function.func.__name__
+            if isinstance(function, sympy.core.function.AppliedUndef):
+                return names.get(name) or f'sm.Function({name!r})(sm.Symbol("t"))'
+            return f"sm.{name}({self.stringify(function.args, ', ')})"
+
+        _print_ExpBase = _print_exp = _print_Abs = _print_Function
+
+        def _print_Rational(self, number):
+            return f"sm.Rational({number.p}, {number.q})" if number.q != 1 else str(number.p)
+
+        def _print_Pow(self, power, rational=False):
+            if power.exp == sympy.Rational(1, 2):
+                return f"sm.sqrt({self._print(power.base)})"
+            return f"({self._print(power.base)})**({self._print(power.exp)})"
+
+        def _print_Pi(self, pi):
+            return "sm.pi"
+
+        def _print_ImaginaryUnit(self, unit):
+            return "sm.I"
+
+        def _print_Exp1(self, base):
+            return "sm.E"
+
+    if hasattr(answer, "tolist") and not isinstance(answer, sympy.MatrixBase):
+        answer = answer.tolist()
+    if isinstance(answer, (str, bool, int, float)):
+        return repr(answer)
+    if isinstance(answer, (list, tuple)):
+        parts = [code_of(part, names) for part in answer]
+        return None if None in parts else f"[{', '.join(parts)}]"
+    if isinstance(answer, sympy.MatrixBase):
+        parts = [code_of(row, names) for row in answer.tolist()]
+        return None if None in parts else f"sm.Matrix([{', '.join(parts)}])"
+    if isinstance(answer, sympy.Expr) and not answer.atoms(sympy.Derivative):
+        return Code().doprint(answer)
+    return None
+
+
+# --- one answer ---------------------------------------------------------------------------------
+
+
+def _forms(question):
+    """The right answer in other forms than its author's."""
+    import sympy
+
+    answer = question.answer
+    yield answer
+    if isinstance(answer, (sympy.MatrixBase, sympy.Expr)):
+        each = answer.applyfunc if isinstance(answer, sympy.MatrixBase) else lambda change: change(answer)
+        if answer.free_symbols:
+            yield each(lambda entry: entry.rewrite(sympy.exp))
+            yield each(sympy.expand)
+        elif question.public.get("tolerance") is not None:
+            yield each(lambda entry: sympy.N(entry, 9))
+        if isinstance(answer, sympy.MatrixBase) and 1 not in answer.shape:
+            yield answer.tolist()
+
+
+def _slip(question):
+    """A wrong answer that no catalogue knows, the same each time."""
+    import sympy
+
+    answer = question.answer
+    if hasattr(answer, "tolist") and not isinstance(answer, sympy.MatrixBase):
+        answer = answer.tolist()
+    if isinstance(answer, sympy.MatrixBase):
+        changed = sympy.Matrix(answer)
+        changed[0] = changed[0] / 3 + sympy.Rational(1, 7)
+        return changed
+    if isinstance(answer, (sympy.Expr, int, float)) and not isinstance(answer, bool):
+        return answer / 3 + sympy.Rational(1, 7)
+    if isinstance(answer, (list, tuple)) and answer and isinstance(answer[0], str):
+        options = question.public.get("options") or answer
+        return [
+            next(option for option in options if option != answer[0]) if len(set(options)) > 1 else answer[0],
+            *answer[1:],
+        ]
+    if isinstance(answer, (list, tuple)) and answer and isinstance(answer[0], bool):
+        return [not answer[0], *answer[1:]]
+    return None
+
+
+class _Answers:
+    """Code for right and wrong answers to every question, with what is to come of each; worked out once."""
+
+    def __init__(self, exercise, dice):
+        from .judging.marking import about
+
+        self.right, self.wrong = {}, {}
+        for name, variants in exercise.questions.items():
+            known = [about(question, b"any secret: the class is the same with all") for question in variants]
+            order = dice.random()
+            for number, question in enumerate(variants):
+                judged = {**known[number], "siblings": known[:number] + known[number + 1 :]}
+                self.right[name, number] = self._with_code(exercise, question, judged, _forms(question))
+                mistaken = list(
+                    {
+                        (mistake.note, str(mistake.details)): mistake.answer for mistake in reversed(question.mistakes)
+                    }.values()
+                )
+                # A class has its favourite mistakes, also where the numbers of its members differ.
+                random.Random(order).shuffle(mistaken)
+                self.wrong[name, number] = self._with_code(exercise, question, judged, [*mistaken[:6], _slip(question)])
+
+    def _with_code(self, exercise, question, judged, answers):
+        from .judging.marking import mark
+
+        found = []
+        for answer in answers:
+            code = code_of(answer, exercise.names) if not callable(answer) else None
+            if code is not None and len(code) < 1500:
+                given = {"outcome": "recorded", "plain": question.to_plain(answer)}
+                expected = mark(question.name, judged, given)
+                found.append((f"{question.variable} = {code}", (expected["outcome"], expected["note"])))
+        return found
+
+
+# --- one notebook -------------------------------------------------------------------------------
+
+
+class _Student:
+    """Works through the exercise and hands it in."""
+
+    def __init__(self, exercise, answers, dice, identity):
+        self.exercise, self.answers, self.dice, self.identity = exercise, answers, dice, identity
+        self.cells = copy.deepcopy(exercise.cells)
+        for cell in self.cells:
+            cell.source = cell.source.replace("me('')", f"me({identity!r})")
+        self.expected = {name: ["not attempted", ""] for name in exercise.questions}
+        self.did = []
+        skill = dice.betavariate(4, 1.6)
+        for part in exercise.parts:
+            self.answer(part, skill)
+
+    def answer(self, part, skill):
+        chance = self.dice.random()
+        first = part.questions[0], self.exercise.variant(part.questions[0], self.identity)
+        if chance > 0.94 and len(part.questions) == 1:
+            return  # left open
+        if chance < skill or len(part.questions) > 1 or not self.answers.wrong[first]:
+            self.solve(part)
+            return
+        name = part.questions[0]
+        options = self.answers.wrong[first]
+        code, outcome = self.dice.choices(options, [2.0**-order for order in range(len(options))])[0]
+        self.put(part, code, {name: list(outcome)})
+
+    def solve(self, part):
+        name = part.questions[0]
+        forms = self.answers.right[name, self.exercise.variant(name, self.identity)]
+        # The author's own way may use what says what may vary, which students do not get.
+        share = 0.4 if len(self.exercise.questions[name]) == 1 else 1
+        if len(part.questions) == 1 and forms and self.dice.random() < share:
+            code, outcome = self.dice.choice(forms)
+            self.put(part, code, {name: list(outcome)})
+        else:
+            self.cells[part.cell].source = self.exercise.solved[part.cell]
+            self.expected.update({name: ["correct", ""] for name in part.questions})
+
+    def put(self, part, code, outcomes):
+        variable = self.exercise.questions[part.questions[0]][0].variable
+        lines = self.cells[part.cell].source.split("\n")
+        blank = next(
+            (order for order, line in enumerate(lines) if line.startswith((f"{variable} = ...", f"def {variable}("))),
+            None,
+        )
+        if blank is None:
+            self.solve(part)
+            return
+        self.cells[part.cell].source = "\n".join(
+            [*lines[:blank], code, *(line for line in lines[blank + 1 :] if "..." not in line)]
+        )
+        self.expected.update(outcomes)
+
+    # -- what happens to notebooks
+
+    def lose_metadata(self):
+        for cell in self.cells:
+            cell.metadata.pop("nbgrader", None)
+
+    def run_out_of_order(self):
+        """Move the first code cell to the end; it ran first all the same."""
+        first = next(order for order, cell in enumerate(self.cells) if cell.cell_type == "code")
+        moved = self.cells.pop(first)
+        self.cells.append(moved)
+        moved.execution_count = 1
+        for count, cell in enumerate((cell for cell in self.cells[:-1] if cell.cell_type == "code"), 2):
+            cell.execution_count = count
+
+    def break_a_cell(self):
+        part = self.dice.choice([part for part in self.exercise.parts if len(part.questions) == 1])
+        self.cells[part.cell].source += "\nprint((unfinished"
+        self.expected[part.questions[0]] = ["not attempted", "missing"]
+        return part
+
+    def check_twice(self):
+        """Copy a cell and its check to the end: the last answer counts, and it is the same."""
+        part = self.dice.choice(self.exercise.parts)
+        self.cells += copy.deepcopy(self.cells[part.cell : part.cell + 2])
+
+    def join_cells(self):
+        """Put an answer and its check into one cell."""
+        for part in sorted(self.exercise.parts, reverse=True):
+            if part.cell + 1 < len(self.cells) and "check(" in self.cells[part.cell + 1].source:
+                self.cells[part.cell].source += "\n" + self.cells.pop(part.cell + 1).source
+
+    def add_cell(self, source):
+        import nbformat
+
+        place = self.dice.choice([part.cell for part in self.exercise.parts])
+        cell = nbformat.v4.new_code_cell(source)
+        cell["id"] = "cell-added"
+        self.cells.insert(place, cell)
+
+    def notebook(self):
+        import nbformat
+
+        for number, cell in enumerate(self.cells):
+            cell["id"] = f"cell-{number}"
+        return nbformat.writes(self.exercise.notebook(self.cells))
+
+
+HABITS = (
+    ("without metadata", 0.08, _Student.lose_metadata),
+    ("out of order", 0.04, _Student.run_out_of_order),
+    ("a broken cell", 0.05, _Student.break_a_cell),
+    ("checked twice", 0.06, _Student.check_twice),
+    ("joined cells", 0.05, _Student.join_cells),
+    (
+        "prints",
+        0.05,
+        lambda student: student.add_cell(
+            "import warnings\nwarnings.warn('careful')\nprint(A_C_N) if 'A_C_N' in globals() else None"
+        ),
+    ),
+)
+
+
+def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="folders"):
+    """Write a class to a folder, and give where its submissions are.
+
+    Parameters
+    ----------
+    out : path
+    students : int
+    seed : int
+    notebooks : list of str
+        The exercises that are joined into the notebook that is handed in; the first of all if none is named.
+    solutions : path, optional
+    layout : {'folders', 'canvas', 'moodle', 'brightspace', 'nbgrader'}
+        How the submissions are handed out.
+    """
+    folder = Path(solutions or find_course().sources)
+    stems = list(notebooks) or [sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != CHAPTERS)[0]]
+    dice = random.Random(f"class {seed}")
+    with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
+        exercise = _Exercise(stems, folder)
+    answers = _Answers(exercise, dice)
+    out = Path(out)
+    out.mkdir(parents=True, exist_ok=True)
+    files, expected = {}, {}
+    hostile = dict(zip(dice.sample(range(students), min(students // 14 or 1, len(HOSTILE))), HOSTILE))
+    left = [number for number in range(students) if number not in hostile]
+    broken = dict(
+        zip(
+            dice.sample(left, min(students // 50, 4)),
+            ("half a file", "two entries of one name", "empty", "no notebook"),
+        )
+    )
+    for number in range(students):
+        student = f"student-{number + 1:03}"
+        # Moodle's worksheet knows a student by the address.
+        work = _Student(exercise, answers, dice, f"{student}@example.org" if layout == "moodle" else student)
+        for name, share, habit in HABITS:
+            if dice.random() < share and number not in hostile:
+                habit(work)
+                work.did.append(name)
+                break
+        if number in hostile:
+            work.add_cell(HOSTILE[hostile[number]])
+            work.did.append(f"hostile: {hostile[number]}")
+        data = work.notebook().encode("utf8")
+        if number in broken:
+            data = {
+                "half a file": data[: len(data) // 2],
+                "two entries of one name": data.replace(b"{", b'{"cells": [], ', 1),
+                "empty": b"",
+                "no notebook": b"PK\x03\x04 a text in another format",
+            }[broken[number]]
+            work.did.append(f"refused: {broken[number]}")
+        files[student] = data
+        expected[student] = {"did": work.did, "questions": work.expected}
+    (out / "expected.json").write_text(json.dumps(expected, indent=1) + "\n", "utf8")
+    (out / "gradebook.csv").write_bytes(
+        _gradebook(layout, list(files), sum(variants[0].worth for variants in exercise.questions.values()))
+    )
+    return LAYOUTS[layout](out, files, "-and-".join(stems))
+
+
+# --- how it is handed out -----------------------------------------------------------------------
+
+
+def _folders(out, files, name):
+    place = out / "submissions"
+    for student, data in files.items():
+        folder = place / student
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / f"{name}.ipynb").write_bytes(data)
+    if "student-001" in files and not (place / "student-000").exists():
+        (place / "student-000").mkdir()
+        os.symlink("../student-001", place / "student-000" / "copied")
+    return place
+
+
+def _nbgrader(out, files, name):
+    place = out / "submitted"
+    for student, data in files.items():
+        folder = place / student / name
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / f"{name}.ipynb").write_bytes(data)
+    return place
+
+
+def _zip(out, entries):
+    place = out / "submissions.zip"
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+        for entry, content in entries.items():
+            info = zipfile.ZipInfo(entry, (2026, 11, 21, 20, 1, 0))
+            info.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(info, content)
+    place.write_bytes(data.getvalue())
+    return place
+
+
+def _numbers(files):
+    """Each student with an invented number."""
+    return [(student, data, 100_000 + number) for number, (student, data) in enumerate(files.items(), 1)]
+
+
+def _canvas(out, files, name):
+    return _zip(
+        out,
+        {
+            f"{student.replace('-', '')}_{'LATE_' if number % 20 == 0 else ''}{number}_{800_000 + number}_{name}"
+            ".ipynb": data
+            for student, data, number in _numbers(files)
+        },
+    )
+
+
+def _moodle(out, files, name):
+    return _zip(
+        out,
+        {
+            f"{student.title().replace('-', ' ')}_{number}_assignsubmission_file_/{name}.ipynb": data
+            for student, data, number in _numbers(files)
+        },
+    )
+
+
+def _brightspace(out, files, name):
+    entries = {"index.html": b"<html></html>"}
+    for student, data, number in _numbers(files):
+        handed_in = datetime.datetime(2026, 11, 21, 20, number % 60)
+        when = f"{handed_in:%b %d, %Y} {handed_in.hour - 12}{handed_in.minute:02} PM"
+        entries[f"{number}-4711 - {student.title().replace('-', ' ')} - {when}/{name}.ipynb"] = data
+    return _zip(out, entries)
+
+
+LAYOUTS = {
+    "folders": _folders,
+    "canvas": _canvas,
+    "moodle": _moodle,
+    "brightspace": _brightspace,
+    "nbgrader": _nbgrader,
+}
+
+
+def _gradebook(layout, students, worth):
+    """The gradebook that the teacher would export, with a student more who handed in nothing."""
+    students = [*students, f"student-{len(students) + 1:03}"]
+    numbered = [
+        (student, student.title().replace("-", " "), 100_000 + number) for number, student in enumerate(students, 1)
+    ]
+    if layout == "moodle":
+        lines = [
+            'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed","Feedback '
+            'comments"'
+        ]
+        lines += [
+            f'"Participant {number}","{name}",{student}@example.org,"Submitted for grading",,{worth}.00,Yes,'
+            for student, name, number in numbered
+        ]
+        return "\ufeff".encode() + "\n".join([*lines, ""]).encode()
+    if layout == "brightspace":
+        lines = [
+            "OrgDefinedId,Username,Last Name,First Name,Exercises Points Grade <Numeric "
+            f"MaxPoints:{worth}>,End-of-Line Indicator"
+        ]
+        lines += [f"#{number},#{student},{name.split()[1]},{name.split()[0]},,#" for student, name, number in numbered]
+        return "\r\n".join([*lines, ""]).encode()
+    lines = [
+        "Student,ID,SIS User ID,SIS Login ID,Section,Exercises (4711),Final Score",
+        f"    Points Possible,,,,,{worth},(read only)",
+    ]
+    lines += [
+        f'"{name.split()[1]}, {name.split()[0]}",{number},S{number},{student},Section 1,,'
+        for student, name, number in numbered
+    ]
+    return "\r\n".join([*lines, ""]).encode()

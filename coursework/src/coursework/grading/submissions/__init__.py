@@ -1,0 +1,1 @@
+"""Handed in: what was handed in, and by whom."""

@@ -1,0 +1,827 @@
+"""What was handed in: notebooks found in a folder or an archive, read strictly, and never written to.
+
+Understood are a folder of notebooks, a folder for each student, nbgrader's ``submitted/student/assignment``,
+repositories of GitHub Classroom, and the archives (packed or unpacked) that Canvas, Moodle, Brightspace and
+Blackboard hand out; in each of them also an archive that a student packed. Everything here was named and written
+by strangers. What is not an honest notebook is refused by its name, with a reason, and the rest goes on: no link
+is followed, nothing is unpacked on disk, nothing is repaired. :mod:`coursework.grading.submissions.identity` says whose
+it is.
+"""
+
+import base64
+import codecs
+import contextlib
+import datetime
+import functools
+import hashlib
+import io
+import itertools
+import json
+import os
+import re
+import stat
+import struct
+import zipfile
+from collections import Counter
+from collections.abc import Callable
+from pathlib import PurePosixPath
+from typing import NamedTuple
+
+from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
+from .pictures import JPEG, PNG, is_picture
+
+MOST_BYTES = 20 << 20  # of one notebook
+MOST_CELLS = 1_000
+MOST_CODE = 1 << 20  # characters in the code cells of one notebook
+MOST_FILES = 200_000
+MOST_VALUES = 1_000_000  # of the JSON of one notebook: each takes up to a hundred bytes of memory
+MOST_BESIDE, MOST_BYTES_BESIDE = 50, 8 << 20  # files that lie beside one notebook, and their bytes
+DEEPEST = 10  # folders within folders
+MOST_UNPACKED = 4 << 30  # bytes of one archive, all files together
+
+#: Files that systems and browsers leave behind: no student handed them in.
+LITTER = (
+    ".git",
+    "__MACOSX",
+    ".DS_Store",
+    "Thumbs.db",
+    "desktop.ini",
+    ".ipynb_checkpoints",
+    ".coursework",
+    "__pycache__",
+)
+INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)  # what Brightspace, nbgrader and Gradescope put there
+TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
+REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
+ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
+MOST_TRIED = 100  # of one question
+#: Pictures that are shown of one notebook, all together.
+MOST_BYTES_OF_PICTURES = 4 << 20
+TRIED = re.compile(r"[0-9a-f]{6}")
+CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
+
+
+#: How a notebook says whose it is, to get the numbers of that student.
+SAYS = re.compile(r"""^[^#\n]*?\b(?:me|student)\(\s*(?P<mark>['"])(?P<who>[^'"\n]{1,200})(?P=mark)\s*,?\s*\)""", re.M)
+
+
+class Refused(NamedTuple):
+    """A file that was handed in and is not graded, and why."""
+
+    file: str
+    student: str
+    why: str
+
+
+class Beside(NamedTuple):
+    """A file that was handed in beside a notebook, for its code to read."""
+
+    name: str
+    digest: str
+    read: Callable
+
+
+class Notebook(NamedTuple):
+    """A notebook that was handed in; its cells are read when they are needed, so that a class needs no memory.
+
+    Attributes
+    ----------
+    file : str
+        Its path in the submissions, as it was named.
+    student : str
+        Who handed it in: by the roster, or as far as the file's name or folder says.
+    identity : dict
+        The numbers and names under which a learning management system knows the student.
+    matched : str
+        How it is known whose it is.
+    digest : str
+        SHA-256 of the bytes that were read.
+    named : list of str
+        The names in its calls of ``check``, and nbgrader's names of its cells.
+    folder : str
+        The folder it lies in, which may be named after its assignment.
+    order : tuple
+        The greater, the newer: what the name declares, then the time of the file.
+    late : bool
+    claim : Claim
+    read : function
+        Gives its bytes.
+    beside : tuple of Beside
+    handed_in : str
+        When, in ISO 8601, as the system says; without a time zone where the system names none.
+    says : str
+        Whose it says that it is, for the numbers of its questions; empty if it does not.
+    """
+
+    file: str
+    student: str
+    identity: dict
+    matched: str
+    digest: str
+    named: list
+    folder: str
+    order: tuple
+    late: bool
+    claim: Claim
+    read: Callable
+    beside: tuple = ()
+    handed_in: str = ""
+    says: str = ""
+
+    @property
+    def cells(self):
+        """``source`` and ``execution_count`` of each code cell.
+
+        Raises
+        ------
+        Unfit
+            It was changed or removed since it was looked at first.
+        """
+        return read_notebook(_unchanged(self))[0]
+
+    @property
+    def remembered(self):
+        """What its outputs remember of the way to an answer: see :func:`remembered_in`."""
+        return remembered_in(_unchanged(self))
+
+    @property
+    def pictures(self):
+        """What its cells drew, as it keeps that: see :func:`pictures_in`."""
+        return pictures_in(_unchanged(self))
+
+    @property
+    def files(self):
+        """The bytes of the files beside it, by name."""
+        return {one.name: _unchanged(one) for one in self.beside}
+
+
+def _unchanged(one):
+    data = one.read()
+    if hashlib.sha256(data).hexdigest() != one.digest:
+        raise Unfit("It was changed while the class was graded.")
+    return data
+
+
+class Unfit(ValueError):
+    """A file cannot be graded; the message says why."""
+
+
+def take_in(path, assignments=(), roster=None, student=None):
+    """Read all that was handed in.
+
+    Parameters
+    ----------
+    path : path
+        A folder, a zip archive or one notebook.
+    assignments : iterable of str
+        Names of assignments, to tell a student's name from an assignment's in the name of a file.
+    roster : Roster, optional
+        Who is in the course. What fits nobody in it, or several, is refused: a person must say whose it is.
+    student : str, optional
+        The one student who handed all of it in.
+
+    Returns
+    -------
+    notebooks : list of Notebook
+    refused : list of Refused
+    """
+    found, refused, files, repositories = [], [], [], set()
+    for name, when, read in _files(os.fspath(path), refused, repositories):
+        if len(files) >= MOST_FILES:
+            refused.append(Refused(name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."))
+            break
+        files.append((name, when, read))
+    contents = {name: read for name, _, read in files}
+    layout = Layout(list(contents), assignments, repositories, roster, lambda name: contents[name](), student)
+    others = {}
+    for name, when, read in files:
+        if name.lower().endswith(".zip"):
+            for inner, data in _inside_archive(name, read, refused):
+                _take(found, others, refused, layout, inner, when, data, name)
+        else:
+            _take(found, others, refused, layout, name, when, read, name)
+    have = {one.claim.source for one in found}
+    for number, one in enumerate(found):  # each in its place: of a large class a second list is felt
+        one = _with_student(one, roster, student, refused)
+        found[number] = one and one._replace(beside=_beside(one, others), handed_in=_when(one, others, layout))
+    notebooks = _without_conflicts([one for one in found if one], roster, refused)
+    for source, beside in others.items():
+        for claim, name, _ in beside:
+            if PurePosixPath(name).name in INDEXES or layout.is_beside_submissions(name):
+                continue
+            # Blackboard writes a text about each attempt, which nobody handed in.
+            of_system = claim and claim.given_by_system and not claim.file
+            if not (of_system or _is_by_the_way(name)) or (claim and source not in have):
+                whose = claim.student if claim else ""
+                read = " The notebook beside it can read it." if source in have else ""
+                refused.append(Refused(name, whose, f"This is no notebook: its name does not end in .ipynb.{read}"))
+    return notebooks, [_of_whom(one, layout, roster) for one in refused]
+
+
+def _of_whom(refused, layout, roster):
+    """A file that was refused, with whose it is where a roster says so: its student did not hand in nothing."""
+    claim = layout.claim(refused.file) if roster else None
+    known = roster.find(claim.keys, claim.place)[0] if claim else None
+    return refused if known is None else refused._replace(student=known)
+
+
+#: nbgrader's file beside what was handed in. Its time zone is UTC unless a course has changed that.
+TIMESTAMP = "timestamp.txt"
+
+
+def _when(one, others, layout):
+    """When a notebook was handed in, as the system says and never a student's file; empty if it says nothing."""
+    if one.claim.handed_in or not layout.is_nbgraders:
+        return one.claim.handed_in
+    place = PurePosixPath(*PurePosixPath(one.file).parts[: len(layout.enclosing) + 2], TIMESTAMP)
+    for _, name, read in others.get(one.claim.source, ()):
+        if PurePosixPath(name) == place:
+            with contextlib.suppress(Unfit, UnicodeDecodeError):
+                return as_time(read()[:200].decode("utf8").strip()) or ""
+    return ""
+
+
+#: How nbgrader, Moodle in English and spreadsheets write times.
+FORMATS = (
+    "%Y-%m-%d %H:%M:%S.%f",
+    "%A, %d %B %Y, %I:%M %p",
+    "%A, %B %d, %Y, %I:%M %p",
+    "%A, %d %B %Y, %H:%M",
+)
+
+
+def as_time(text):
+    """A time as a system writes it, in ISO 8601; ``None`` if it is none.
+
+    >>> as_time("2026-11-21 20:01:00.5 UTC"), as_time("Saturday, 21 November 2026, 8:01 PM")
+    ('2026-11-21T20:01:00.500000+00:00', '2026-11-21T20:01:00')
+    """
+    bare = text.strip()
+    zone = next((zone for zone in (" UTC", " GMT") if bare.endswith(zone)), "")
+    bare = bare.removesuffix(zone)
+    for read in (datetime.datetime.fromisoformat, *(_in_format(one) for one in FORMATS)):
+        with contextlib.suppress(ValueError):
+            found = read(bare)
+            return (found.replace(tzinfo=datetime.UTC) if zone else found).isoformat()
+    return None
+
+
+def _in_format(form):
+    return lambda text: datetime.datetime.strptime(text, form)
+
+
+def _take(found, others, refused, layout, name, when, read, outer):
+    """Look at one file; `outer` is its name, or that of the archive it was packed in, which says whose it is."""
+    claim = layout.claim(outer)
+    if name != outer and claim:
+        claim = claim._replace(file=name.removeprefix(f"{outer}/"))
+    if not name.lower().endswith(".ipynb"):
+        others.setdefault(claim.source if claim else None, []).append((claim, name, read))
+        return
+    if claim is None and layout.is_beside_submissions(name):
+        return
+    if claim is None:
+        refused.append(Refused(name, "", "Its name does not say whose it is, as those of the others do."))
+        return
+    try:
+        data = read()
+        cells, grade_ids = read_notebook(data)
+    except Unfit as error:
+        refused.append(Refused(name, claim.student, str(error)))
+        return
+    named = sorted({*(one for cell in cells for one in CHECK.findall(cell["source"])), *grade_ids})
+    found.append(
+        Notebook(
+            name,
+            claim.student,
+            {},
+            "",
+            hashlib.sha256(data).hexdigest(),
+            _shared_names(tuple(named)),
+            PurePosixPath(name).parent.name,
+            (claim.declared, when),
+            claim.late,
+            claim,
+            read,
+            says=_says(cells),
+        )
+    )
+
+
+def _says(cells):
+    """Whose a notebook says that it is: the last time that it says so."""
+    said = [found["who"] for cell in cells for found in SAYS.finditer(cell["source"]) if found["who"].strip()]
+    return said[-1] if said else ""
+
+
+@functools.lru_cache(1_000)
+def _shared_names(names):
+    """The same list for all that name the same questions: of a hundred thousand notebooks nearly all do."""
+    return list(names)
+
+
+def _with_student(one, roster, student, refused):
+    """The notebook with its student, or ``None`` if nobody knows whose it is."""
+    known = {kind: value for kind, value in one.claim.keys if kind in ("canvas", "moodle", "brightspace", "name")}
+    if "letters" in dict(one.claim.keys):
+        known["name"] = dict(one.claim.keys)["letters"]
+    if student is not None:
+        return one._replace(student=student, matched="as you said", identity=roster.identity(student) if roster else {})
+    if roster is None:
+        return one._replace(matched="as its name or folder says", identity=known if one.claim.given_by_system else {})
+    found, how = roster.find(one.claim.keys, one.claim.place)
+    if found is None:
+        refused.append(Refused(one.file, one.claim.student, f"{how} Whose is it? {NOT_MATCHED}"))
+        return None
+    return one._replace(student=found, matched=how, identity={**known, **roster.identity(found)})
+
+
+NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of the roster."
+
+
+def _without_conflicts(notebooks, roster, refused):
+    """Leave out what two submissions claim to be: one of them may be a classmate's."""
+    first, several = {}, {}
+    for one in notebooks:
+        for identity in _identities(one, roster):
+            if first.setdefault(identity, one.claim.source) != one.claim.source:
+                several[identity] = set(), set()
+    # Nearly all names are claimed once: only of the others is it kept by whom.
+    for one in notebooks if several else ():
+        for identity in several.keys() & set(_identities(one, roster)):
+            sources, students = several[identity]
+            sources.add(one.claim.source)
+            students.add(one.student)
+    unsure = {}
+    for sources, students in several.values():
+        for student in students:
+            unsure.setdefault(student, set()).update(sources)
+    for one in notebooks:
+        if one.student in unsure:
+            sources = ", ".join(sorted(unsure[one.student]))
+            refused.append(
+                Refused(
+                    one.file,
+                    one.student,
+                    f"Two submissions claim to be this student's: {sources}. Neither was graded: whose are they?",
+                )
+            )
+    return [one for one in notebooks if one.student not in unsure]
+
+
+def _identities(one, roster):
+    """Who a notebook claims to be of, unless the person who grades has said so."""
+    if one.matched == "as you said":
+        return ()
+    # A name that only looks the same, or that differs in capitals alone, claims the same. Those of a roster are told
+    # apart by it.
+    return looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)
+
+
+def _numbers(claim):
+    """The number by which the system knows a student: it writes none beside two names."""
+    return [key for key in claim.keys if claim.given_by_system and key[0] in ("canvas", "moodle", "brightspace")]
+
+
+def _beside(one, others):
+    """The files that lie where the notebook lies, or below, by the names that its code would use."""
+    folder, found, total = PurePosixPath(one.claim.file).parent, [], 0
+    for claim, _, read in others.get(one.claim.source, ()):
+        name = PurePosixPath(claim.file)
+        if not name.is_relative_to(folder) or name == folder:
+            continue
+        try:
+            data = read()
+        except Unfit:
+            continue
+        total += len(data)
+        if len(found) >= MOST_BESIDE or total > MOST_BYTES_BESIDE:
+            break
+        found.append(Beside(str(name.relative_to(folder)), hashlib.sha256(data).hexdigest(), read))
+    if one.claim.source.startswith("canvas "):
+        found += _as_named_before(found)
+    return tuple(sorted(found))
+
+
+def _as_named_before(found):
+    """What Canvas numbered because it was handed in again, also by the name that the notebook's code uses."""
+    numbered, names = {}, {one.name for one in found}
+    for one in found:
+        path = PurePosixPath(one.name)
+        again = RESUBMITTED.fullmatch(path.stem)
+        if again and (bare := str(path.with_name(again["stem"] + path.suffix))) not in names:
+            numbered.setdefault(bare, []).append((int(again["number"]), one))
+    return [max(several, key=lambda entry: entry[0])[1]._replace(name=bare) for bare, several in numbered.items()]
+
+
+# --- finding the files --------------------------------------------------------------------------
+
+
+class _Folder:
+    """A folder that is held open for as long as somebody may read from it."""
+
+    def __init__(self, path):
+        self.handle = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+
+    def __del__(self):
+        os.close(self.handle)
+
+
+def _files(path, refused, repositories):
+    """Give the name of each file, its time, and a function that reads it: in a fixed order.
+
+    The names of folders that are repositories of Git are added to ``repositories``.
+    """
+    if os.path.isdir(path):
+        yield from _files_of_folder(path, refused, repositories)
+    elif zipfile.is_zipfile(path):
+        yield from _files_of_archive(path, refused, repositories)
+    elif path.lower().endswith(".zip"):
+        raise Unfit(f"{path} is no zip archive, or a damaged one.")
+    elif os.path.exists(path):
+        folder, name = os.path.split(os.path.abspath(path))
+        held = _Folder(folder)
+        yield name, os.stat(path).st_mtime_ns, lambda: _read_file(name, held.handle)
+    else:
+        raise Unfit(f"There is nothing at {path}.")
+
+
+def _files_of_folder(root, refused, repositories):
+    # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
+    top = _Folder(root)
+    for folder, folders, files, handle in os.fwalk(".", dir_fd=top.handle, follow_symlinks=False):
+        folders.sort()
+        inside = os.path.normpath(folder)
+        if ".git" in folders:
+            repositories.add(_text(inside))
+        for name in sorted(files + folders):
+            full = name if inside == "." else f"{inside}/{name}"
+            if _is_litter(full):
+                continue
+            try:
+                about = os.stat(name, dir_fd=handle, follow_symlinks=False)
+            except OSError as error:
+                refused.append(Refused(_text(full), "", f"It cannot be read: {error.strerror}."))
+                continue
+            if stat.S_ISLNK(about.st_mode):
+                refused.append(Refused(_text(full), "", "This is a link to another place. It was not followed."))
+            elif stat.S_ISREG(about.st_mode):
+                yield _text(full), about.st_mtime_ns, lambda full=full: _read_below(top.handle, full)
+            elif not stat.S_ISDIR(about.st_mode):
+                refused.append(Refused(_text(full), "", "This is no file but a device or a channel."))
+        folders[:] = [name for name in folders if not _is_litter(name)]
+        if folders and inside.count("/") >= DEEPEST:
+            refused.append(Refused(_text(inside), "", "Its folders are nested too deeply to be looked at."))
+            folders.clear()
+
+
+def _text(name):
+    """A file's name as text that can be written: bytes that are no UTF-8 are shown as such."""
+    return os.fsencode(name).decode("utf8", "backslashreplace")
+
+
+def _is_litter(name):
+    return any(part in LITTER or part.startswith(("._", ".~")) for part in name.split("/"))
+
+
+def _read_below(top, name):
+    """Read a file through its folders one by one, following no link."""
+    with contextlib.ExitStack() as stack:
+        handle = top
+        *folders, last = name.split("/")
+        for folder in folders:
+            try:
+                handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC, dir_fd=handle)
+            except OSError as error:
+                raise Unfit(f"It cannot be read: {error.strerror}.") from None
+            stack.callback(os.close, handle)
+        return _read_file(last, handle)
+
+
+def _read_file(name, folder):
+    try:
+        # Not waiting, for what has become a channel in which nobody writes.
+        handle = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, dir_fd=folder)
+    except OSError as error:
+        raise Unfit(f"It cannot be read: {error.strerror}.") from None
+    with open(handle, "rb") as file:
+        if not stat.S_ISREG(os.fstat(handle).st_mode):
+            raise Unfit("This is no file.")
+        return _no_more_than(file.read(MOST_BYTES + 1))
+
+
+def _no_more_than(data):
+    if len(data) > MOST_BYTES:
+        raise Unfit(f"It is larger than {MOST_BYTES >> 20} MB.")
+    return data
+
+
+class _OwnPlace(io.RawIOBase):
+    """A file that is read from a place of its own: a copy of this process reads it too, and does not move this one."""
+
+    def __init__(self, path):
+        self.handle, self.place = os.open(path, os.O_RDONLY | os.O_CLOEXEC), 0
+
+    def readable(self):
+        return True
+
+    def seekable(self):
+        return True
+
+    def seek(self, offset, whence=os.SEEK_SET):
+        start = {os.SEEK_SET: 0, os.SEEK_CUR: self.place, os.SEEK_END: os.fstat(self.handle).st_size}[whence]
+        self.place = start + offset
+        return self.place
+
+    def readinto(self, buffer):
+        data = os.pread(self.handle, len(buffer), self.place)
+        buffer[: len(data)] = data
+        self.place += len(data)
+        return len(data)
+
+    def close(self):
+        if not self.closed:
+            os.close(self.handle)
+        super().close()
+
+
+def _files_of_archive(path, refused, repositories):
+    try:
+        archive = zipfile.ZipFile(_OwnPlace(path))
+    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+        raise Unfit(f"{path} is no zip archive, or a damaged one ({error}).") from None
+    entries = sorted(archive.infolist(), key=lambda entry: entry.filename, reverse=True)
+    repeated = {one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename}
+    # What the archive knows of each is let go one by one: of a hundred thousand it would be half of the memory.
+    archive.filelist.clear()
+    archive.NameToInfo.clear()
+    unpacked = 0
+    while entries:
+        entry = entries.pop()
+        name = entry.filename
+        shown = name.encode("utf8", "backslashreplace").decode("utf8")
+        if "/.git/" in name:
+            repositories.add(shown.partition("/.git/")[0])
+        if entry.is_dir() or _is_litter(name):
+            continue
+        why = _why_not_unpacked(entry, name)
+        if name in repeated:
+            why = "The archive holds this name more than once."
+        unpacked += min(entry.file_size, MOST_BYTES)
+        if not why and unpacked > MOST_UNPACKED:
+            why = f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not read any more."
+        if why:
+            refused.append(Refused(shown, "", why))
+        else:
+            yield name if shown == name else shown, entry.date_time, _Entry(archive, entry)
+
+
+class _Entry:
+    """A function that reads an entry of an archive: no more is kept of it than where it lies."""
+
+    __slots__ = ("archive", "name", "place")
+    FIELDS = ("header_offset", "compress_size", "file_size", "CRC", "compress_type", "flag_bits")
+    LAYOUT = struct.Struct("<QQQLHHq")
+
+    def __init__(self, archive, entry):
+        self.archive, self.name = archive, entry.orig_filename
+        end = getattr(entry, "_end_offset", None)  # by which newer Pythons notice entries that overlap
+        self.place = self.LAYOUT.pack(*(getattr(entry, field) for field in self.FIELDS), -1 if end is None else end)
+
+    def __call__(self):
+        entry = zipfile.ZipInfo(self.name)
+        *values, end = self.LAYOUT.unpack(self.place)
+        for field, value in zip(self.FIELDS, values, strict=True):
+            setattr(entry, field, value)
+        if end >= 0:
+            entry._end_offset = end
+        return _read_entry(self.archive, entry)
+
+
+def _why_not_unpacked(entry, name):
+    parts = name.replace("\\", "/").split("/")
+    if name.startswith(("/", "\\")) or ".." in parts or re.match(r"[A-Za-z]:", name) or "\\" in name:
+        return "Its name leads out of the archive."
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return "This is a link to another place. It was not followed."
+    if entry.flag_bits & 1:
+        return "It is locked with a password."
+    if entry.file_size > MOST_BYTES:
+        return f"It is larger than {MOST_BYTES >> 20} MB."
+    return ""
+
+
+def _read_entry(archive, entry):
+    try:
+        with archive.open(entry) as file:
+            # The size that is declared may be a lie.
+            return _no_more_than(file.read(MOST_BYTES + 1))
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, ValueError, MemoryError) as error:
+        raise Unfit(f"It cannot be unpacked: {str(error)[:100]}") from None
+    except Exception as error:
+        if type(error).__module__ in ("zlib", "lzma", "_lzma", "bz2"):
+            raise Unfit(f"It cannot be unpacked: {str(error)[:100]}") from None
+        raise
+
+
+def _inside_archive(name, read, refused):
+    """The files of an archive that a student packed: their names, and functions that read them."""
+    try:
+        data = read()
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
+    except (Unfit, zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
+        refused.append(Refused(name, "", f"This archive cannot be read: {str(error)[:100]}"))
+        return
+    if len(entries) > MOST_BESIDE or sum(entry.file_size for entry in entries) > MOST_BYTES:
+        refused.append(Refused(name, "", "This archive holds too much to be somebody's work."))
+        return
+    names = Counter(entry.filename for entry in entries)
+    for entry in entries:
+        inner = f"{name}/" + entry.filename.encode("utf8", "backslashreplace").decode("utf8")
+        if entry.is_dir() or _is_litter(entry.filename):
+            continue
+        why = _why_not_unpacked(entry, entry.filename)
+        if names[entry.filename] > 1:
+            why = "The archive holds this name more than once."
+        if why:
+            refused.append(Refused(inner, "", why))
+        else:
+            yield inner, lambda entry=entry: _read_packed(read, entry)
+
+
+def _read_packed(read, entry):
+    with zipfile.ZipFile(io.BytesIO(read())) as archive:
+        return _read_entry(archive, entry)
+
+
+def _is_by_the_way(name):
+    """Whether a file is none that a student handed in for marks: an index, a picture beside a notebook."""
+    path = PurePosixPath(name)
+    return (
+        path.name in ("index.html", "timestamp.txt")
+        or path.suffix.lower()
+        in (
+            ".csv",
+            ".tsv",
+            ".npy",
+            ".npz",
+            ".mat",
+            ".xlsx",
+            ".png",
+            ".jpg",
+            ".jpeg",
+            ".svg",
+            ".md",
+            ".json",
+            ".py",
+            ".yml",
+            ".yaml",
+            ".toml",
+        )
+        or path.name in (".gitignore", ".gitattributes", "LICENSE", "requirements.txt")
+    )
+
+
+# --- reading a notebook -------------------------------------------------------------------------
+
+
+def read_notebook(data):
+    """Give the code cells of a notebook, and nbgrader's names in its metadata.
+
+    Raises
+    ------
+    Unfit
+        These bytes are no notebook; the message says what is the matter.
+    """
+    notebook = _json(data)
+    if not isinstance(notebook, dict) or not ("cells" in notebook or "worksheets" in notebook):
+        raise Unfit("This is no notebook: it has no cells.")
+    version = notebook.get("nbformat", 4)
+    if version not in (3, 4):
+        raise Unfit(f"It is a notebook of version {str(version)[:20]}; versions 3 and 4 can be read.")
+    if version == 3:
+        sheets = notebook.get("worksheets", [])
+        cells = (
+            [cell for sheet in sheets if isinstance(sheet, dict) for cell in _list(sheet.get("cells"))]
+            if isinstance(sheets, list)
+            else []
+        )
+    else:
+        cells = _list(notebook.get("cells"))
+    if len(cells) > MOST_CELLS:
+        raise Unfit(f"It has {len(cells)} cells; at most {MOST_CELLS} are read.")
+    code, grade_ids = [], []
+    for cell in cells:
+        if not isinstance(cell, dict):
+            raise Unfit("This is no notebook: one of its cells is none.")
+        metadata = cell.get("metadata")
+        about = metadata.get("nbgrader") if isinstance(metadata, dict) else None
+        if isinstance(about, dict) and isinstance(about.get("grade_id"), str):
+            grade_ids.append(about["grade_id"][:200])
+        if cell.get("cell_type") == "code":
+            count = cell.get("prompt_number" if version == 3 else "execution_count")
+            code.append(
+                {
+                    "source": _source(cell.get("input" if version == 3 else "source", "")),
+                    "execution_count": count if type(count) is int and 0 < count < 10**9 else None,
+                }
+            )
+    if sum(len(cell["source"]) for cell in code) > MOST_CODE:
+        raise Unfit(f"Its code is longer than {MOST_CODE} characters.")
+    return code, grade_ids
+
+
+def remembered_in(data):
+    """What the replies that a notebook shows remember, by question.
+
+    The number of ``tries``, a few digits of each wrong answer that was ``tried``, and the ``help`` that was had.
+
+    It is the student's to change: who deletes it is not found out.
+    """
+    found = {}
+    if b"coursework-reply" not in data:
+        return found
+    text = data.decode("utf8", "replace").replace('\\"', '"')  # as it stands in the texts of JSON
+    for reply in REPLY.findall(text):
+        about = dict(ABOUT_REPLY.findall(reply))
+        if not {"question", "tries"} <= set(about) or not about["tries"].isdecimal() or len(found) >= MOST_CELLS:
+            continue
+        one = found.setdefault(about["question"], {"tries": 0, "tried": [], "help": ""})
+        one["tried"] = list(dict.fromkeys((*one["tried"], *TRIED.findall(about.get("tried", "")))))[:MOST_TRIED]
+        one["tries"] = max(one["tries"], int(about["tries"][:6]))
+        one["help"] = about.get("help", one["help"])
+    return found
+
+
+def pictures_in(data):
+    """The pictures under each code cell of a notebook, as it was handed in: texts in base64, by the cell's number.
+
+    They are the student's to change, and are for people to look at; what is no picture from end to end is left out.
+    """
+    found, left = {}, MOST_BYTES_OF_PICTURES
+    notebook = _json(data)
+    code = [cell for cell in _list(notebook.get("cells", [])) if isinstance(cell, dict)]
+    code = [cell for cell in code if cell.get("cell_type") == "code"]
+    for number, cell in enumerate(code):
+        outputs = cell.get("outputs")
+        for output in outputs if isinstance(outputs, list) else ():
+            shown = output.get("data") if isinstance(output, dict) else None
+            for kind in (PNG, JPEG):
+                text = shown.get(kind) if isinstance(shown, dict) else None
+                text = "".join(text) if isinstance(text, list) and all(isinstance(one, str) for one in text) else text
+                if not isinstance(text, str) or len(text) > left:
+                    continue
+                with contextlib.suppress(ValueError):
+                    if is_picture(kind, base64.b64decode(text := "".join(text.split()), validate=True)):
+                        found.setdefault(str(number), []).append(f"{kind};base64,{text}")
+                        left -= len(text)
+    return found
+
+
+def _list(value):
+    if not isinstance(value, list):
+        raise Unfit("This is no notebook: its cells are no list.")
+    return value
+
+
+def _source(source):
+    if isinstance(source, list) and all(isinstance(line, str) for line in source):
+        source = "".join(source)
+    if not isinstance(source, str):
+        raise Unfit("This is no notebook: the text of one of its cells is none.")
+    try:
+        source.encode("utf8")
+    except UnicodeEncodeError:
+        raise Unfit("One of its cells holds half of a character.") from None
+    return source
+
+
+def _json(data):
+    if not data.strip():
+        raise Unfit("The file is empty.")
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise Unfit("It is written in UTF-16; notebooks are written in UTF-8.")
+    if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
+        # Only now: signs in texts, such as a long output, are no values.
+        without_texts = TEXT.sub(b"", data)
+        if sum(map(without_texts.count, (b",", b"[", b"{"))) > MOST_VALUES:
+            raise Unfit(f"It is made of more than {MOST_VALUES} parts; no notebook is.")
+    try:
+        return json.loads(data.decode("utf-8-sig"), object_pairs_hook=_no_key_twice)
+    except Unfit:
+        raise
+    except UnicodeDecodeError:
+        raise Unfit("It is not written in UTF-8, as notebooks are.") from None
+    except RecursionError:
+        raise Unfit("It is nested too deeply.") from None
+    except ValueError as error:
+        where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
+        raise Unfit(f"This is no notebook: it is not well-formed JSON{where}.") from None
+
+
+def _no_key_twice(pairs):
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise Unfit("One of its entries has the same name twice, so it can be read in two ways.")
+    return found

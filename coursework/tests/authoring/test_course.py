@@ -1,0 +1,304 @@
+"""A course of somebody else: made, released, tried and handed out without anything of this book."""
+
+import ast
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import venv
+import zipfile
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from trial_course import CELLS, made_in, write_source
+
+import coursework
+from coursework.__main__ import main
+from coursework.authoring.author import AuthorError
+from coursework.authoring.course import find_course
+from coursework.authoring.packing import DISTRIBUTIONS, archive, wheel
+from coursework.authoring.release import release
+from coursework.authoring.trial import trial
+from coursework.checking.update import update
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+EXAMPLE = REPOSITORY / "coursework" / "examples" / "plane-statics"
+
+
+@pytest.fixture(scope="module")
+def statics(tmp_path_factory):
+    place = tmp_path_factory.mktemp("courses") / "plane-statics"
+    main(["new", str(place)])
+    return place
+
+
+def contents(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_a_new_course_is_whole(statics):
+    course = find_course(statics / "exercises")
+    assert course.title == "Plane statics" and course.root == statics
+    names = {str(path.relative_to(statics)) for path in statics.rglob("*") if path.is_file()}
+    assert {"README.md", "course.toml", "tests/test_course.py", ".github/workflows/test.yml"} <= names
+    assert {"solutions/first-steps.ipynb", "exercises/first-steps.ipynb", "exercises/sealed/first-steps.json"} <= names
+    with zipfile.ZipFile(course.archive) as box:
+        inside = set(box.namelist())
+    assert {"exercises/first-steps.ipynb", "exercises/sealed/first-steps.json", "exercises/README.txt"} < inside
+
+
+def test_nothing_is_written_over_by_a_new_course(statics):
+    before = contents(statics)
+    with pytest.raises(SystemExit, match="is there already"):
+        main(["new", str(statics)])
+    assert contents(statics) == before
+
+
+def test_a_release_from_the_wrong_folder_deletes_nothing(tmp_path, monkeypatch, capsys):
+    """`release --sources MINE` in the book's folder once deleted the book's exercises."""
+    write_source(tmp_path / "mine", *CELLS)
+    shutil.copytree(REPOSITORY / "exercises", tmp_path / "exercises")
+    shutil.copytree(REPOSITORY / "src" / "orientation_course" / "sealed", tmp_path / "exercises" / "sealed")
+    (tmp_path / "course.toml").write_text("")
+    before = contents(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit, match=r"is made of no notebook in \S*mine, and neither are \d+ other files"):
+        main(["release", "--sources", "mine"])
+    assert contents(tmp_path) == before
+
+
+def test_one_notebook_is_released_alone(tmp_path):
+    course = made_in(tmp_path)
+    for name in ("trial", "other"):
+        write_source(
+            course.sources,
+            *((kind, text.replace("trial/", f"{name}/"), *tags) for kind, text, *tags in CELLS),
+            name=name,
+        )
+    assert release(course, run=False) == ["other", "trial"]
+    before = contents(tmp_path)
+    for path in (course.exercises / "trial.ipynb", course.sealed / "trial.json"):
+        path.unlink()
+    (course.sealed / "other.json").write_text("untouched")
+    assert release(course, ["trial"], run=False) == ["trial"]
+    assert (course.sealed / "other.json").read_text() == "untouched"
+    (course.sealed / "other.json").write_bytes(before[Path("sealed/other.json")])
+    assert contents(tmp_path) == before
+    with pytest.raises(AuthorError, match="no nothing.ipynb"):
+        release(course, ["nothing"], run=False)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("title = 3", "texts under the names"),
+        ("titel = 'Statics'", "what is 'titel'"),
+        ("title = ", "Invalid value"),
+    ],
+)
+def test_a_course_file_that_is_not_understood(tmp_path, text, says):
+    (tmp_path / "course.toml").write_text(text)
+    with pytest.raises(AuthorError, match=f"course.toml: .*{says}"):
+        find_course(tmp_path)
+
+
+def test_where_there_is_no_course(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit, match="coursework new COURSE"):
+        main(["release"])
+
+
+def test_the_preview_shows_what_students_hear(statics, tmp_path):
+    text = Path(trial(find_course(statics), "first-steps/area", tmp_path / "try.html")).read_text("utf8")
+    for part in (
+        "A triangle has a base",
+        "This is the area of the rectangle",
+        "Draw the rectangle",
+        "Two such triangles",
+    ):
+        assert part in text
+    assert "slope" not in text and "Leaks" not in text
+    assert "<math" in text and "$b$" not in text
+    with pytest.raises(AuthorError, match="first-steps.ipynb has first-steps/area, first-steps/slope"):
+        trial(find_course(statics), "first-steps/none", tmp_path / "try.html")
+
+
+def test_without_the_solutions_students_still_get_everything(statics, tmp_path):
+    published = tmp_path / "published"
+    shutil.copytree(statics, published, ignore=shutil.ignore_patterns("solutions", "build"))
+    course = find_course(published)
+    with zipfile.ZipFile(archive(course)) as ours, zipfile.ZipFile(find_course(statics).archive) as theirs:
+        assert {name: ours.read(name) for name in ours.namelist()} == {
+            name: theirs.read(name) for name in theirs.namelist()
+        }
+    with pytest.raises(AuthorError, match="private repository"):
+        release(course)
+
+
+def test_the_students_package_has_no_grader(tmp_path):
+    names = {name: set(zipfile.ZipFile(wheel(name, tmp_path)).namelist()) for name in DISTRIBUTIONS}
+    assert not any("grading" in name or "authoring" in name for name in names["coursework-checks"])
+    assert "coursework/checking/check.py" in names["coursework-checks"]
+    assert "coursework/grading/execution/sandbox.py" in names["coursework-tools"]
+    packed = {name for found in names.values() for name in found if name.startswith("coursework/")}
+    root = REPOSITORY / "coursework" / "src"
+    assert packed == {
+        path.relative_to(root).as_posix()
+        for path in (root / "coursework").rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+
+
+#: What is imported only where it is there, or only on request: a browser's own modules, a cluster, pictures in replies.
+ON_REQUEST = {"js", "pyodide_js", "distributed"}
+OF_STUDENTS_ON_REQUEST = {"numpy", "latex2mathml"}
+
+
+def test_what_the_packages_import_they_ask_for():
+    """Also without what other packages happen to bring along."""
+    belongs_to = metadata.packages_distributions()
+    for name, (patterns, needs, _) in DISTRIBUTIONS.items():
+        asked = {re.match(r"[a-z0-9-]+", need)[0] for need in needs}
+        if "coursework-checks" in asked:
+            asked |= {re.match(r"[a-z0-9-]+", need)[0] for need in DISTRIBUTIONS["coursework-checks"][1]} | {"mpmath"}
+        allowed = asked | ON_REQUEST | ({"mpmath"} | OF_STUDENTS_ON_REQUEST if name == "coursework-checks" else set())
+        root = REPOSITORY / "coursework" / "src" / "coursework"
+        for path in {path for pattern in patterns for path in root.glob(pattern) if path.suffix == ".py"}:
+            for node in ast.walk(ast.parse(path.read_text("utf8"))):
+                imported = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                if isinstance(node, ast.ImportFrom) and not node.level:
+                    imported = [node.module]
+                for module in {module.partition(".")[0] for module in imported} - set(sys.stdlib_module_names):
+                    brought_by = {one.lower() for one in belongs_to.get(module, [module])}
+                    assert module == "coursework" or brought_by & allowed, (name, path.name, module)
+
+
+def test_a_mended_package_has_another_version(tmp_path):
+    """What students hold is replaced by what is named otherwise: only what is released has the plain version."""
+    shutil.copytree(
+        Path(coursework.__file__).parent, tmp_path / "coursework", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    stated = coursework.__version__
+
+    def git(*arguments):
+        about = {"GIT_COMMITTER_DATE": "2026-12-01T08:00:00Z", "HOME": str(tmp_path), "PATH": os.environ["PATH"]}
+        name = ["-c", "user.name=An author", "-c", "user.email=author@example.org"]
+        subprocess.run(["git", *name, *arguments], cwd=tmp_path, env=about, check=True, capture_output=True)
+
+    def built(place, code="import sys; from coursework.__main__ import main; main(['wheels', sys.argv[1]])"):
+        environment = {**os.environ, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
+        command = [sys.executable, "-c", code, str(tmp_path / "wheels")]
+        subprocess.run(command, env=environment, check=True, capture_output=True, cwd=tmp_path)
+        found = {path.name.split("-")[0]: path for path in (tmp_path / "wheels").iterdir()}
+        versions = {path.name.split("-")[1] for path in found.values()}
+        with zipfile.ZipFile(found["coursework_tools"]) as box:
+            (about,) = (name for name in box.namelist() if name.endswith("METADATA"))
+            assert [
+                f"Requires-Dist: coursework-checks=={version}" in box.read(about).decode() for version in versions
+            ] == [True]
+        kept = tmp_path / "kept" / found["coursework_checks"].name
+        kept.parent.mkdir(exist_ok=True)
+        shutil.copy(found["coursework_checks"], kept)
+        shutil.rmtree(tmp_path / "wheels")
+        return *versions, kept
+
+    git("init", "--quiet")
+    git("add", "coursework")
+    git("commit", "-m", "first")
+    assert built(tmp_path)[0] == f"{stated}.post20261201080000"
+    git("tag", f"coursework-checks-{stated}")
+    assert built(tmp_path)[0] == stated
+    (tmp_path / "coursework" / "grading" / "new.py").write_text("")
+    os.utime(tmp_path / "coursework" / "grading" / "new.py", (1796202000, 1796202000))
+    version, wheel_file = built(tmp_path)
+    assert version == f"{stated}.post20261202090000"
+    # Whoever has installed it, and makes a course with it, hands out just that.
+    with zipfile.ZipFile(wheel_file) as box:
+        box.extractall(tmp_path / "installed")
+    said = subprocess.check_output(
+        [sys.executable, "-c", "import coursework; print(coursework.__version__)"],
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "installed")},
+        cwd=tmp_path / "installed",
+        text=True,
+    )
+    assert said.strip() == version
+
+
+def test_an_update_brings_new_sealed_questions(statics, tmp_path):
+    with zipfile.ZipFile(find_course(statics).archive) as box:
+        box.extractall(tmp_path)
+    work = tmp_path / "exercises"
+    (work / "first-steps.ipynb").write_text("mine")
+    (work / "manifest.json").unlink()  # as it was unpacked before there were manifests
+    (work / "sealed" / "first-steps.json").write_text("older")
+    said = update(find_course(statics).archive, work)
+    assert "replaced    sealed/first-steps.json" in said
+    assert json.loads((work / "sealed" / "first-steps.json").read_text("utf8"))["questions"]
+    assert (work / "first-steps.ipynb").read_text() == "mine" and (work / "first-steps-new-1.ipynb").exists()
+
+
+SOLVE = """
+import sys, nbformat
+from coursework.authoring.source import solved
+notebook = nbformat.read(sys.argv[1], as_version=4)
+for cell in notebook.cells:
+    cell.source = solved(cell.source)
+nbformat.write(notebook, sys.argv[2])
+"""
+
+
+@pytest.fixture(scope="module")
+def outside(tmp_path_factory):
+    """Run Python in an environment that holds coursework and nothing of this book."""
+    place = tmp_path_factory.mktemp("outside")
+    venv.create(place / "environment", with_pip=True)
+    python, environment = place / "environment" / "bin" / "python", {**os.environ, "PYTHONPATH": ""}
+
+    def run(*arguments, folder=place):
+        done = subprocess.run([python, *arguments], cwd=folder, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    wheels = [str(wheel(name, place)) for name in DISTRIBUTIONS]
+    run("-m", "pip", "install", "--quiet", "--constraint", str(REPOSITORY / "constraints.txt"), *wheels, "pytest")
+    assert "orientation" not in run("-m", "pip", "list")
+    return place, run
+
+
+@pytest.mark.long
+def test_from_nothing_to_a_graded_notebook(outside):
+    place, run = outside
+    run("-m", "coursework", "new", "first-course")
+    course = place / "first-course"
+    run("-m", "pytest", "-q", folder=course)
+    run("-m", "coursework", "release", "first-steps", folder=course)
+    marks = graded(run, course, "first-steps")
+    assert marks["ada"] == 6 and marks["ben"] == 0
+
+
+@pytest.mark.long
+def test_a_second_course_with_variants(outside):
+    """Plane statics: thirteen questions, seven of them in variants, with nothing of the book at hand."""
+    place, run = outside
+    course = place / "plane-statics"
+    shutil.copytree(EXAMPLE, course)
+    run("-m", "coursework", "release", folder=course)
+    run("-m", "coursework", "selftest", folder=course)
+    assert len(list((course / "exercises" / "sealed" / "variants").glob("*.json"))) == 45
+    marks = graded(run, course, "equilibrium")
+    assert marks["ada"] == 13 and marks["ben"] == 0
+
+
+def graded(run, course, notebook):
+    """Hand in a solved notebook and an untouched one, and give the points of both."""
+    (course / "handed-in" / "ada").mkdir(parents=True)
+    (course / "handed-in" / "ben").mkdir()
+    run("-c", SOLVE, f"solutions/{notebook}.ipynb", f"handed-in/ada/{notebook}.ipynb", folder=course)
+    shutil.copy(course / "exercises" / f"{notebook}.ipynb", course / "handed-in" / "ben")
+    run("-m", "coursework", "grade", "handed-in", "--out", "marks", folder=course)
+    with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        return {row["student"]: float(row["points"]) for row in csv.DictReader(file)}

@@ -1,0 +1,283 @@
+"""Numbers with their units, orders, lists that are right in part, texts that a person reads, plots of Matplotlib."""
+
+import random
+
+import nbformat
+import pytest
+import sympy as sm
+from seed import SEED
+from sympy.physics import units
+from trial_course import made_in, write_source
+
+from coursework.authoring import author
+from coursework.authoring.attack import attack
+from coursework.authoring.release import release
+from coursework.authoring.selftest import try_question
+from coursework.authoring.source import read_source
+from coursework.checking import questions
+from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.units import PREFIXES, WITH_PREFIX, UnknownUnit, unit
+from coursework.grading.judging import marking
+from coursework.grading.review import Class, application
+
+KNOWN = {
+    "kN m": 1000,
+    "N/mm^2": 1e6,
+    "km/h": 1000 / 3600,
+    "kg·m²/s²": 1,
+    "L/min": 1e-3 / 60,
+    "°": 3.141592653589793 / 180,
+}
+
+
+def make(kind, answer, **about):
+    return author.question("trial/one", kind, answer, **about)
+
+
+def outcome(question, answer):
+    reply = questions.judge(question.name, question.sealed(), to_plain(answer))[0]
+    return reply.outcome, reply.note
+
+
+# --- units ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", KNOWN)
+def test_the_size_of_units_that_are_made_of_others(text):
+    assert float(unit(text).size) == pytest.approx(KNOWN[text], rel=1e-14)
+
+
+def test_units_are_those_of_sympy():
+    """Each named unit against SymPy's own dimensions and factors; powers of a product are sums of exponents."""
+    from sympy.physics import units as theirs
+
+    names = {
+        "N": "newton", "Pa": "pascal", "J": "joule", "W": "watt", "Hz": "hertz", "C": "coulomb", "V": "volt",
+        "F": "farad", "ohm": "ohm", "T": "tesla", "Wb": "weber", "H": "henry", "L": "liter", "bar": "bar",
+        "min": "minute", "h": "hour", "d": "day",
+    }  # fmt: skip
+    base = [theirs.meter, theirs.kilogram, theirs.second, theirs.ampere, theirs.kelvin, theirs.mole, theirs.candela]
+    for ours, name in names.items():
+        converted = theirs.convert_to(getattr(theirs, name), base)
+        exponents = converted.as_powers_dict()
+        assert tuple(exponents.get(one, 0) for one in base) == unit(ours).exponents, ours
+        size = converted.subs(dict.fromkeys(base, 1))
+        assert float(unit(ours).size) == pytest.approx(float(size), rel=1e-14), ours
+    for prefix, power in PREFIXES.items():
+        for name in WITH_PREFIX:
+            if f"{prefix}{name}" not in ("min", "cd", "mol", "h", "d", "T", "Pa", "m"):
+                found = unit(f"{prefix}{name}")
+                assert float(found.size / unit(name).size) == pytest.approx(10.0**power), (prefix, name)
+
+
+@pytest.mark.parametrize("text", ["Nm", "furlong", "N + m", "3 N", "kg m^99"])
+def test_what_is_no_unit(text):
+    with pytest.raises(UnknownUnit):
+        unit(text)
+
+
+MOMENT = {"kind": "measurement", "answer": (sm.Rational(25, 2), "kN m"), "tolerance": 0.01, "relative": 0.001}
+
+
+@pytest.mark.parametrize(
+    ("answer", "expected"),
+    [
+        ((12.5, "kN m"), ("correct", "")),
+        ((12500, "N*m"), ("correct", "")),
+        ([12500, "kg m^2 s^-2"], ("correct", "")),
+        ((12.5 + 0.0224, "kN m"), ("correct", "")),  # 0.01 + 0.001 * 12.5
+        ((12.5 + 0.0226, "kN m"), ("wrong", "rounded too far")),
+        ((12500 - 22.4, "N m"), ("correct", "")),
+        ((12500 - 22.6, "N m"), ("wrong", "rounded too far")),
+        ((12.5, "N m"), ("wrong", "power of ten")),
+        ((-12.5, "kN m"), ("wrong", "opposite")),
+        ((12.5, "kN"), ("wrong", "")),
+        ((12.5, "kN/m"), ("wrong", "the unit of a load")),
+        ((12.5, "kNm"), ("invalid", "unknown unit")),
+        (12.5 * units.kilo * units.newton * units.meter, ("correct", "")),
+        ((12500, units.newton * units.meter), ("correct", "")),
+        (12 * units.kilo * units.joule + 500 * units.newton * units.meter, ("correct", "")),
+        (12.5 * units.newton * units.meter, ("wrong", "power of ten")),
+        (12.5 * units.kilo * units.newton, ("wrong", "")),
+        (12.5, ("invalid", "shape")),
+        ("12.5 kN m", ("invalid", "shape")),
+        (..., ("not attempted", "")),
+    ],
+)
+def test_a_number_with_its_unit(answer, expected):
+    question = make(MOMENT["kind"], MOMENT["answer"], tolerance=0.01, relative=0.001, mistakes={"!": (12.5, "kN/m")})
+    if expected[1] == "the unit of a load":
+        expected = ("wrong", "authored")
+    assert outcome(question, answer) == expected
+
+
+def test_a_number_with_its_unit_is_tried_as_others_are():
+    question = make("measurement", (sm.Rational(3517, 83), "N m"), symbols={})
+    found = try_question(question, budget=0, against_sealed=False)
+    assert found.faults == [] and len(found.forms) > 6 and "kg" not in str(question.public)
+    x = sm.Symbol("x")
+    exact = make("measurement", (3 * x**2, "N m"), symbols={"x": (1, 2)})
+    assert try_question(exact, budget=0, against_sealed=False).faults == []
+    assert outcome(exact, (3000 * x**2, "N mm"))[0] == "correct" and outcome(exact, (3 * x**2, "N"))[0] == "wrong"
+    easy = attack(make("measurement", (12, "N m")), "A force of 3 N at 4 m")
+    assert easy.way.startswith("one small formula, in usual units") and easy.tries < 5000
+    hard = make("measurement", (sm.Rational(3517, 83), "N m"), tolerance=1e-6)
+    assert not attack(hard, "", 2000).way
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"),
+    [
+        (12.5 * units.newton + units.meter, "different units"),
+        (12.5 * units.bit, "`bit` is made of no units"),
+        (sm.sqrt(units.meter), "no product of whole powers"),
+    ],
+)
+def test_a_unit_that_makes_no_sense_is_named(answer, says):
+    with pytest.raises(NotPlain, match=says):
+        to_plain(answer)
+
+
+def test_a_symbol_of_the_name_of_a_unit_is_a_symbol():
+    m = sm.Symbol("m", positive=True)
+    question = make("measurement", (3 * m, "N"), symbols={"m": (1, 2)})
+    assert outcome(question, 3 * m * units.newton) == ("correct", "")
+    assert outcome(question, 0.003 * m * units.kilo * units.newton) == ("correct", "")
+    assert outcome(question, 3 * units.meter * units.newton)[0] == "wrong"
+
+
+def test_a_number_alone_has_no_unit():
+    question = make("expression", sm.Rational(25, 2))
+    reply = question.reply_to(question.to_plain(12.5 * units.newton))
+    assert reply.note == "shape" and "this is a number with a unit" in repr(reply)
+
+
+def test_the_unit_of_an_exam_is_not_told():
+    """What a student receives is the same for another unit."""
+    one, other = (make("measurement", (3, unit), exam=True).sealed() for unit in ("kN m", "mm"))
+    assert one == other
+    reply = questions.judge("trial/one", one, to_plain((3, "kN m")))[0]
+    assert reply.outcome == "recorded"
+    assert questions.judge("trial/one", one, to_plain((3, "kNm")))[0].note == "unknown unit"
+
+
+# --- orders and lists -----------------------------------------------------------------------------
+
+PLANETS = ["Mercury", "Venus", "Earth", "Mars", "Jupiter"]
+
+
+def test_an_order():
+    question = make("order", PLANETS, options=sorted(PLANETS), partial=True)
+    assert try_question(question, budget=0, against_sealed=False).faults == []
+    assert outcome(question, [" " + name.upper() for name in PLANETS]) == ("correct", "")
+    assert outcome(question, PLANETS[::-1]) == ("wrong", "turned round")
+    assert outcome(question, ["Venus", "Mercury", *PLANETS[2:]]) == ("wrong", "two interchanged")
+    assert outcome(question, [PLANETS[0], *PLANETS[:4]]) == ("invalid", "shape")
+    assert attack(question).way.startswith("all orders")
+
+
+def share(question, answer):
+    about = marking.about(question, b"any secret")
+    mark = marking.mark("trial/one", about, {"outcome": "recorded", "plain": to_plain(answer)})
+    return mark["points"], mark["messages"]
+
+
+def test_an_order_that_is_right_in_part_earns_its_share():
+    question = make("order", PLANETS, options=sorted(PLANETS), partial=True, worth=10)
+    assert share(question, PLANETS)[0] == 10
+    points, said = share(question, ["Venus", "Mercury", *PLANETS[2:]])
+    assert points == 8 and said[-1] == "9 of 10 pairs stand in the right order."  # 0.9 beyond one half
+    assert share(question, PLANETS[::-1])[0] == 0
+    alone = make("order", PLANETS, options=sorted(PLANETS), worth=10)
+    assert share(alone, ["Venus", "Mercury", *PLANETS[2:]])[0] == 0
+
+
+def test_who_guesses_a_list_earns_nothing_on_average():
+    chance = random.Random(SEED)
+    right = [chance.random() < 0.5 for _ in range(12)]
+    truths = make("truth values", right, length=12, partial=True, worth=12)
+    assert share(truths, [not right[0], not right[1], not right[2], *right[3:]])[0] == 6  # 9 of 12, beyond 6
+    words = ["N", "N m", "Pa", "N/m"]
+    answer = [chance.choice(words) for _ in range(8)]
+    question = marking.about(make("words", answer, options=words, length=8, partial=True), b"any secret")
+    shares = []
+    for _ in range(600):
+        text = " | ".join(chance.choice(words) for _ in range(8)).lower()
+        _, parts, found = marking.parts_right(question, text)
+        shares.append(found)
+        assert parts == 8
+    assert sum(shares) / len(shares) < 0.1  # never below 0, so a little above it
+    with pytest.raises(author.AuthorError, match="right in part"):
+        make("expression", 3, partial=True)
+
+
+# --- texts that a person reads ---------------------------------------------------------------------
+
+ESSAY = "Two turns about different axes do not commute: " * 3
+RUBRIC = ["says that order matters", "gives an example"]
+
+
+def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
+    question = make("free text", ESSAY, rubric=RUBRIC, worth=4)
+    assert try_question(question).faults == []
+    sealed = question.sealed()
+    assert sealed["lockers"] == "" and "commute" not in str(sealed)
+    reply = questions.judge("trial/one", sealed, to_plain("They do not."))[0]
+    assert (reply.outcome, reply.note) == ("undecided", "for a person") and "3 words" in reply.messages[0]
+    assert outcome(question, "  ")[0] == outcome(question, ...)[0] == "not attempted"
+    assert outcome(question, 3) == ("invalid", "shape")
+    about = marking.about(question, b"any secret")
+    for text, expected in (("They do not.", "undecided"), ("", "not attempted"), (ESSAY, "undecided")):
+        mark = marking.mark("trial/one", about, {"outcome": "recorded", "plain": to_plain(text)})
+        assert (mark["outcome"], mark["points"]) == (expected, 0)
+    assert try_question(make("free text", ESSAY)).faults == ["Nothing says what a person looks for: give a `rubric`."]
+    with pytest.raises(author.AuthorError, match="a person reads"):
+        make("expression", 3, rubric=RUBRIC)
+    with pytest.raises(NotPlain, match="long"):
+        to_plain("x" * 5000)
+
+
+def test_the_rubric_stands_on_the_page_where_a_person_judges(tmp_path):
+    graded = Class(tmp_path)
+    graded.questions = {"trial/one": marking.about(make("free text", ESSAY, rubric=RUBRIC), b"any secret")}
+    assert list(application(graded, "ada", 8000).settings["rubrics"]["trial/one"]) == RUBRIC
+
+
+# --- a plot as a figure ----------------------------------------------------------------------------
+
+
+def test_a_plot_of_matplotlib_is_a_figure_of_a_question(tmp_path):
+    course = made_in(tmp_path)
+    plot = (
+        "import matplotlib.pyplot as plt\nfigure, axes = plt.subplots(figsize=(3, 2))\naxes.plot([0, 1], [0, 2])\n"
+        "plt.close(figure)\ndrawing(figure, 'A line that rises by 2')"
+    )
+    drawn = (
+        "### BEGIN VARIANTS\nimport matplotlib.pyplot as plt\n\n\ndef plot(drawn):\n    figure, axes = plt.subplots()\n"
+        "    axes.plot([0, 1], [0, drawn['slope']])\n    plt.close(figure)\n"
+        "    return drawing(figure, 'A line that rises')\n\n\n"
+        "line = draw('trial/line', count=3, slope=[2, 3, 5], picture=plot)\n### END VARIANTS"
+    )
+    checked = (
+        "check('trial/line', rise)\n### BEGIN HIDDEN TESTS\nquestion('trial/line', kind='expression')\n"
+        "### END HIDDEN TESTS"
+    )
+    write_source(
+        course.sources,
+        ("markdown", "# Trial"),
+        ("code", "from coursework import check, me, variant\nme('')"),
+        ("code", plot, "figure"),
+        ("code", drawn),
+        ("markdown", "{{picture}}\n\nHow steep is it?"),
+        ("code", "### BEGIN SOLUTION\nrise = line.slope\n### END SOLUTION"),
+        ("code", checked),
+        name="trial",
+    )
+    release(course, run=False)
+    cells = nbformat.read(course.exercises / "trial.ipynb", as_version=4).cells
+    (shown,) = (cell.source for cell in cells if "A line that rises by 2" in cell.source)
+    assert shown.startswith('<p><img alt="A line that rises by 2"') and "plt" not in "".join(
+        cell.source for cell in cells
+    )
+    first, again = (read_source(course.sources / "trial.ipynb", 1).questions["trial/line"] for _ in range(2))
+    assert first.public["picture"] == again.public["picture"] and first.public["salt"] == again.public["salt"]

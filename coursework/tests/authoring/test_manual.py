@@ -1,0 +1,85 @@
+"""The manual for authors: its examples are questions that pass, and the replies that it prints are the real ones."""
+
+import csv
+import os
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+from test_course import SOLVE
+from trial_course import write_source
+
+from coursework.authoring.selftest import _judge, try_question
+from coursework.authoring.source import read_source
+
+MANUAL = (Path(__file__).parents[2] / "docs" / "manual.md").read_text("utf8")
+BLOCK = re.compile(r"<!-- (example|reply|the rest of it)(?:: (.*?))? -->\n```(?:python|text)\n(.*?)```", re.S)
+SETUP = "import sympy as sm\nfrom coursework import check, variant\nx, y, F_x, F_y = sm.symbols('x, y, F_x, F_y')"
+TEXT = re.search(r"```text\n(A child .*?)```", MANUAL, re.S)[1]
+
+
+def examples():
+    """Each example with its cells, and the replies that follow it."""
+    found = []
+    for kind, about, text in BLOCK.findall(MANUAL):
+        if kind == "example":
+            found.append((about, [text], []))
+        elif kind == "reply":
+            found[-1][2].append((about, text.rstrip("\n")))
+        else:
+            found[-1][1].extend([TEXT, text])
+    return found
+
+
+@pytest.mark.parametrize("about, cells, replies", [pytest.param(*one, id=one[0]) for one in examples()])
+def test_an_example_is_a_question_that_passes(tmp_path, about, cells, replies):
+    sources = [("code", SETUP), *(("markdown" if text is TEXT else "code", text) for text in cells)]
+    path = write_source(tmp_path, *sources, name="manual")
+    (question,) = read_source(path).questions.values()
+    assert try_question(question, budget=0, against_sealed=False).faults == []
+    names = {}
+    exec(SETUP, names)
+    for wrong, said in replies:
+        assert repr(_judge(question, eval(wrong, names))) == said
+
+
+def test_the_manual_has_examples_of_most_kinds_and_names_all():
+    assert len(examples()) >= 5 and sum(len(replies) for *_, replies in examples()) >= 4
+    from coursework.checking.kinds import KINDS
+
+    for kind in KINDS:
+        assert f"`{kind}`" in MANUAL
+
+
+@pytest.mark.long
+def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_path):
+    """From an empty folder to the marks, as one who has nothing but the manual and the two packages."""
+    blocks = re.findall(r"```console\n(.*?)```", MANUAL, re.S)
+    assert (
+        "venv" in blocks[0] and "new" in blocks[1] and "try" in blocks[2] and "grade" in blocks[3] and len(blocks) == 5
+    )
+    blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(Path(__file__).parents[3])))
+    (rules,) = re.findall(r"```toml\n(time-zone.*?)```", MANUAL, re.S)
+    (tmp_path / "solve.py").write_text(SOLVE)
+    handing_in = (
+        "mkdir -p handed-in/ada handed-in/ben\n"
+        "python ../solve.py solutions/first-steps.ipynb handed-in/ada/first-steps.ipynb\n"
+        "cp exercises/first-steps.ipynb handed-in/ben\n"
+    )
+    (tmp_path / "rules.toml").write_text(rules)
+    script = "\n".join(["set -e", *blocks[:3], handing_in, blocks[3], "cp ../rules.toml .", blocks[4]])
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    environment["PIP_CONSTRAINT"] = str(Path(__file__).parents[3] / "constraints.txt")
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    course = tmp_path / "first-course"
+    assert (course / "build" / "try.html").is_file() and (course / "build" / "exercises.zip").is_file()
+    assert (course / "marks" / "report.html").is_file() and len(
+        list((course / "marks" / "feedback").rglob("*.html"))
+    ) >= 2
+    assert (course / "feedback.zip").is_file() and (course / "marks" / "course" / "course.csv").is_file()
+    with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        points = {row["student"]: float(row["points"]) for row in csv.DictReader(file)}
+    assert points["ada"] > 0 == points["ben"]

@@ -1,0 +1,495 @@
+"""Variants of a question: drawn by rule, sealed one by one, and each student's own found without a server."""
+
+import base64
+import collections
+import copy
+import csv
+import io
+import json
+import re
+import shutil
+import zipfile
+from pathlib import Path
+
+import nbformat
+import pytest
+import sympy
+from trial_course import made_in, write_source
+
+import coursework
+from coursework.authoring.author import AuthorError, solution_code
+from coursework.authoring.packing import archive
+from coursework.authoring.release import release
+from coursework.authoring.source import read_source
+from coursework.authoring.variation import Rule, drawn_in, written
+from coursework.checking import check as check_module
+from coursework.checking import questions, sealing, variants
+from coursework.checking.plain import to_plain
+from coursework.grading.grade import grade
+from coursework.grading.judging import marking
+from coursework.grading.reporting.reports import feedback_of
+from coursework.grading.submissions import intake
+
+NAME = "levers/see-saw"
+TEXT = "## See-saw\n\nA force of ${{force}}$ N acts ${{arm}}$ m from the hinge. Give its moment as `moment`, in N m."
+SOLVED = "### BEGIN SOLUTION\nmoment = lever.force * lever.arm\n### END SOLUTION"
+DRAWN = (
+    "### BEGIN VARIANTS\nlever = draw('levers/see-saw', count=6, force=[20, 30, 45, 65], arm=[2, 3, 7])\n"
+    "### END VARIANTS"
+)
+CHECKED = (
+    "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\nquestion('levers/see-saw', kind='expression', "
+    "mistakes={'Force and arm are multiplied, not added.': lever.force + lever.arm}, "
+    "solution=f'It is ${lever.force} \\\\cdot {lever.arm}$.')\n### END HIDDEN TESTS"
+)
+CELLS = [
+    ("markdown", "# Levers"),
+    ("code", "from coursework import check, me, variant\nme('')"),
+    ("code", DRAWN),
+    ("markdown", TEXT),
+    ("code", SOLVED),
+    ("code", CHECKED),
+    ("markdown", "## Plain"),
+    ("code", "### BEGIN SOLUTION\nplain = 7\n### END SOLUTION"),
+    (
+        "code",
+        "check('levers/plain', plain)\n### BEGIN HIDDEN TESTS\nquestion('levers/plain', kind='expression')\n"
+        "### END HIDDEN TESTS",
+    ),
+]
+
+
+@pytest.fixture(autouse=True)
+def nobody_is_kept(monkeypatch, tmp_path):
+    """Who works in a test is not written down, and not in the next one."""
+    monkeypatch.setattr(variants, "KEPT", tmp_path / "no" / "such" / "me.txt")
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    made = made_in(tmp_path_factory.mktemp("levers"))
+    write_source(made.sources, *CELLS, name="levers")
+    release(made, run=False)
+    return made
+
+
+@pytest.fixture
+def beside(course, monkeypatch, tmp_path):
+    """Work in a folder with the sealed questions of the course beside it."""
+    (tmp_path / "sealed").symlink_to(course.sealed)
+    monkeypatch.chdir(tmp_path)
+    questions.notebook_questions.cache_clear()
+    yield
+    coursework.me("")
+    questions.notebook_questions.cache_clear()
+
+
+def student_with(number):
+    return next(
+        f"{k}@uni.example" for k in range(999) if variants.variant_of(f"{k}@uni.example", "levers/see-saw", 6) == number
+    )
+
+
+def variant(student):
+    return variants.variant_of(student, NAME, 6)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number):
+    coursework.me(student_with(number) if number else "")
+    lever = coursework.variant("levers/see-saw")
+    assert repr(lever) == f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. " + (
+        "Give its moment as moment, in N m."
+    )
+    assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
+    assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
+    assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
+    for other in range(6):
+        given = read_source(course.sources / "levers.ipynb", other).questions["levers/see-saw"].public["given"]
+        right = given["force"] * given["arm"] == lever.force * lever.arm
+        outcome = coursework.check("levers/see-saw", given["force"] * given["arm"]).outcome
+        assert (outcome == "correct") == right
+
+
+def test_the_exercise_notebook_shows_the_variant_and_hides_the_rule(course):
+    notebook = nbformat.read(course.exercises / "levers.ipynb", as_version=4)
+    sources = [cell.source for cell in notebook.cells]
+    assert sources[2] == 'lever = variant("levers/see-saw")\nlever' and sources[3].startswith("moment = ...")
+    assert "draw" not in "".join(sources) and "{{" not in "".join(sources)
+
+
+def test_variants_are_different_fair_and_of_the_students_own(course):
+    numbers = collections.Counter(variants.variant_of(f"student-{k}", "a/b", 16) for k in range(4000))
+    assert set(numbers) == set(range(16)) and min(numbers.values()) > 180
+    same = [
+        variants.variant_of(f"student-{k}", "a/b", 16) == variants.variant_of(f"student-{k}", "a/c", 16)
+        for k in range(2000)
+    ]
+    assert 60 < sum(same) < 200  # one in 16: what one question gives tells nothing of the next
+    drawn = [json.dumps(Rule("a/b", 12, {"x": range(3), "y": range(4)}).parameters(number)) for number in range(12)]
+    assert len(set(drawn)) == 12 and drawn[0] == '{"x": 0, "y": 0}'
+
+
+def test_empty_lockers_are_like_the_others_and_come_again(course):
+    """A second release gives the same; what the first one sealed is all there, and opens as before."""
+    known = sorted(course.sealed.rglob("*.json"))
+    before = {path: path.read_bytes() for path in known}
+    release(course, run=False)
+    assert {path: path.read_bytes() for path in known} == before
+    about = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]
+    data = base64.b85decode(about["lockers"])
+    assert len({data[start : start + 16] for start in range(0, len(data), 16)}) == sealing.count_of(about["lockers"])
+
+
+def test_the_grader_finds_the_same_variant_from_the_roster():
+    for spelling in ("ada@uni.example", " Ada@Uni.example", "ADA@UNI.EXAMPLE\n"):
+        assert variants.variant_of(spelling, "levers/see-saw", 16) == variants.variant_of(
+            "ada@uni.example", "levers/see-saw", 16
+        )
+
+
+def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course, tmp_path):
+    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
+    assert len(found[NAME]["others"]) == 5 and "others" not in found["levers/plain"]
+    for number in (0, 4):
+        student = student_with(number) if number else next(f"{k}" for k in range(99) if not variant(f"{k}"))
+        own, _ = marking.of_student(found, student)
+        for other in range(6):
+            given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public["given"]
+            plain = to_plain(given["force"] * given["arm"])
+            mark = marking.mark(NAME, own[NAME], {"outcome": "recorded", "plain": plain})
+            expected = ("correct", "", 1) if other == number else ("wrong", "other numbers", 0)
+            assert (mark["outcome"], mark["note"], mark["points"]) == expected
+        plain = {"outcome": "recorded", "plain": to_plain(7)}
+        assert marking.mark("levers/plain", own["levers/plain"], plain)["points"] == 1
+        assert marking.asked_of_sandbox(own)[NAME]["given"] == own[NAME]["public"]["given"]
+
+
+def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(variants, "KEPT", Path(".coursework", "me.txt"))
+    try:
+        coursework.me("")
+        assert not list(tmp_path.iterdir()) and variants._identity == ""
+        coursework.me(" Ada@Uni.example")
+        coursework.me("")
+        assert variants._identity == "ada@uni.example" and "those of ada@uni.example" in capsys.readouterr().out
+        coursework.me("ben")  # another one says it anew
+        coursework.me("")
+        assert variants._identity == "ben"
+        (tmp_path / ".coursework" / "me.txt").write_bytes(b"\xff\xfe")
+        coursework.me("")
+        assert variants._identity == ""
+        monkeypatch.chdir(tmp_path / ".coursework")
+        (tmp_path / ".coursework" / ".coursework").write_text("a file where the folder would be")
+        coursework.me("ada")
+        assert variants._identity == "ada"
+    finally:
+        monkeypatch.chdir(tmp_path.parent)
+        monkeypatch.setattr(variants, "_identity", "")
+
+
+# --- siblings: other numbers for one who had help ------------------------------------------------
+
+
+@pytest.fixture
+def recorded(beside, monkeypatch, tmp_path):
+    monkeypatch.setattr(check_module, "PROGRESS", tmp_path / ".coursework" / "progress.json")
+    coursework.me(student_with(2))
+
+
+def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorded):
+    lever = coursework.variant(NAME)
+    assert coursework.check(NAME, lever.force + lever.arm).outcome == "wrong"
+    right = coursework.check(NAME, lever.force * lever.arm)
+    assert right.outcome == "correct" and right.help == "mistake"
+    assert "a mistake was named" in right.messages[0] and f"variant('{NAME}/sibling')" in repr(right)
+    assert right.sibling == f"{NAME}/sibling" and f'data-sibling="{NAME}/sibling"' in right._repr_html_()
+    assert "a sibling earns the rest: levers/see-saw." in repr(coursework.progress())
+    twin = coursework.variant(f"{NAME}/sibling")
+    assert (twin.force, twin.arm) != (lever.force, lever.arm)
+    # The first sibling with a mistake, too: then there is one more, and no third.
+    coursework.check(f"{NAME}/sibling", twin.force + twin.arm)
+    assert f"check('{NAME}/sibling-2'" in repr(coursework.check(f"{NAME}/sibling", twin.force * twin.arm))
+    last = coursework.variant(f"{NAME}/sibling-2")
+    alone = coursework.check(f"{NAME}/sibling-2", last.force * last.arm)
+    assert alone.outcome == "correct" and not alone.help and "in full" in alone.messages[0]
+    assert "a sibling earns" not in repr(coursework.progress()) and "you have tried is right" in repr(
+        coursework.progress()
+    )
+    with pytest.raises(questions.NoSuchQuestion, match="its siblings are levers/see-saw/sibling and"):
+        coursework.check(f"{NAME}/sibling-3", 1)
+    with pytest.raises(questions.NoSuchQuestion, match="it has no other numbers"):
+        coursework.variant("levers/plain/sibling")
+
+
+def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recorded):
+    """The record is of a variant: with an identity the points are still to be earned, and no hint is brought along."""
+    coursework.me(" ")
+    everybody = coursework.variant(NAME)
+    for wrong in (11, 12, 13):
+        coursework.check(NAME, wrong)
+    assert coursework.check(NAME, everybody.force * everybody.arm).help == "hint"
+    assert "tried is right" in repr(coursework.progress())
+    coursework.me(student_with(3))
+    assert "Nothing has been checked" in repr(coursework.progress()) and "no hint yet" in repr(coursework.hint(NAME))
+    first = coursework.check(NAME, 11)
+    assert first.tries == 1 and "Hint:" not in repr(first) and "not right yet" in repr(coursework.progress())
+    lever = coursework.variant(NAME)
+    assert coursework.check(NAME, lever.force * lever.arm).help == ""
+    # Back again: nothing of the first record is lost.
+    variants._identity = ""
+    again = coursework.check(NAME, everybody.force * everybody.arm)
+    assert (again.tries, again.help) == (4, "hint") and "Right with help" in repr(coursework.progress())
+
+
+def test_a_name_that_is_no_text_or_names_a_notebook_is_explained(recorded):
+    for wrong in (None, 3, [1, 2]):
+        with pytest.raises(questions.NoSuchQuestion, match="comes first"):
+            coursework.check(wrong, NAME)
+    with pytest.raises(questions.NoSuchQuestion, match="'levers' is a notebook. Its questions are 'levers/"):
+        coursework.check("levers", 1)
+    with pytest.raises(questions.NoSuchQuestion, match=f"Did you mean '{NAME}'"):
+        coursework.check(NAME.upper(), 1)
+
+
+def test_what_is_no_help_asks_for_no_sibling(recorded):
+    lever = coursework.variant(NAME)
+    coursework.check(NAME, lever.force * lever.arm + 0.001)  # rounded too far
+    right = coursework.check(NAME, lever.force * lever.arm)
+    assert right.outcome == "correct" and not right.help and right.messages == []
+    coursework.check(NAME, lever.force + lever.arm)  # after the right answer nothing is help
+    assert coursework.check(NAME, lever.force * lever.arm).help == ""
+
+
+@pytest.mark.parametrize("way", ["hint", "solution"])
+def test_hints_and_the_worked_solution_are_help(recorded, course, way):
+    lever = coursework.variant(NAME)
+    if way == "hint":
+        for wrong in (11, 12, 13):
+            coursework.check(NAME, wrong)
+    else:
+        code = solution_code(nbformat.read(course.sources / "levers.ipynb", as_version=4))
+        assert f"{NAME}/sibling" in repr(coursework.worked_solution(NAME, code))
+    assert coursework.check(NAME, lever.force * lever.arm).help == way
+
+
+def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_path):
+    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
+    own, _ = marking.of_student(found, student_with(5))
+    chances = own[NAME]["second chances"]
+    assert [one["public"].get("variant", 0) for one in chances.values()] == [0, 1]
+    right = {
+        name: {"outcome": "recorded", "plain": to_plain(given["force"] * given["arm"])}
+        for name, question in {NAME: own[NAME], **chances}.items()
+        for given in [question["public"]["given"]]
+    }
+    first, second = chances
+    missing = {"outcome": "missing"}
+
+    def marked(answers, **helped):
+        remembered = {{"own": NAME, "first": first}[one]: {"tries": 3, "help": had} for one, had in helped.items()}
+        return marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
+
+    for answers, helped, points, note in (
+        ({NAME: right[NAME]}, {}, 1, ""),
+        ({NAME: right[NAME]}, {"own": ""}, 1, ""),
+        ({NAME: right[NAME]}, {"own": "mistake"}, 0.8, "with help"),
+        ({NAME: right[NAME], first: right[first]}, {"own": "hint"}, 1, "by a sibling"),
+        ({NAME: right[NAME], first: right[NAME]}, {"own": "hint"}, 0.8, "with help"),
+        ({NAME: right[NAME], first: right[first]}, {"own": "hint", "first": "mistake"}, 0.8, "with help"),
+        (right, {"own": "hint", "first": "mistake"}, 1, "by a sibling"),
+        ({NAME: missing, first: right[first]}, {"own": "solution"}, 0, "by a sibling alone"),
+        ({NAME: right[NAME], first: right[first]}, {"own": "solution"}, 1, "by a sibling"),
+        ({NAME: missing}, {"own": "solution"}, 0, "missing"),
+        # The answer of one who has the numbers of the third one after one's own.
+        ({NAME: right[NAME], f"{NAME}/sibling-3": right[second]}, {"own": "hint"}, 0.8, "with help"),
+    ):
+        mark = marked(answers, **helped)
+        assert (mark["points"], mark["note"]) == (points, note), (answers, helped)
+    assert marked(right, own="mistake")["tries"] == 3 and marked(right)["tries"] is None
+    own[NAME]["credit"] = {"help": 1}
+    mark = marked({NAME: right[NAME]}, own="mistake")
+    assert mark["points"] == 1 and mark["messages"] == []  # an author who wants help to cost nothing
+    asked = marking.asked_of_sandbox(marking.with_second_chances(own, {first}))
+    assert set(asked) == {NAME, "levers/plain", first} and asked[first]["given"] == chances[first]["public"]["given"]
+
+
+def test_a_notebook_remembers_tries_and_help(recorded):
+    lever = coursework.variant(NAME)
+    shown = [coursework.check(NAME, lever.force + lever.arm), coursework.check(NAME, lever.force * lever.arm)]
+    cells = [
+        nbformat.v4.new_code_cell("check", outputs=[nbformat.v4.new_output("display_data", {"text/html": text})])
+        for text in [one._repr_html_() for one in shown]
+        + ['<div class="coursework-reply" data-question="a" data-tries="x">']
+    ]
+    data = nbformat.writes(nbformat.v4.new_notebook(cells=cells)).encode()
+    found = intake.remembered_in(data)
+    tried = found[NAME].pop("tried")
+    assert found == {NAME: {"tries": 2, "help": "mistake"}} and tried == shown[0].tried == shown[1].tried
+    assert len(tried) == 1 and shown[0].answer.startswith(tried[0])
+    assert intake.remembered_in(b"{}") == {} and intake.remembered_in(b'\xff coursework-reply "') == {}
+
+
+def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
+    """Three hand in: one right at once, one with help, and one with help and then a sibling."""
+    solved = nbformat.read(course.exercises / "levers.ipynb", as_version=4)
+    answer, check_cell = (next(c for c in solved.cells if word in c.source) for word in ("moment =", "check('lev"))
+    answer.source = "moment = lever.force * lever.arm"
+    students = {"ada": student_with(1), "ben": student_with(3), "eve": student_with(4)}
+    for name, student in students.items():
+        notebook = copy.deepcopy(solved)
+        if name != "ada":
+            coursework.me(student)
+            given = coursework.variant(NAME)
+            check_module.PROGRESS.unlink(missing_ok=True)
+            coursework.check(NAME, given.force + given.arm)
+            reply = coursework.check(NAME, given.force * given.arm)
+            cell = next(c for c in notebook.cells if c.source == check_cell.source)
+            cell.outputs = [
+                nbformat.v4.new_output("execute_result", {"text/html": reply._repr_html_()}, execution_count=1)
+            ]
+        if name == "eve":
+            twin = f"twin = variant('{NAME}/sibling')\ncheck('{NAME}/sibling', twin.force * twin.arm)"
+            notebook.cells.append(nbformat.v4.new_code_cell(twin))
+        place = tmp_path / "handed-in" / student
+        place.mkdir(parents=True)
+        nbformat.write(notebook, place / "levers.ipynb")
+    done = grade(tmp_path / "handed-in", tmp_path / "marks", solutions=course.sources, workers=1, show=io.StringIO())
+    assert done["graded"] == 3
+    text = (tmp_path / "marks" / "grades.csv").read_text("utf8")
+    rows = {row["student"]: row for row in csv.DictReader(text.splitlines())}
+    assert [float(rows[student][NAME]) for student in students.values()] == [1, 0.8, 1]
+    report = (tmp_path / "marks" / "report.html").read_text("utf8")
+    assert "Tries" in report and "2 (2 at most, 2 known)" in report
+    page = (tmp_path / "marks" / feedback_of(students["ben"], "levers")).read_text("utf8")
+    assert "2 different answers, as your notebook remembers" in page and "earns the rest" in page
+
+
+def test_an_edition_draws_afresh():
+    rule = Rule("a/b", 4, {"x": range(1000), "y": lambda chance: chance.randint(0, 10**6)})
+    first, exam = ([rule.parameters(number, edition) for number in range(4)] for edition in ("", "exam"))
+    assert not [one for one in first if one in exam]
+    assert first == [rule.parameters(number) for number in range(4)]
+
+
+def test_salts_differ_so_that_a_guess_serves_one_variant(course):
+    salts = [
+        read_source(course.sources / "levers.ipynb", k).questions["levers/see-saw"].public["salt"] for k in range(6)
+    ]
+    assert len(set(salts)) == 6
+
+
+def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(course, tmp_path):
+    with zipfile.ZipFile(archive(course)) as box:
+        names = {name for name in box.namelist() if "/variants/" in name}
+    assert names == {f"exercises/sealed/variants/levers-{k}.json" for k in range(1, 6)}
+    shutil.copytree(course.root, tmp_path / "again")
+    again = made_in(tmp_path / "again")
+    (again.sealed / "variants" / "levers-extra-5.json").write_text("of another notebook")
+    write_source(
+        again.sources, *((kind, text.replace("count=6", "count=3")) for kind, text, *_ in CELLS), name="levers"
+    )
+    release(again, run=False)
+    assert sorted(path.name for path in (again.sealed / "variants").iterdir()) == [
+        "levers-1.json",
+        "levers-2.json",
+        "levers-extra-5.json",
+    ]
+
+
+def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
+    """Their pages follow upon those of the first variant, which another machine's numbers had made others."""
+    made = made_in(tmp_path)
+    solved = SOLVED.replace("moment =", "import os\nmoment = float(os.environ['MOVED_BY']) +")
+    write_source(made.sources, *((kind, solved if text == SOLVED else text) for kind, text in CELLS), name="levers")
+    monkeypatch.chdir(tmp_path)
+    try:
+        for moved in (0, 1e-4, 2e-4, 3e-4):
+            monkeypatch.setenv("MOVED_BY", str(moved))
+            release(made, run=False)
+            for number in range(6):
+                questions.notebook_questions.cache_clear()
+                coursework.me(student_with(number) if number else "")
+                lever = coursework.variant("levers/see-saw")
+                assert coursework.check("levers/see-saw", lever.force * lever.arm + moved).outcome == "correct"
+                assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
+    finally:
+        coursework.me("")
+        questions.notebook_questions.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("count=6", "count=13", "there are 12 different variants; 13 are wanted"),
+        ("lever = draw", "draw", "stands one `name = draw"),
+    ],
+)
+def test_an_author_is_told(tmp_path, old, new, says):
+    path = write_source(tmp_path, *((kind, text.replace(old, new)) for kind, text, *_ in CELLS), name="levers")
+    with pytest.raises(AuthorError, match=says):
+        read_source(path, 12)
+
+
+def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
+    """Of 2 N at 2 m the sum is the product: one variant in which a mistake gives the right answer."""
+    made = made_in(tmp_path)
+    drawn = DRAWN.replace("20, 30, 45, 65", "3, 2").replace("2, 3, 7", "3, 2").replace("count=6", "count=4")
+    write_source(made.sources, *((kind, drawn if text == DRAWN else text) for kind, text, *_ in CELLS), name="levers")
+    with pytest.raises(AuthorError, match=r"levers/see-saw, variant \d, {'force': 2, 'arm': 2}: This authored mistake"):
+        release(made, run=False)
+
+
+PICTURED = [
+    ("markdown", "# Levers"),
+    ("code", "from coursework import check, me, variant\nme('')"),
+    (
+        "code",
+        "### BEGIN VARIANTS\nclass Drawn:\n    def __init__(self, force):\n"
+        "        self.alt = f'A beam & {force} arrows'\n"
+        "    def picture(self):\n        return f'<svg width=\"9\">{self.alt}</svg>'\n\n\n"
+        "lever = draw('levers/see-saw', count=3, force=[2, 5, 6], "
+        "picture=lambda drawn: Drawn(drawn['force']))\n### END VARIANTS",
+    ),
+    ("markdown", "{{picture}}\n\nHow many arrows?"),
+    ("code", "### BEGIN SOLUTION\nmoment = lever.force\n### END SOLUTION"),
+    (
+        "code",
+        "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\nquestion('levers/see-saw', kind='expression')\n"
+        "### END HIDDEN TESTS",
+    ),
+]
+
+
+def test_a_picture_differs_from_variant_to_variant(tmp_path, monkeypatch):
+    made = made_in(tmp_path)
+    write_source(made.sources, *PICTURED, name="levers")
+    release(made, run=False)
+    monkeypatch.chdir(made.root)
+    questions.notebook_questions.cache_clear()
+    seen = set()
+    try:
+        for number in range(3):
+            student = next(f"s{k}" for k in range(99) if variants.variant_of(f"s{k}", "levers/see-saw", 3) == number)
+            coursework.me(student)
+            lever = coursework.variant("levers/see-saw")
+            data = re.search(
+                r'<p><img alt="A beam &amp; (\d) arrows" width="9" src="data:[^,]+,(.*?)"></p>', lever._repr_markdown_()
+            )
+            assert f"{data[1]} arrows</svg>" in base64.b64decode(data[2]).decode() and data[1] == str(lever.force)
+            assert repr(lever) == f"A beam & {lever.force} arrows\n\nHow many arrows?"
+            assert coursework.check("levers/see-saw", lever.force).outcome == "correct"
+            seen.add(lever.force)
+    finally:
+        coursework.me("")
+        questions.notebook_questions.cache_clear()
+    assert seen == {2, 5, 6}
+
+
+def test_parameters_are_shown_in_a_text():
+    x = sympy.Symbol("x")
+    assert variants.shown("{{a}} and ${{b}}$, {{c}}; {{d}}", written({"a": "up", "b": x**2 / 3, "c": [1, 2]})) == (
+        r"up and $\frac{x^{2}}{3}$, 1, 2; {{d}}"
+    )
+    assert drawn_in("x = 1") is None and drawn_in(DRAWN) == ("lever", "levers/see-saw")

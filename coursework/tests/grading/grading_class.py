@@ -1,0 +1,116 @@
+"""A small course for the tests of grading: notebooks with solutions, and students who work on them."""
+
+import copy
+
+import nbformat
+
+SOURCES = {
+    "turns": [
+        ("markdown", "# Exercises: turns"),
+        (
+            "code",
+            "import sympy as sm\n\nfrom coursework import check\n\ntheta, alpha, beta = sm.symbols('theta, alpha, "
+            "beta')",
+        ),
+        (
+            "code",
+            "### BEGIN SOLUTION\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, "
+            "-sm.sin(theta), sm.cos(theta)]])\n### END SOLUTION",
+        ),
+        (
+            "code",
+            "check('turns/about-x', A_C_N)\n### BEGIN HIDDEN TESTS\nquestion('turns/about-x', kind='rotation "
+            "matrix', frames=('A', 'N'), "
+            "symbols='theta', turns=[('x', theta)], worth=2, credit={'transposed': 0.5})\n### END HIDDEN TESTS",
+        ),
+        ("code", "### BEGIN SOLUTION\nsine = sm.sin(alpha + beta)\n### END SOLUTION"),
+        (
+            "code",
+            "check('turns/sum', sine)\n### BEGIN HIDDEN TESTS\nquestion('turns/sum', kind='expression', "
+            "symbols='alpha beta', worth=1)\n### END HIDDEN TESTS",
+        ),
+        ("code", "### BEGIN SOLUTION\ndef doubled(x):\n    return 2*x\n### END SOLUTION"),
+        (
+            "code",
+            "check('turns/doubled', doubled)\n### BEGIN HIDDEN TESTS\nquestion('turns/doubled', kind='function', "
+            "calls=[[1.5], [-2.0]], "
+            "result='expression', worth=3)\n### END HIDDEN TESTS",
+        ),
+    ],
+    "axes": [
+        ("code", "import sympy as sm\n\nfrom coursework import check\n\nq = sm.symbols('q')"),
+        ("code", "### BEGIN SOLUTION\nangle = sm.pi/6\n### END SOLUTION"),
+        (
+            "code",
+            "check('axes/angle', angle)\n### BEGIN HIDDEN TESTS\nquestion('axes/angle', kind='expression', "
+            "quantity='angle', worth=1)\n### END HIDDEN TESTS",
+        ),
+        ("code", "### BEGIN SOLUTION\nlength = sm.sqrt(3)*q\n### END SOLUTION"),
+        (
+            "code",
+            "check('axes/length', length)\n### BEGIN HIDDEN TESTS\nquestion('axes/length', kind='expression', "
+            "symbols='q', worth=1)\n### END HIDDEN TESTS",
+        ),
+    ],
+}
+RIGHT = {
+    "turns/about-x": "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), "
+    "sm.cos(theta)]])",
+    "turns/sum": "sine = sm.sin(alpha)*sm.cos(beta) + sm.cos(alpha)*sm.sin(beta)",
+    "turns/doubled": "doubled = lambda x: x + x",
+    "axes/angle": "angle = 0.523599",
+    "axes/length": "length = sm.sqrt(3*q**2)*sm.sign(q)",
+}
+SETUP = {"turns": SOURCES["turns"][1][1], "axes": SOURCES["axes"][0][1]}
+
+
+def notebook(cells):
+    """A notebook of cells: pairs of a kind and a source, or sources of code."""
+    made = nbformat.v4.new_notebook()
+    for number, cell in enumerate(cells):
+        kind, source = cell if isinstance(cell, tuple) else ("code", cell)
+        new = nbformat.v4.new_code_cell(source) if kind == "code" else nbformat.v4.new_markdown_cell(source)
+        new["id"] = f"cell-{number}"
+        made.cells.append(new)
+    return made
+
+
+def write_sources(folder, changes=()):
+    """Write the notebooks with solutions; ``changes`` are pairs of texts to exchange."""
+    folder.mkdir(exist_ok=True)
+    for name, cells in SOURCES.items():
+        changed = copy.deepcopy(cells)
+        for before, after in changes:
+            changed = [(kind, source.replace(before, after)) for kind, source in changed]
+        nbformat.write(notebook(changed), folder / f"{name}.ipynb")
+    return folder
+
+
+def variable(name):
+    return {
+        "turns/about-x": "A_C_N",
+        "turns/sum": "sine",
+        "turns/doubled": "doubled",
+        "axes/angle": "angle",
+        "axes/length": "length",
+    }[name]
+
+
+def handed_in(assignment="turns", also=(), **answers):
+    """A student's notebook: right, but for the answers that are given by the last part of their question's name.
+
+    ``also`` are cells that come last.
+    """
+    cells = [SETUP[assignment]]
+    for name, right in RIGHT.items():
+        if name.startswith(f"{assignment}/"):
+            cells.append(answers.get(name.partition("/")[2].replace("-", "_"), right))
+            cells.append(f"check('{name}', {variable(name)})")
+    return notebook([*cells, *also])
+
+
+def put(folder, student, made, name="turns.ipynb"):
+    (folder / student).mkdir(parents=True, exist_ok=True)
+    path = folder / student / name
+    path.write_text(made if isinstance(made, str) else nbformat.writes(made), "utf8")
+    return path

@@ -1,0 +1,196 @@
+"""The same grading on a Dask cluster: no byte differs, and a captured worker reaches nobody but itself."""
+
+import contextlib
+import io
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+
+import psutil
+import pytest
+from grading_class import handed_in, put, write_sources
+
+from coursework.grading.execution.sandbox import Limits
+from coursework.grading.grade import grade
+
+distributed = pytest.importorskip("distributed")
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.filterwarnings("ignore"),
+]
+LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+
+
+@contextlib.contextmanager
+def cluster(folder, workers=1, preload=None):
+    """The scheduler and workers of a cluster, in processes of their own: its address and its processes."""
+    place = folder / "scheduler.json"
+    address = ["--scheduler-file", str(place)]
+    local = ["--host", "127.0.0.1", "--no-dashboard"]
+    commands = [["scheduler", *address, *local, "--port", "0"]]
+    loads = ["--preload", str(preload)] if preload else []
+    commands += [["worker", *address, *local, "--nthreads", "1", "--local-directory", str(folder), *loads]] * workers
+    processes = [
+        subprocess.Popen([sys.executable, "-m", "dask", *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for command in commands
+    ]
+    try:
+        while not place.exists() or not place.read_text().endswith("}"):
+            assert processes[0].poll() is None
+        yield json.loads(place.read_text())["address"], processes
+    finally:
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.wait()
+
+
+@pytest.fixture
+def submissions(tmp_path):
+    """The notebooks of a few students."""
+    for number in range(6):
+        put(tmp_path / "submissions", f"student-{number}", handed_in(sum=f"sine = {number}*sm.sin(alpha + beta)"))
+    put(tmp_path / "submissions", "leaves", handed_in(sum="import os\nos._exit(0)"))
+    return tmp_path / "submissions"
+
+
+@pytest.fixture
+def solutions(tmp_path):
+    return write_sources(tmp_path / "solutions")
+
+
+def graded(submissions, solutions, out, scheduler=None):
+    return grade(submissions, out, solutions=solutions, limits=LIMITS, scheduler=scheduler, show=io.StringIO())
+
+
+def contents(folder):
+    """Every file that depends on nothing but what was handed in."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name not in ("run.log", "lock")
+    }
+
+
+@pytest.mark.long
+def test_a_cluster_that_loses_a_worker_changes_no_byte(submissions, solutions, tmp_path):
+    here, there = tmp_path / "here", tmp_path / "there"
+    graded(submissions, solutions, here)
+    lost, over = [], threading.Event()
+
+    def lose_a_worker():
+        while not over.wait(0.01):
+            if list((there / "records").glob("*/*.json")):
+                # The command that was started waits for the worker, which is below it.
+                victims = [processes[1], *psutil.Process(processes[1].pid).children(recursive=True)]
+                lost.extend(victims)
+                for victim in victims:
+                    with contextlib.suppress(psutil.NoSuchProcess):
+                        victim.send_signal(signal.SIGKILL)
+                return
+
+    with cluster(tmp_path, workers=2) as (address, processes):
+        killer = threading.Thread(target=lose_a_worker)
+        killer.start()
+        try:
+            said = graded(submissions, solutions, there, address)
+        finally:
+            over.set()
+            killer.join()
+    assert lost and said["graded"] == 7
+    assert contents(there) == contents(here)
+
+
+HOSTILE = """
+import os
+from pathlib import Path
+from coursework.grading.execution import cluster
+
+class Evil:
+    def __reduce__(self):
+        # Whoever unpickles this leaves a file that is called after its process, and gets an honest error.
+        return eval, ("open({folder!r} + '/' + str(__import__('os').getpid()), 'w').close() or ValueError('x')",)
+
+class EvilError(Exception):
+    def __reduce__(self):
+        return Evil().__reduce__()
+
+def run_job(job, name):
+    {deed}
+
+cluster.run_job = run_job
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("deed", ["return Evil()", "raise EvilError", "return [b'x', Evil()]"])
+def test_a_captured_worker_runs_nothing_here(submissions, solutions, tmp_path, deed):
+    touched = tmp_path / "touched"
+    touched.mkdir()
+    preload = tmp_path / "hostile.py"
+    preload.write_text(HOSTILE.format(folder=str(touched), deed=deed))
+    with cluster(tmp_path, preload=preload) as (address, _):
+        with pytest.raises(ValueError, match="sent something else than a result"):
+            graded(submissions, solutions, tmp_path / "out", address)
+    assert str(os.getpid()) not in os.listdir(touched)
+    assert not list((tmp_path / "out" / "records").glob("*/*"))
+
+
+@pytest.mark.long
+def test_a_lost_scheduler_is_said_and_nothing_is_lost(submissions, solutions, tmp_path, monkeypatch):
+    from coursework.grading.execution import cluster as running
+
+    monkeypatch.setattr(running, "CONNECT_WITHIN", "8s")  # it is given up after as long
+    # The last of all by its name: it is at work when the scheduler is lost, and not yet recorded.
+    put(submissions, "takes-long", handed_in(sum="import time\ntime.sleep(20)\nsine = 0"))
+    out, over = tmp_path / "out", threading.Event()
+
+    def lose_the_scheduler():
+        while not over.wait(0.01):
+            if len(list((out / "records").glob("*/*.json"))) >= 2:
+                # The command that was started may wait for the scheduler, which is below it.
+                for victim in [processes[0], *psutil.Process(processes[0].pid).children(recursive=True)]:
+                    with contextlib.suppress(psutil.NoSuchProcess):
+                        victim.kill()
+                return
+
+    with cluster(tmp_path) as (address, processes):
+        killer = threading.Thread(target=lose_the_scheduler)
+        killer.start()
+        try:
+            with pytest.raises(ValueError, match="scheduler at .* was lost"):
+                graded(submissions, solutions, out, address)
+        finally:
+            over.set()
+            killer.join()
+    kept = len(list((out / "records").glob("*/*.json")))
+    assert kept >= 2
+    put(submissions, "takes-long", handed_in())
+    assert graded(submissions, solutions, out) == {"graded": 8 - kept, "kept": kept, "refused": 0}
+
+
+def test_no_pickle_is_read_while_a_cluster_is_used():
+    from distributed import client, core, protocol
+
+    from coursework.grading.execution.cluster import no_pickles
+
+    harmless = pickle.dumps(ValueError("x"))
+    with no_pickles():
+        for loads in (protocol.pickle.loads, client.loads, client.pickle.loads):
+            with pytest.raises(TypeError, match="refused"):
+                loads(harmless)
+            assert loads(pickle.dumps([b"plain", 1.5, None])) == [b"plain", 1.5, None]
+        assert core.clean_exception(harmless)[1].args == (harmless,)
+    assert isinstance(protocol.pickle.loads(harmless), ValueError) and client.pickle is pickle
+
+
+def test_a_cluster_that_is_not_there_is_said(submissions, solutions, tmp_path, monkeypatch):
+    from coursework.grading.execution import cluster
+
+    monkeypatch.setattr(cluster, "CONNECT_WITHIN", "0.5s")
+    with pytest.raises(ValueError, match="no Dask scheduler to be reached at tcp://127.0.0.1:1"):
+        graded(submissions, solutions, tmp_path / "out", "tcp://127.0.0.1:1")

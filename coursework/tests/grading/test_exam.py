@@ -1,0 +1,103 @@
+"""Questions of an exam: nothing that a student has tells whether an answer is right, and the grader marks it."""
+
+import io
+import json
+
+import pytest
+import sympy as sm
+from grading_class import notebook, put
+from trial_course import SETUP, SOLUTION, made_in, write_source
+
+from coursework.authoring import release, selftest
+from coursework.checking import check as checks
+from coursework.checking import questions
+from coursework.grading.grade import grade
+from coursework.grading.store import Store
+
+HIDDEN = """### BEGIN HIDDEN TESTS
+question('trial/about-x', kind='rotation matrix', frames=('A', 'N'), symbols='theta', turns=[('x', theta)],
+         worth=2, credit={'transposed': 0.5}, exam=True, hints={'transposed': ['Which way round?']},
+         solution='The axis is shared.')
+### END HIDDEN TESTS"""
+theta = sm.symbols("theta")
+RIGHT = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]])
+
+
+def released(folder, solution=SOLUTION, hidden=HIDDEN):
+    folder.mkdir(exist_ok=True)
+    write_source(
+        folder / "sources", ("code", SETUP), ("code", solution), ("code", f"check('trial/about-x', A_C_N)\n{hidden}")
+    )
+    course = made_in(folder)
+    release.release(course, run=False)
+    return course
+
+
+@pytest.fixture
+def exam(tmp_path, monkeypatch):
+    course = released(tmp_path)
+    monkeypatch.chdir(course.exercises)
+    (course.exercises / "sealed").symlink_to(course.sealed)
+    questions.notebook_questions.cache_clear()
+    yield course
+    questions.notebook_questions.cache_clear()
+
+
+def test_what_students_receive_would_be_the_same_with_another_answer(tmp_path):
+    other = SOLUTION.replace("[0, -working", "[0, 0*working").replace("[0, sm.cos(theta), working]", "[0, 1, 0*theta]")
+    assert other != SOLUTION
+    plain = HIDDEN.replace("turns=[('x', theta)],", "")
+    first, second = (
+        (released(tmp_path / name, solution, plain).sealed / "trial.json").read_bytes()
+        for name, solution in (("first", SOLUTION), ("second", other))
+    )
+    assert first == second
+    (sealed,) = json.loads(first)["questions"].values()
+    assert sealed["exam"] and sealed["lockers"] == "" and not {"pages", "ladder", "every symbol"} & set(sealed)
+    # The same question with a check is another file for another answer.
+    local = plain.replace("exam=True, ", "")
+    assert (
+        len(
+            {
+                (released(tmp_path / f"{n}", one, local).sealed / "trial.json").read_bytes()
+                for n, one in enumerate((SOLUTION, other))
+            }
+        )
+        == 2
+    )
+
+
+def test_the_check_takes_an_answer_down_and_tells_nothing_of_it(exam):
+    replies = [checks.check("trial/about-x", answer) for answer in (RIGHT, RIGHT.T, RIGHT.subs(theta, 2 * theta))]
+    assert {reply.outcome for reply in replies} == {"recorded"} and len({str(reply) for reply in replies}) == 1
+    assert "marked later" in replies[0].messages[0]
+    assert checks.check("trial/about-x", 2 * RIGHT).outcome == "invalid"
+    assert checks.check("trial/about-x", ...).outcome == "not attempted"
+    assert checks.check("trial/about-x", RIGHT).outcome == "recorded"
+    assert "Taken down, and marked later: trial/about-x" in str(checks.progress())
+    assert "no hint" in str(checks.hint("trial/about-x"))
+
+
+def test_an_exam_counts_as_run_where_nbgrader_looks_for_errors(exam, monkeypatch):
+    monkeypatch.setenv("NBGRADER_EXECUTION", "autograde")
+    assert checks.check("trial/about-x", RIGHT.T).outcome == "recorded"
+
+
+def test_the_selftest_is_content_and_finds_nothing_to_guess(exam):
+    source = release.read_source(exam.sources / "trial.ipynb")
+    found = selftest.try_question(source.questions["trial/about-x"])
+    assert found.faults == [] and not found.attack.way
+    assert [note for note, _ in found.mistakes if note == "transposed"]
+
+
+def test_the_grader_marks_what_the_check_only_took_down(exam, tmp_path):
+    for student, answer in (("right", RIGHT), ("turned", RIGHT.T), ("wrong", sm.eye(3))):
+        cells = [SETUP, f"A_C_N = sm.sympify({str(answer.tolist())!r})", "check('trial/about-x', A_C_N)"]
+        put(tmp_path / "handed-in", student, notebook(cells), "trial.ipynb")
+    grade(tmp_path / "handed-in", tmp_path / "out", solutions=exam.sources, show=io.StringIO())
+    marks = {record["student"]: record["marks"]["trial/about-x"] for record in Store(tmp_path / "out").all()}
+    assert [(marks[name]["outcome"], marks[name]["points"]) for name in ("right", "turned", "wrong")] == [
+        ("correct", 2),
+        ("wrong", 1),
+        ("wrong", 0),
+    ]

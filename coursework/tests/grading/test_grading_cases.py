@@ -1,0 +1,450 @@
+"""What a student was asked is kept beside the answer: a mended question takes nobody's marks by chance."""
+
+import io
+import json
+import re
+import shutil
+from types import SimpleNamespace
+
+import nbformat
+import pytest
+import sympy as sm
+from grading_class import notebook, put
+
+from coursework.__main__ import main
+from coursework.checking import evaluate
+from coursework.checking.plain import read_plain, to_plain
+from coursework.checking.variants import siblings_of, variant_of
+from coursework.grading.execution import isolation
+from coursework.grading.execution.sandbox import Limits
+from coursework.grading.grade import NothingToGrade, grade, regrade
+from coursework.grading.judging import judge as judging
+from coursework.grading.judging import marking, secret
+from coursework.grading.judging.cases import Case, Contracts, variants_of
+from coursework.grading.judging.ledger import CUT, Collision, Ledger
+from coursework.grading.judging.marking import questions_of
+from coursework.grading.review import Class
+from coursework.grading.store import Store
+from coursework.grading.submissions import pictures
+
+LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+WEIGHTS = [12, 25, 31, 44, 57, 68, 73, 89]
+NAME = "beams/load"
+STUDENTS = [f"student-{number:02}" for number in range(14)]
+
+
+def beams(weights, calls="[[1.5], [-2.0], [0.25]]"):
+    """A notebook with solutions: a question with a variant for each weight, and a function."""
+    return notebook(
+        [
+            "import sympy as sm\nfrom coursework import check, me, variant\nme('')",
+            ("markdown", "## The load"),
+            f"### BEGIN VARIANTS\nbeam = draw('{NAME}', count={len(weights)}, weight={weights})\n### END VARIANTS",
+            ("markdown", "A beam carries {{weight}} N twice. Give the whole load."),
+            "### BEGIN SOLUTION\nload = 2*beam.weight\n### END SOLUTION",
+            f"check('{NAME}', load)\n### BEGIN HIDDEN TESTS\nquestion('{NAME}', kind='expression', worth=2, tolerance="
+            "0.01)\n### END HIDDEN TESTS",
+            ("markdown", "Write a function that gives twice its argument."),
+            "### BEGIN SOLUTION\ndef twice(x):\n    return 2*x\n### END SOLUTION",
+            "check('beams/twice', twice)\n### BEGIN HIDDEN TESTS\n"
+            f"question('beams/twice', kind='function', calls={calls}, "
+            "result='expression', worth=3)\n### END HIDDEN TESTS",
+        ]
+    )
+
+
+def write_beams(folder, *arguments):
+    folder.mkdir(exist_ok=True)
+    nbformat.write(beams(*arguments), folder / "beams.ipynb")
+    (folder / secret.FILE).write_text("5eed" * 16)
+    return folder
+
+
+def answered(load, says="", function="def twice(x):\n    return x + x"):
+    return notebook(
+        [
+            f"from coursework import check, me\nme({says!r})",
+            f"load = {load}\ncheck('{NAME}', load)",
+            function,
+            "check('beams/twice', twice)",
+        ]
+    )
+
+
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory):
+    """A class whose students all gave the right answer to their own numbers, and one who did not."""
+    place = tmp_path_factory.mktemp("cases")
+    solutions = write_beams(place / "solutions", WEIGHTS)
+    questions = questions_of(solutions / "beams.ipynb", b"any")
+    given = [one["public"]["given"]["weight"] for one in variants_of(questions[NAME]).values()]
+    own = {student: given[variant_of(student, NAME, 8)] for student in STUDENTS}
+    for student in STUDENTS:
+        put(place / "in", student, answered(2 * own[student], says=student), "beams.ipynb")
+    put(place / "in", "wrong", answered(1), "beams.ipynb")
+    grade(place / "in", place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    return SimpleNamespace(place=place, own=own)
+
+
+@pytest.fixture
+def out(begun, tmp_path):
+    return Store(shutil.copytree(begun.place / "out", tmp_path / "out"))
+
+
+def marks_of(store, name):
+    return {record["student"]: record["marks"][name] for record in store.all()}
+
+
+def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp_path):
+    """By its number, nearly everybody had another one then: of 145 right answers 122 became wrong."""
+    before = marks_of(out, NAME)
+    assert all(before[student]["points"] == 2 for student in STUDENTS) and before["wrong"]["points"] == 0
+    taken_out = begun.own[STUDENTS[0]]
+    left = [weight for weight in WEIGHTS if weight != taken_out]
+    moved = regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left))
+    assert moved == []
+    # Who had it is judged by what was asked then, and everybody else by the question as it is now.
+    mended = write_beams(tmp_path / "mended", left)
+    text = (mended / "beams.ipynb").read_text().replace("2*beam.weight", "3*beam.weight")
+    (mended / "beams.ipynb").write_text(text)
+    assert {one.student for one in regrade(out.folder, solutions=mended)} == {
+        student for student in STUDENTS if begun.own[student] != taken_out
+    }
+
+
+def test_records_from_before_there_were_cases_are_brought_over(begun, out, tmp_path):
+    for record in list(out.all()):
+        old = {key: value for key, value in record.items() if key not in ("cases", "says")}
+        out.save({**old, "format": 2})
+    shutil.rmtree(out.folder / "contracts")
+    left = [weight for weight in WEIGHTS if weight != begun.own[STUDENTS[3]]]
+    assert regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left)) == []
+    for record in out.all():
+        case = Case.from_json(record["cases"][NAME])
+        assert record["format"] == 3 and "older record" in case.known
+        asked = Contracts(out.folder).of(case.own.contract)
+        assert record["student"] == "wrong" or asked["public"]["given"]["weight"] == begun.own[record["student"]]
+        assert set(case.siblings) == set(siblings_of(NAME, 8))
+    # Nothing but the contracts is needed from then on.
+    shutil.rmtree(out.folder / "questions")
+    assert regrade(out.folder, solutions=tmp_path / "solutions") == []
+
+
+def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
+    """What a function returned was compared by position: all right functions fell from 3 to 0."""
+    fewer = write_beams(tmp_path / "fewer", WEIGHTS, "[[0.25], [1.5]]")
+    regrade(out.folder, solutions=fewer)
+    found = marks_of(out, "beams/twice").values()
+    # All that is called now was called then; but other secret calls follow from other calls.
+    assert {(mark["outcome"], mark["note"]) for mark in found} <= {("correct", ""), ("undecided", "not called")}
+    others = write_beams(tmp_path / "others", WEIGHTS, "[[7.5], [1.5]]")
+    regrade(out.folder, solutions=others)
+    assert {(mark["outcome"], mark["note"]) for mark in marks_of(out, "beams/twice").values()} == {
+        ("undecided", "not called")
+    }
+    grade(begun.place / "in", out.folder, solutions=others, limits=LIMITS, show=io.StringIO())
+    assert {mark["points"] for mark in marks_of(out, "beams/twice").values()} == {3}
+    assert {mark["points"] for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {2}
+
+
+def test_a_function_is_judged_by_the_calls_that_it_was_given():
+    public = {"kind": "function", "calls": [[1], [2], [3]]}
+    question = {"public": {"kind": "function", "calls": [[3], [1]]}, "contract": {"public": public}}
+    plain = to_plain(lambda x: 2 * x, public["calls"])
+    kind, results, works = marking.in_calls_of(question, plain)["value"]
+    assert [plain["nodes"][result[1]][1] for result in results] == ["6", "2"]
+    assert marking.in_calls_of({**question, "public": {"calls": [[3], [9]]}}, plain) is None
+    assert marking.in_calls_of({"public": public}, plain) is plain
+
+
+def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out):
+    """The page showed variant 0's right answer for everybody."""
+    graded = Class(out.folder)
+    seen = set()
+    for cluster in graded.clusters.values():
+        if cluster.question == NAME:
+            about = graded.contract(cluster)
+            given = about["public"]["given"]["weight"]
+            students = {record["student"] for record in cluster.members} - {"wrong"}
+            assert {begun.own[student] for student in students} <= {given}
+            assert about["plain"]["nodes"][0][1] == str(2 * given)
+            seen |= students
+        else:
+            assert "twice its argument" in graded.contract(cluster)["text"]
+    assert seen == set(STUDENTS)
+
+
+# --- the judge ----------------------------------------------------------------------------------
+
+
+def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
+    """One line of plain SymPy took the judge two minutes for a node, and 1.7 GB for each 10^9 in the exponent."""
+    tiny = sm.Pow(
+        sm.Add(sm.Pow(sm.Float("1e-99999"), 9_999, evaluate=False), sm.I, evaluate=False),
+        sm.Float("1e-300"),
+        evaluate=False,
+    )
+    read_plain(to_plain(tiny))
+    found = evaluate.values(to_plain(tiny)["nodes"], {})[-1]
+    assert isinstance(found, (evaluate.NotSupported, evaluate.MP.mpf, evaluate.MP.mpc))
+    for text in ("1e-99999999999999999999", "3.5e+99999999999999999999", "1e-2000"):
+        plain = read_plain({"value": ["expression", 0], "nodes": [["float", text]]})  # and not "no answer was found"
+        assert isinstance(
+            evaluate.values(plain["nodes"], {})[0], (evaluate.NotSupported, evaluate.TooLarge, evaluate.MP.mpf)
+        )
+    assert evaluate.values([["float", "2.5e-2000"]], {})[0] * evaluate.MP.mpf(10) ** 2000 == evaluate.MP.mpf("2.5")
+    # A part that no digit depends on is left out; the other one stays.
+    nodes = [["float", "1e-9000"], ["constant", "ImaginaryUnit"], ["Mul", 0, 1], ["integer", "2"], ["Add", 3, 2]]
+    assert evaluate.values(nodes, {})[-1] == 2
+
+
+class _Hostile:
+    """A judge of three answers, one of which takes too much of something."""
+
+    def __init__(self, what):
+        self.what = what
+
+    def __call__(self, name, question, *others):
+        if name == "second":
+            self.what()
+        return {"outcome": "correct", "name": name}
+
+
+def _too_long():
+    while True:
+        pass
+
+
+def _too_much():
+    return bytearray(1 << 40)
+
+
+def _ends():
+    import os
+
+    os._exit(3)
+
+
+@pytest.mark.parametrize("what", [_too_long, _too_much, _ends])
+def test_an_answer_that_stops_the_judge_costs_nobody_else_a_mark(monkeypatch, tmp_path, what):
+    question = {"worth": 2, "version": "v", "guessable": None, "public": {"kind": "expression"}}
+    names = ("first", "second", "third")
+    monkeypatch.setattr(judging, "MOST_SECONDS", 1)
+    monkeypatch.setattr(marking, "mark_with_siblings", _Hostile(what))
+    record = {"student": "ann", "assignment": "turns", "answers": {}, "finished": True, "notebooks": []}
+    said = []
+    with judging.Judge({"turns": dict.fromkeys(names, question)}, Contracts(tmp_path), said.append) as judge:
+        for _ in range(2):
+            found = judge.marks(record)
+            assert [found[name]["outcome"] for name in names] == ["correct", "undecided", "correct"]
+            assert found["second"]["note"] == "too much work" and found["second"]["worth"] == 2
+    assert len(said) == 2 and "'ann' turns second" in said[0]
+
+
+# --- whose it is --------------------------------------------------------------------------------
+
+
+def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun, tmp_path):
+    """With the roster forgotten a class fell from 16 to 9 of 21 points, and nothing was said."""
+    for student in STUDENTS[:6]:
+        put(tmp_path / "in", f"folder of {student}", answered(2 * begun.own[student], says=student), "beams.ipynb")
+    options = {"solutions": begun.place / "solutions", "limits": LIMITS}
+    said = io.StringIO()
+    with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 say .*--roster"):
+        grade(tmp_path / "in", tmp_path / "out", show=said, **options)
+    assert "says that it is of 'student-00', and is graded as that of 'folder of student-00'" in said.getvalue()
+    assert "student-00" in (tmp_path / "out" / "whose.csv").read_text()
+    said = io.StringIO()
+    grade(tmp_path / "in", tmp_path / "out", show=said, as_listed=True, **options)
+    lost = sum(mark["note"] == "other numbers" for mark in marks_of(Store(tmp_path / "out"), NAME).values())
+    assert lost < 3 or f"{lost} of 6 answers are right for other numbers" in said.getvalue()
+    roster = tmp_path / "roster.csv"
+    roster.write_text("student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6]))
+    grade(tmp_path / "in", tmp_path / "out", show=io.StringIO(), roster=roster, **options)
+    assert {mark["points"] for mark in marks_of(Store(tmp_path / "out"), NAME).values()} == {2}
+
+
+# --- decisions ----------------------------------------------------------------------------------
+
+RECORD = {"student": "ann", "assignment": "turns", "answers": {}}
+
+
+def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
+    first, second = Ledger(tmp_path), Ledger(tmp_path)
+    one = first.decision(RECORD, "turns/sum", 0.5, who="Ann")
+    first.append([one], collisions=True)
+    with pytest.raises(Collision) as found:
+        second.append([second.decision(RECORD, "turns/sum", 1, who="Ben")], collisions=True)
+    assert found.value.decisions == [one] and list(second.current().values()) == [one]
+    second.append([second.decision(RECORD, "turns/sum", 1, who="Ben", after=one.id)], collisions=True)
+    with pytest.raises(Collision):  # it looked at what Ann had decided, and that counts no more
+        first.append([first.decision(RECORD, "turns/sum", 0, who="Ann", after=one.id)], collisions=True)
+    (counts,) = Ledger(tmp_path).current().values()
+    assert (counts.who, counts.credit) == ("Ben", 1)
+
+
+def test_only_an_own_decision_is_taken_back_and_what_stood_before_counts_again(tmp_path):
+    ledger = Ledger(tmp_path)
+    ledger.add(RECORD, "turns/sum", 0.5, who="Ann")
+    ledger.add(RECORD, "turns/sum", 1, who="Ben")
+    key = "ann", "turns", "turns/sum"
+    ledger.take_back([RECORD], "turns/sum", "Ben")
+    assert ledger.current()[key].who == "Ann"
+    with pytest.raises(Collision, match="no decision of yours"):
+        ledger.take_back([RECORD], "turns/sum", "Ben")
+    ledger.take_back([RECORD], "turns/sum", "Ann")
+    assert Ledger(tmp_path).current() == {} and len(Ledger(tmp_path).decisions) == 4
+    # As it was written before one could tell whose: all earlier ones are taken back.
+    ledger.add(RECORD, "turns/sum", 1, who="Ann")
+    ledger.add(RECORD, "turns/sum", None, who="Ben")
+    lines = (tmp_path / "ledger.jsonl").read_text().splitlines()
+    without = [
+        {key: value for key, value in json.loads(line).items() if key not in ("undoes", "after")} for line in lines
+    ]
+    (tmp_path / "ledger.jsonl").write_text("".join(json.dumps(line) + "\n" for line in without[-2:]))
+    assert Ledger(tmp_path).current() == {}
+
+
+@pytest.mark.parametrize("left", [1, 20, -1])
+def test_a_ledger_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
+    ledger = Ledger(tmp_path)
+    ledger.add(RECORD, "turns/sum", 0.5, who="Ann", why="für sich")
+    ledger.add(RECORD, "turns/sum", 1, who="Ben")
+    path = tmp_path / "ledger.jsonl"
+    whole = path.read_bytes()
+    second = whole.split(b"\n")[1]
+    path.write_bytes(whole[: len(whole) - 1 - len(second)] + second[:left])
+    again = Ledger(tmp_path)
+    assert [one.who for one in again.decisions] == ["Ann"] and "ends within a line" in again.said_of_cut()
+    again.add(RECORD, "turns/sum", 0, who="Cem")
+    assert [one.who for one in Ledger(tmp_path).decisions] == ["Ann", "Cem"] and not again.said_of_cut()
+    assert (tmp_path / CUT).read_bytes() == second[:left] + b"\n"
+    # A line that only an editor left without its end is whole.
+    path.write_bytes(whole[:-1])
+    assert len(Ledger(tmp_path).decisions) == 2 and not Ledger(tmp_path).said_of_cut()
+    Ledger(tmp_path).add(RECORD, "turns/sum", 0, who="Cem")
+    assert [one.who for one in Ledger(tmp_path).decisions] == ["Ann", "Ben", "Cem"]
+
+
+def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, out):
+    graded = Class(out.folder)
+    for record in graded.records:
+        if record["student"] != "wrong":
+            cells = "\n".join(graded.store.work(record["notebooks"][0]["sha256"]))
+            assert record["student"] in cells
+            shown = graded.without_names(cells)
+            assert record["student"] not in shown and f"me('{graded.aliases[record['student']]}')" in shown
+    assert graded.without_names("student('Nobody Known')") == "student('somebody')"
+    assert not re.search(
+        "student-0", graded.without_names("asked Student-03, student-030 and STUDENT-04").replace("student-030", "")
+    )
+    assert graded.without_names(None) is None
+
+
+def test_what_holds_right_answers_is_read_by_nobody_else(out):
+    for folder in ("questions", "contracts"):
+        for path in (out.folder / folder).rglob("*.json"):
+            assert path.stat().st_mode & 0o077 == 0, path
+
+
+# --- siblings -----------------------------------------------------------------------------------
+
+
+def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(begun):
+    """One of eight has the same numbers; with two siblings it was three, and with four variants three of four."""
+    questions = questions_of(begun.place / "solutions" / "beams.ipynb", b"any")
+    earned, asked = 0, {NAME: questions[NAME]}
+    friends = {"outcome": "recorded", "plain": to_plain(2 * WEIGHTS[3])}
+    for number in range(8):
+        student = next(f"{k}" for k in range(999) if variant_of(f"{k}", NAME, 8) == number)
+        own, _ = marking.of_student(asked, student)
+        answers = dict.fromkeys([NAME, *siblings_of(NAME, 8)], friends)
+        for had in ("", "solution"):
+            remembered = {NAME: {"tries": 1, "help": had}} if had else {}
+            mark = marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
+            earned += mark["points"] > 0
+    assert earned == 2  # of 16
+
+
+# --- what was handed in -------------------------------------------------------------------------
+
+
+def _png(size=(2, 2)):
+    from matplotlib.figure import Figure
+
+    data = io.BytesIO()
+    Figure(figsize=size, dpi=10).savefig(data, format="png")
+    return data.getvalue()
+
+
+def _jpeg():
+    from PIL import Image
+
+    data = io.BytesIO()
+    Image.new("RGB", (24, 16), "teal").save(data, "jpeg", progressive=True)
+    return data.getvalue()
+
+
+@pytest.mark.parametrize("kind, made", [(pictures.PNG, _png), (pictures.JPEG, _jpeg)])
+def test_a_picture_is_one_from_its_first_byte_to_its_last(kind, made):
+    """What began as a picture was believed to be one."""
+    data = made()
+    assert pictures.is_picture(kind, data)
+    other = pictures.JPEG if kind == pictures.PNG else pictures.PNG
+    for wrong in (data[:8] + b"<script>", data + b"PK", data[:-1], data[: len(data) // 2], b"", data[:3], b"\xff" * 50):
+        assert not pictures.is_picture(kind, wrong)
+    assert not pictures.is_picture(other, data) and not pictures.is_picture("image/svg+xml", data)
+
+
+def test_a_picture_that_would_fill_the_memory_is_none():
+    import struct
+    import zlib
+
+    def part(name, body):
+        return struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+
+    def png(wide):
+        header = struct.pack(">IIBBBBB", wide, 60_000, 8, 2, 0, 0, 0)
+        return pictures.PNG_BEGINS + part(b"IHDR", header) + part(b"IDAT", zlib.compress(b"")) + part(b"IEND", b"")
+
+    assert pictures.is_picture(pictures.PNG, png(600)) and not pictures.is_picture(pictures.PNG, png(60_000))
+
+
+@pytest.mark.parametrize(
+    "submissions, out, said",
+    [
+        ("damaged.zip", "out", "no zip archive, or a damaged one"),
+        ("nothing", "out", "There is nothing in"),
+        ("class", "a-file", "Not a directory"),
+    ],
+)
+def test_what_cannot_be_read_or_written_is_named(tmp_path, submissions, out, said):
+    (tmp_path / "damaged.zip").write_bytes(b"PK\5\6" + b"\0" * 16)
+    (tmp_path / "nothing").mkdir()
+    (tmp_path / "a-file").touch()
+    put(tmp_path / "class", "ann", answered(1), "beams.ipynb")
+    solutions = write_beams(tmp_path / "solutions", WEIGHTS)
+    with pytest.raises(SystemExit, match=said):
+        main(["grade", str(tmp_path / submissions), "--out", str(tmp_path / out), "--solutions", str(solutions)])
+
+
+def test_who_handed_in_a_damaged_file_is_not_said_to_have_handed_in_nothing(begun, tmp_path):
+    put(tmp_path / "in", "ann", "no notebook at all", "beams.ipynb")
+    put(tmp_path / "in", "ben", answered(1), "beams.ipynb")
+    (tmp_path / "in" / "cem").mkdir()
+    (tmp_path / "in" / "cem" / "work.zip").write_bytes(b"PK damaged")
+    (tmp_path / "roster.csv").write_text("student\nann\nben\ncem\ndora\n")
+    options = {"solutions": begun.place / "solutions", "roster": tmp_path / "roster.csv", "only_list": True}
+    said = io.StringIO()
+    grade(tmp_path / "in", tmp_path / "out", show=said, **options)
+    assert "1 handed in nothing: dora." in said.getvalue()
+    assert "2 handed in what cannot be graded: ann, cem." in said.getvalue()
+
+
+def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
+    """It was "Errno 22"."""
+    monkeypatch.setattr("os.geteuid", lambda: 0)
+    assert isolation.user_for_students(4242, "0 0 4294967295\n") == 4242
+    assert isolation.user_for_students(4242, "0 1000 1\n65534 100000 1\n") == isolation.OUTSIDER
+    with pytest.raises(RuntimeError, match="no other user than root"):
+        isolation.user_for_students(4242, "         0       1000          1\n")

@@ -1,0 +1,450 @@
+"""A whole course: what lateness costs, what is dropped, what a student sees, and what a year leaves behind."""
+
+import datetime
+import io
+import itertools
+import json
+import random
+import re
+import statistics as of_python
+import zipfile
+from zoneinfo import ZoneInfo
+
+import numpy as np
+import pytest
+from grading_class import handed_in, put, write_sources
+from nbformat import writes
+
+from coursework.__main__ import main
+from coursework.grading.execution.sandbox import Limits
+from coursework.grading.export import gradebooks
+from coursework.grading.grade import grade
+from coursework.grading.judging import term
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.reporting.course_pages import write_course
+from coursework.grading.reporting.statistics import HIDDEN_BELOW, Correlation
+from coursework.grading.store import Store
+from coursework.grading.submissions import intake
+
+UTC = datetime.UTC
+AMSTERDAM = ZoneInfo("Europe/Amsterdam")
+RULES = """
+name = "Autumn 2026"
+time-zone = "Europe/Amsterdam"
+[late]
+grace-minutes = 15
+a-day = 0.1
+most = 0.5
+nothing-after-days = 7
+[assignments.turns]
+due = 2026-10-05T23:59:00
+weight = 3
+[assignments.axes]
+due = 2026-10-25T02:30:00
+"""
+
+
+@pytest.fixture
+def rules(tmp_path):
+    def read(text=RULES):
+        path = tmp_path / "term.toml"
+        path.write_text(text)
+        return term.read_rules(path)
+
+    return read
+
+
+def record(points, worth=6, when="", late=False, assignment="turns", identity=None):
+    return {
+        "assignment": assignment,
+        "points": points,
+        "worth": worth,
+        "undecided": 0,
+        "identity": identity or {},
+        "notebooks": [{"handed in": when, "late": late}],
+    }
+
+
+def result(rules, *records, student="ann", now=datetime.datetime(2026, 12, 1, tzinfo=UTC), worth=None):
+    worth = worth or {"turns": 6, "axes": 2}
+    results, total = term.results_of(student, {one["assignment"]: one for one in records}, rules, worth, now)
+    return {one.assignment: one for one in results}, total
+
+
+@pytest.mark.parametrize(
+    "when, penalty",
+    [
+        ("2026-10-05T23:00:00", 0),
+        ("2026-10-06T00:14:00", 0),  # within the grace
+        ("2026-10-06T00:14:01", 0.1),
+        ("2026-10-06T23:59:00", 0.1),
+        ("2026-10-06T23:59:01", 0.2),
+        ("2026-10-12T23:59:00", 0.5),
+        ("2026-10-12T23:59:01", 1),
+        ("2026-10-05T21:59:00+00:00", 0),  # the same moment, by another clock
+        ("2026-10-05T22:14:01+00:00", 0.1),
+        ("", 0),  # nobody knows
+    ],
+)
+def test_lateness_costs_what_the_rules_say(rules, when, penalty):
+    found, _ = result(rules(), record(6, when=when))
+    assert found["turns"].penalty == pytest.approx(penalty) and found["turns"].late == bool(penalty)
+    assert found["turns"].counts == pytest.approx(6 * (1 - penalty))
+
+
+def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
+    # In the night of 25 October half past two comes twice in Amsterdam, at 0:30 and at 1:30 of universal time.
+    for when, penalty in (("2026-10-25T01:30:00+00:00", 0), ("2026-10-25T01:45:01+00:00", 0.1)):
+        found, _ = result(rules(), record(2, 2, when, assignment="axes"))
+        assert found["axes"].penalty == pytest.approx(penalty)
+
+
+@pytest.mark.parametrize("when", ["2026-10-25T02:45:00", "2026-10-25T02:45:00+02:00"])
+def test_who_hands_in_in_an_hour_that_a_clock_shows_twice_is_believed(rules, when):
+    """A time without a zone is the earlier one then, as what is due is the later one: both in favour of the student."""
+    found, _ = result(rules(RULES.replace("02:30", "02:10")), record(2, 2, when, assignment="axes"))
+    assert (found["axes"].penalty, found["axes"].late) == (0, False)
+
+
+@pytest.mark.parametrize(
+    "due, when, penalty",
+    [
+        # A day later by the clock: 25 hours in autumn and 23 in spring.
+        ("2026-10-24T23:59:00", "2026-10-25T23:59:00", 0.1),
+        ("2026-10-24T23:59:00", "2026-10-25T22:59:00+00:00", 0.1),
+        ("2026-10-24T23:59:00", "2026-10-25T23:00:00+00:00", 0.2),
+        ("2027-03-27T23:59:00", "2027-03-28T23:59:00", 0.1),
+        ("2027-03-27T23:59:00", "2027-03-28T21:59:00+00:00", 0.1),
+        # Ten minutes later, though the clocks have gone on an hour: within the grace.
+        ("2027-03-28T01:55:00", "2027-03-28T03:05:00", 0),
+        ("2027-03-28T01:55:00", "2027-03-28T01:05:00+00:00", 0),
+        # Due at a time that no clock shows.
+        ("2027-03-28T02:30:00", "2027-03-28T03:30:00", 0),
+        ("2027-03-28T02:30:00", "2027-03-28T03:50:00", 0.1),
+    ],
+)
+def test_a_day_is_as_long_as_any_other_when_clocks_are_changed(rules, due, when, penalty):
+    found, _ = result(rules(RULES.replace("2026-10-25T02:30:00", due)), record(2, 2, when, assignment="axes"))
+    assert found["axes"].penalty == pytest.approx(penalty)
+
+
+def test_extensions_hold_for_whom_they_are(rules):
+    text = RULES + '[extensions.ann]\nturns = 2026-10-08T12:00:00\n[extensions.bob]\nturns = "excused"\n'
+    late = record(6, when="2026-10-08T12:00:00")
+    assert result(rules(text), late)[0]["turns"].penalty == 0
+    assert result(rules(text), late, student="carl")[0]["turns"].penalty == pytest.approx(0.3)
+    found, total = result(rules(text), late, record(1, 2, assignment="axes"), student="bob")
+    assert found["turns"].state == "excused" and total == 0.5
+    assert result(rules(text), record(1, 2, assignment="axes"), student="bob")[1] == 0.5
+
+
+def test_what_is_missing_counts_once_it_is_due(rules):
+    half = record(3)
+    assert result(rules(), half, now=datetime.datetime(2026, 10, 25, 1, 0, tzinfo=UTC))[1] == 0.5
+    found, total = result(rules(), half)
+    assert found["axes"].state == "missing" and total == pytest.approx(0.5 * 3 / 4)
+    # What was never graded counts for nobody.
+    assert result(rules(), half, worth={"turns": 6})[0]["axes"].state == "not due"
+
+
+def test_a_systems_word_without_a_time_costs_nothing_and_is_said(rules):
+    found, _ = result(rules(), record(6, late=True))
+    assert found["turns"].late and found["turns"].penalty == 0
+
+
+def test_what_is_dropped_is_best_for_the_student(rules):
+    dice = random.Random(7)
+    for _ in range(200):
+        names = [f"a{number}" for number in range(dice.randint(2, 6))]
+        first = dice.randint(1, len(names))
+        parts = [part for part in (names[:first], names[first:]) if part]
+        drops = [(dice.randint(0, len(part) - 1), part) for part in parts]
+        weights = {name: dice.choice([1, 1, 2, 5, 0.5]) for name in names}
+        text = 'time-zone = "UTC"\n' + "".join(f"[[drop]]\nlowest = {n}\nof = {json.dumps(of)}\n" for n, of in drops)
+        text += "".join(f"[assignments.{name}]\nweight = {weight}\n" for name, weight in weights.items())
+        shares = {name: dice.choice([0, 0.25, 0.5, 0.5, 0.9, 1]) for name in names}
+        records = [record(share * 8, 8, assignment=name) for name, share in shares.items()]
+        found, total = result(rules(text), *records, worth=dict.fromkeys(names, 8))
+        best = max(
+            sum(weights[name] * shares[name] for name in kept) / sum(weights[name] for name in kept)
+            for out in itertools.product(*(itertools.combinations(of, n) for n, of in drops))
+            for kept in [set(names) - set(itertools.chain(*out))]
+        )
+        assert total == pytest.approx(best)
+        assert sum(one.state == "dropped" for one in found.values()) == sum(n for n, _ in drops)
+
+
+@pytest.mark.parametrize(
+    "before, after, says",
+    [
+        ("time-zone", "timezone", "what is 'timezone'"),
+        ("Europe/Amsterdam", "Europe/Nowhere", "no time zone 'Europe/Nowhere'"),
+        ("grace-minutes = 15", "grace = 15", "what is 'grace' in late"),
+        ("a-day = 0.1", "a-day = 10", "late.a-day is a number from 0 to 1, and this is 10"),
+        ("due = 2026-10-05T23:59:00", "due = 2026-10-05", "a date with a time.*2026-10-05"),
+        ("due = 2026-10-05T23:59:00", "due = '5 October'", "a date with a time"),
+        ("weight = 3", "wieght = 3", "what is 'wieght' in assignments.turns"),
+        ("[late]", "[extensions.ann]\ntruns = 'excused'\n[late]", "no assignment 'truns'"),
+        ("[late]", "[[drop]]\nof = ['turns']\n[late]", "a whole number below 1"),
+        ("[late]", "[[drop]]\n[[drop]]\n[late]", "in two rules"),
+        ('"Europe/Amsterdam"', "Europe", "line 3"),
+    ],
+)
+def test_a_rule_that_is_misspelt_is_said(rules, before, after, says):
+    assert before in RULES
+    with pytest.raises(term.BadRules, match=says):
+        rules(RULES.replace(before, after, 1))
+
+
+def test_times_of_a_systems_table(rules, tmp_path):
+    (tmp_path / "worksheet.csv").write_text(
+        "Identifier,Full name,Email address,Last modified (submission)\n"
+        'Participant 101,Ann Lee,ann@example.org,"Tuesday, 6 October 2026, 8:01 PM"\n'
+        "Participant 102,Bob Lee,bob@example.org,-\n"
+    )
+    text = RULES.replace("weight = 3", 'weight = 3\ntimes = "worksheet.csv"')
+    for identity in ({"name": "Ann Lee"}, {"email": "ann@example.org"}):
+        found, _ = result(rules(text), record(6, identity=identity))
+        assert found["turns"].handed_in == datetime.datetime(2026, 10, 6, 20, 1, tzinfo=AMSTERDAM)
+        assert found["turns"].penalty == pytest.approx(0.1)
+    assert result(rules(text), record(6, identity={"name": "Bob Lee"}))[0]["turns"].handed_in is None
+    (tmp_path / "worksheet.csv").write_text("username,timestamp\nann,yesterday\n")
+    with pytest.raises(term.BadRules, match="'ann': 'yesterday' is no time.* in English"):
+        rules(text)
+    (tmp_path / "worksheet.csv").write_text("username,when\nann,yesterday\n")
+    with pytest.raises(term.BadRules, match="no column says when"):
+        rules(text)
+
+
+GOOD = writes(handed_in()).encode()
+
+
+def test_times_are_those_of_the_system_and_no_students(tmp_path):
+    def times(*files):
+        path = tmp_path / "class.zip"
+        with zipfile.ZipFile(path, "w") as box:
+            for name, data in files:
+                box.writestr(name, data)
+        return {one.student: one.handed_in for one in intake.take_in(path, ["turns"])[0]}
+
+    stamp = b"2026-10-05 20:01:00.250000 UTC\n"
+    assert times(
+        ("submitted/ann/turns/turns.ipynb", GOOD),
+        ("submitted/ann/turns/timestamp.txt", stamp),
+        # Deeper it is a student's own file; and one that says nothing that could be read.
+        ("submitted/bob/turns/more/turns.ipynb", GOOD),
+        ("submitted/bob/turns/more/timestamp.txt", stamp),
+        ("submitted/carl/turns/turns.ipynb", GOOD),
+        ("submitted/carl/turns/timestamp.txt", b"\xff\xfe long ago"),
+    ) == {"ann": "2026-10-05T20:01:00.250000+00:00", "bob": "", "carl": ""}
+    assert times(("ann/turns.ipynb", GOOD), ("ann/timestamp.txt", stamp), ("bob/turns.ipynb", GOOD)) == {
+        "ann": "",
+        "bob": "",
+    }
+    name = "101-9 - {} - Nov 21, 2026 801 PM/turns.ipynb"
+    assert times((name.format("Ann"), GOOD), (name.format("X - Nov 1, 2026 801 AM").replace("101", "102"), GOOD)) == {
+        "Ann 101": "2026-11-21T20:01:00",
+        "X - Nov 1, 2026 801 AM 102": "2026-11-21T20:01:00",
+    }
+    assert times(("HW_ann_attempt_2026-11-21-20-01-00_turns.ipynb", GOOD)) == {"HW_ann": "2026-11-21T20:01:00"}
+    assert times(("HW_ann_attempt_2026-13-41-20-01-00_turns.ipynb", GOOD)) == {"HW_ann": ""}
+
+
+# --- statistics ---------------------------------------------------------------------------------
+
+
+def test_the_correlation_is_that_of_pythons_library():
+    dice = np.random.default_rng(5)
+    for _ in range(20):
+        x = dice.uniform(size=40)
+        y = dice.uniform(-1, 1) * x + dice.normal(size=40)
+        ours = Correlation()
+        for pair in zip(x, y, strict=True):
+            ours.add(*pair)
+        assert ours.value == pytest.approx(of_python.correlation(list(x), list(y)))
+        low, high = ours.interval
+        assert low < ours.value < high
+    assert Correlation().value is None
+    flat = Correlation()
+    for value in range(30):
+        flat.add(1, value)
+    assert flat.value is None and flat.interval is None
+
+
+# --- the pages ----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory):
+    """A graded class of a few, whose notebooks nbgrader collected."""
+    folder = tmp_path_factory.mktemp("course")
+    submitted = folder / "course" / "submitted"
+    answers = {"ann": {}, "bob": {"sum": "sine = sm.sin(alpha)"}, "carl": {"sum": "sine = sm.sin(alpha)"}}
+    for student, given in answers.items():
+        put(submitted / student, "turns", handed_in(**given))
+        (submitted / student / "turns" / "timestamp.txt").write_text("2026-10-06 20:01:00.000000 UTC")
+    put(submitted / "ann", "axes", handed_in("axes", also=["assert '<script>alert(1)</script>'"]), "axes.ipynb")
+    (folder / "roster.csv").write_text("student\nann\nbob\ncarl\ndora\n")
+    limits = Limits(cell_wall_seconds=60, answer_wall_seconds=60)
+    options = {"solutions": write_sources(folder / "solutions"), "limits": limits, "show": io.StringIO()}
+    grade(folder / "course", folder / "out", roster=folder / "roster.csv", **options)
+    return folder / "out"
+
+
+def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
+    now = datetime.datetime(2026, 12, 1, tzinfo=UTC)
+    said = write_course(Store(out), rules(), now=now)
+    assert said == [
+        "axes: of 1 nobody knows when they were handed in, and lateness cost nothing. A table of your system says it: "
+        'times = "worksheet.csv" in [assignments.axes].'
+    ]
+    rows = (out / "course" / "course.csv").read_text().splitlines()
+    assert [row.split(",")[:2] for row in rows[1:]] == [
+        ['"ann"', '"92.5"'],  # (3 0.9 + 1)/4
+        ['"bob"', '"56.25"'],  # 3 0.9 5/6 / 4
+        ['"carl"', '"56.25"'],
+        ['"dora"', '"0"'],
+    ]
+    page = (out / "course" / "students" / "bob.html").read_text()
+    assert "10 % less" in page and "nothing was handed in" in page and "56.2 %" in page
+    for link in re.findall(r'href="([^"]+)"', page):
+        assert (out / "course" / "students" / link).exists()
+    # The same once more, and nothing of it depends on the time but what is due.
+    before = (out / "course" / "course.csv").read_bytes()
+    write_course(Store(out), rules(), now=now)
+    assert (out / "course" / "course.csv").read_bytes() == before
+
+
+def test_every_number_leads_to_the_answers_behind_it(out, rules):
+    write_course(Store(out), rules())
+    statistics = (out / "course" / "statistics.html").read_text()
+    links = re.findall(r'href="([^"]+)"', statistics)
+    assert len(links) >= 10
+    for link in links:
+        place, _, anchor = link.partition("#")
+        page = out / "course" / place
+        content = page.read_text()
+        assert not anchor or f'id="{anchor}"' in content, link
+        for inner in re.findall(r'href="([^"#]+)"', content):
+            assert (page.parent / inner).exists()
+    assert "<math" in "".join(path.read_text() for path in (out / "course" / "answers").glob("*turns-sum*.html"))
+
+
+def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, tmp_path):
+    write_course(Store(out), rules())
+    kept = (out / "course" / "counts.json").read_text()
+    assert not re.search("ann|bob|carl|dora|sin|alpha", kept.replace("Europe", ""))
+    questions = json.loads(kept)["questions"]
+    assert all(
+        count >= HIDDEN_BELOW
+        for question in questions.values()
+        for count in (question["students"], *question["mix-ups"].values())
+    )
+    assert {name.partition("/")[0] for name in questions} == {"turns"}  # the axes are of one student alone
+    earlier = tmp_path / "2025.json"
+    earlier.write_text(kept.replace("Autumn 2026", "Autumn <2025>"))
+    write_course(Store(out), rules(), earlier=[earlier])
+    page = (out / "course" / "statistics.html").read_text()
+    assert "Autumn &lt;2025&gt;" in page and page.count("33 %") == 2  # the sum, now and then
+    earlier.write_text("{}")
+    with pytest.raises(term.BadRules, match="holds no counts"):
+        write_course(Store(out), rules(), earlier=[earlier])
+
+
+def test_an_extension_for_nobody_is_said(out, rules):
+    with pytest.raises(term.BadRules, match="'anne', and nobody in the course"):
+        write_course(Store(out), rules(RULES + "[extensions.anne]\nturns = 'excused'\n"))
+
+
+def test_names_and_answers_stay_text(rules, tmp_path):
+    name = '<img src=x onerror="alert(1)">'
+    store = Store(tmp_path / "out")
+    mark = {
+        "outcome": "wrong", "note": "", "details": {}, "messages": [], "points": 0, "worth": 1, "group": "",
+        "version": "1", "guessable": None, "title": name,
+    }  # fmt: skip
+    plain = {"value": ["text", "</code><script>alert(2)</script>"], "nodes": []}
+    store.save(
+        {
+            **record(0, 1),
+            "student": name,
+            "marks": {"turns/sum": mark},
+            "answers": {"turns/sum": {"outcome": "recorded", "plain": plain}},
+        }
+    )
+    write_course(store, rules())
+    for path in (tmp_path / "out" / "course").rglob("*.html"):
+        content = path.read_text()
+        assert "<img" not in content and "<script" not in content and "default-src 'none'" in content
+    assert any("&lt;img" in path.read_text() for path in (tmp_path / "out" / "course").rglob("*.html"))
+
+
+# --- what reaches the system --------------------------------------------------------------------
+
+BOOK = "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,ann,,\nB,2,,bob,,\nC,3,,carl,,\n"
+
+
+@pytest.fixture
+def late(tmp_path):
+    """Results of three, of whom one was two days late; the rules excuse another."""
+    store = Store(tmp_path / "out")
+    for student, when, marked in (
+        ("ann", "2026-10-07T12:00:00", False), ("bob", "2026-10-05T12:00:00", False), ("carl", "", False)
+    ):  # fmt: skip
+        found = record(6, when=when, late=marked)
+        about = {"title": "the sum", "group": "", "version": "v", "details": {}, "guessable": None, "tries": None}
+        mark = {"outcome": "correct", "note": "", "points": 6, "worth": 6, "messages": [], **about}
+        store.save({**found, "student": student, "marks": {"turns/sum": mark}, "answers": {}})
+    (tmp_path / "term.toml").write_text(RULES + "[extensions.bob]\nturns = 'excused'\n")
+    (tmp_path / "book.csv").write_text(BOOK)
+    return store
+
+
+def filled(store, *more):
+    arguments = ["export", str(store.folder), "--lms", str(store.folder.parent / "book.csv"), *more]
+    assert main(arguments) in (None, 0)
+    lines = (store.folder.parent / "book-filled.csv").read_text().splitlines()[1:]
+    return [line.rpartition(",")[2] for line in lines]
+
+
+def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
+    """The term gave 68.57 % and "excused", and the gradebook was filled with 18 and 21."""
+    rules = str(tmp_path / "term.toml")
+    assert filled(late) == ["6", "6", "6"]  # there are no rules yet
+    late.folder.joinpath(gradebooks.WRITTEN).unlink()
+    assert main(["term", str(late.folder), "--rules", rules]) in (None, 0)
+    with pytest.raises(SystemExit, match="The term has rules"):
+        filled(late)
+    assert filled(late, "--as-graded") == ["6", "6", "6"]
+    late.folder.joinpath(gradebooks.WRITTEN).unlink()
+    assert filled(late, "--rules", rules) == ["4.8", "", "6"]
+    assert "Excused by the rules" in capsys.readouterr().out
+    main(["export", str(late.folder), "--nbgrader", str(tmp_path / "n.csv"), "--rules", rules])
+    assert '"6","1.2","4.8"' in (tmp_path / "n.csv").read_text()
+
+
+def test_a_decision_is_handed_on_also_before_it_is_in_the_pages(late, tmp_path):
+    found = late.read("ann", "turns")
+    Ledger(late.folder).add(found, "turns/sum", 0.5, who="Ann")
+    assert filled(late)[0] == "3"
+    with pytest.raises(SystemExit, match="Decisions on 1 records are not in the pages yet"):
+        main(["export", str(late.folder), "--feedback", str(tmp_path / "pages.zip")])
+
+
+def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
+    """Canvas marks a file as late and does not say when it came: that cost nothing."""
+    late.save({**late.read("carl", "turns"), "notebooks": [{"handed in": "", "late": True}]})
+    rules = tmp_path / "term.toml"
+    with pytest.raises(SystemExit, match="1 are marked as late.*marked = 0.1"):
+        filled(late, "--rules", str(rules))
+    assert any("1 are marked as late" in line for line in write_course(late, term.read_rules(rules)))
+    rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
+    assert filled(late, "--rules", str(rules)) == ["4.8", "", "4.5"]
+
+
+def test_who_handed_in_what_cannot_be_graded_has_not_handed_in_nothing(late, tmp_path):
+    (tmp_path / "book.csv").write_text(BOOK + '"Last, Dora",4,,dora,,\n"Other, Eve",5,,eve,,\n')
+    late.folder.joinpath("refused.json").write_text('[["d.ipynb", "Dora Last", "It is damaged."]]')
+    said = "\n".join(gradebooks.fill(tmp_path / "book.csv", gradebooks.Marks(late)))
+    assert "Dora" in said.partition("cannot be graded")[2]
+    assert "Eve" in said.partition("nothing was handed in")[2].partition("cannot be graded")[0]

@@ -1,0 +1,445 @@
+"""The page to judge in: safe against other pages and against what it shows, and worked by keys alone."""
+
+import base64
+import functools
+import http.client
+import io
+import json
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+from urllib.parse import quote
+
+import nbformat
+import pytest
+from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
+
+from coursework.__main__ import main
+from coursework.grading.execution.sandbox import Limits
+from coursework.grading.grade import grade, regrade
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.review import POLICY, Class, application, hints_of
+from coursework.grading.store import Store
+
+LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"
+UNUSUAL = "sine = sm.sin(alpha)*sm.cos(beta)**7 + sm.Rational(3, 17)*sm.cos(alpha - 2*beta)"
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory):
+    """The results of a small class, graded once."""
+    place = tmp_path_factory.mktemp("review")
+    solutions, submissions = write_sources(place / "solutions"), place / "submissions"
+    for number in range(6):
+        put(submissions, f"rounded-{number}", handed_in(sum=f"sine = sm.sin(alpha + beta)*1.000{number + 1}"))
+    for student in ("copies", "was-copied"):
+        put(submissions, student, handed_in(sum=UNUSUAL))
+    put(submissions, "pokes", handed_in(sum="try:\n    open('/etc/passwd')\nexcept OSError:\n    pass\nsine = 0"))
+    put(submissions, "hostile", handed_in(sum=f"# {SCRIPT}\nsine = sm.Symbol({SCRIPT!r})"))
+    put(submissions, "right", handed_in())
+    put(submissions, "blank", notebook([SETUP["turns"], RIGHT["turns/sum"]]))
+    grade(submissions, place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    return place
+
+
+@pytest.fixture
+def out(graded, tmp_path):
+    return shutil.copytree(graded / "out", tmp_path / "out")
+
+
+class Served:
+    """The page, served from a thread; what is asked of it."""
+
+    def __init__(self, folder, **options):
+        from tornado import httpserver, ioloop, netutil
+
+        self.ready = threading.Event()
+
+        def serve():
+            import asyncio
+
+            asyncio.set_event_loop(asyncio.new_event_loop())
+            sockets = netutil.bind_sockets(0, "127.0.0.1")
+            self.port = sockets[0].getsockname()[1]
+            graded = Class(folder, options.pop("share", (1, 1)))
+            made = application(graded, options.pop("grader", "Ann"), self.port, **options)
+            self.secret = made.settings["secret"]
+            self.server = httpserver.HTTPServer(made)
+            self.server.add_sockets(sockets)
+            self.loop = ioloop.IOLoop.current()
+            self.loop.add_callback(self.ready.set)
+            self.loop.start()
+            self.loop.close()
+
+        self.thread = threading.Thread(target=serve)
+        self.thread.start()
+        assert self.ready.wait(60)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.loop.add_callback(self.stop)
+        self.thread.join()
+
+    async def stop(self):
+        self.server.stop()
+        await self.server.close_all_connections()
+        self.loop.stop()
+
+    @property
+    def address(self):
+        return f"http://127.0.0.1:{self.port}/{self.secret}/"
+
+    def ask(self, path, method="GET", body=None, **headers):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        headers = {
+            "Host": f"127.0.0.1:{self.port}",
+            **{name.replace("_", "-"): value for name, value in headers.items()},
+        }
+        connection.request(method, path, body, headers)
+        response = connection.getresponse()
+        text = response.read().decode()
+        connection.close()
+        return response, text
+
+    def decide(self, cluster, body="credit=1", seen=None, **headers):
+        """Decide, upon what the page shows now, or showed when it was ``seen``."""
+        body += f"&seen={quote(self.seen(cluster) if seen is None else seen)}"
+        headers = {
+            "Origin": f"http://127.0.0.1:{self.port}",
+            "Content_Type": "application/x-www-form-urlencoded",
+            **headers,
+        }
+        return self.ask(f"/{self.secret}/answer/{cluster}", "POST", body, **headers)[0]
+
+    def seen(self, cluster):
+        return re.search(r'name="seen" value="([^"]*)"', self.ask(f"/{self.secret}/answer/{cluster}")[1])[1]
+
+
+def first_of(served, show="waiting"):
+    _, text = served.ask(f"/{served.secret}/?show={show}")
+    return re.findall(r"answer/([0-9a-f]{16})", text)[0]
+
+
+def test_only_this_machine_this_name_and_this_page_are_heard(out):
+    with Served(out) as served:
+        assert served.ask(f"/{served.secret}/")[0].status == 200
+        assert served.ask("/wrong/")[0].status == 404 and served.ask("/")[0].status == 404
+        # Somebody else's name that was led to this machine.
+        assert served.ask(f"/{served.secret}/", Host="evil.example")[0].status == 403
+        assert served.ask(f"/{served.secret}/", Host=f"evil.example:{served.port}")[0].status == 403
+        cluster = first_of(served)
+        for headers in (
+            {"Origin": "http://evil.example"},
+            {"Origin": "null"},
+            {"Origin": f"http://127.0.0.1:{served.port + 1}"},
+            {"Sec_Fetch_Site": "cross-site"},
+            {"Sec_Fetch_Site": "same-site"},
+        ):
+            assert served.decide(cluster, **headers).status == 403
+        body = served.ask(f"/{served.secret}/answer/{cluster}", "POST", "credit=1")[0]
+        assert body.status == 403  # without an origin
+        assert Ledger(out).decisions == []
+        assert served.decide(cluster).status == 303
+        assert len(Ledger(out).decisions) == 1
+
+
+def test_the_server_listens_on_this_machine_alone(out):
+    with Served(out) as served:
+        import psutil
+
+        mine = [one for one in psutil.Process().net_connections("inet") if one.status == "LISTEN"]
+        assert {one.laddr.ip for one in mine if one.laddr.port == served.port} == {"127.0.0.1"}
+
+
+def test_what_a_student_wrote_is_shown_and_never_obeyed(out):
+    with Served(out) as served:
+        response, _ = served.ask(f"/{served.secret}/")
+        policy = response.getheader("Content-Security-Policy")
+        assert policy == POLICY and "unsafe" not in policy and "script-src 'self'" in policy
+        assert response.getheader("Referrer-Policy") == "same-origin"
+        _, text = served.ask(f"/{served.secret}/?show=invalid&search=script")
+        (cluster,) = set(re.findall(r"answer/([0-9a-f]{16})", text))
+        _, page = served.ask(f"/{served.secret}/answer/{cluster}")
+        assert "&lt;script&gt;alert(1)" in page
+        for shown in (text, page):
+            assert "<script>alert" not in shown and "<img" not in shown and "onerror=alert(2)>" not in shown
+            assert len(re.findall("<script", shown)) == 1
+        _, text = served.ask(f"/{served.secret}/?search=%22%3E%3Cscript%3Ealert(1)")
+        assert "<script>alert" not in text
+
+
+def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
+    with Served(out, grader="Ann") as served:
+        served_class = Class(out)
+        (cluster,) = [
+            one for one in served_class.clusters.values() if len(one.members) == 2 and one.mark["outcome"] == "wrong"
+        ]
+        assert served.decide(cluster.id, "credit=0.5&comment=Half+of+it.&rubric=Copied%3F&why=appeal").status == 303
+        place = [one["student"] for one in cluster.members].index("copies")
+        assert served.decide(cluster.id, f"credit=1&only={place}").status == 303
+        for body, status in (("credit=9", 400), ("credit=-1", 400), ("credit=x", 400), ("credit=nan", 400), ("", 400),
+                             ("credit=1&only=9", 400)):  # fmt: skip
+            assert served.decide(cluster.id, body).status == status
+        _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
+        assert "by Ann" in page and "Copied?" in page and "appeal" in page
+    moved = {one.student: one.after for one in regrade(out, solutions=graded / "solutions")}
+    assert moved == {"copies": 6, "was-copied": 5.5}
+    mark = Store(out).read("was-copied", "turns")["marks"]["turns/sum"]
+    assert mark["messages"] == ["Copied?", "Half of it."] and mark["before"]["outcome"] == "wrong"
+    assert regrade(out, solutions=graded / "solutions") == []
+    page = (out / "feedback" / "was-copied" / "turns.html").read_text()
+    assert "Decided by a person" in page and "Half of it." in page and "appeal" not in page
+    # It is judged, and can be found as such, and taken back.
+    with Served(out) as served:
+        assert first_of(served, "decided") == cluster.id
+        served.decide(cluster.id, "credit=back")
+        served.decide(cluster.id, "credit=back")
+        assert served.decide(cluster.id, "credit=back").status == 409
+    assert {one.after for one in regrade(out, solutions=graded / "solutions")} == {5}
+
+
+def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
+    with Served(out, grader="Ann") as first, Served(out, grader="Ben") as second:
+        name = first_of(first)
+        seen = first.seen(name)
+        assert second.decide(name, "credit=0.5&comment=Half", seen).status == 303
+        headers = {"Origin": f"http://127.0.0.1:{first.port}", "Content_Type": "application/x-www-form-urlencoded"}
+        body = f"credit=1&comment=All+of+it&seen={quote(seen)}"
+        response, page = first.ask(f"/{first.secret}/answer/{name}", "POST", body, **headers)
+        assert response.status == 409 and "Ben gave 0.5" in page and "All of it" in page
+        assert {one.who for one in Ledger(out).decisions} == {"Ben"}
+        # What Ben decided is not Ann's to take back; upon it she may decide.
+        assert first.decide(name, "credit=back").status == 409
+        assert first.decide(name, "credit=1").status == 303
+        assert second.decide(name, "credit=back").status == 303
+        assert {one.who for one in Ledger(out).current().values()} == {"Ann"}
+
+
+def test_hints_are_for_a_person_and_no_marks(out):
+    served = Class(out)
+    said = {
+        student: text for one in served.clusters.values() for student, text in one.hints if one.question == "turns/sum"
+    }
+    hints = [(student, text) for one in served.clusters.values() for student, text in one.hints]
+    assert ("copies", "the same unusual wrong answer as 1 other") in hints
+    assert ("pokes", "the notebook opened /etc/passwd") in hints
+    assert "right" not in said
+    assert {record["student"]: record["points"] for record in served.records}["copies"] == 5
+
+
+def test_equal_code_is_a_hint_only_where_few_have_it(out):
+    records = Class(out).records
+    same = [
+        "x = 1",
+        "sine = sm.sin(alpha)*sm.cos(beta) + sm.cos(alpha)*sm.sin(beta)  # mine\n" * 2,
+        "check('turns/sum', sine)",
+    ]
+    one, other = json.loads(json.dumps([records[0], records[1]]))
+    for record in (one, other):
+        record["answers"]["turns/sum"]["cell"] = 2
+    found = hints_of([one, other, *records[2:]], lambda digest: same)
+    assert any("sign by sign" in said for said in found[one["student"], "turns/sum"])
+    everybody = json.loads(json.dumps(records))
+    for record in everybody:
+        record["answers"]["turns/sum"]["cell"] = 2
+    assert not any("sign by sign" in said for said in sum(hints_of(everybody, lambda digest: same).values(), []))
+
+
+def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
+    records = json.loads(json.dumps(Class(out).records))
+    one, other, third = (record["student"] for record in records[:3])
+
+    def said_of(*tried):
+        for record, answers in zip(records, tried, strict=False):
+            record["remembered"] = {"turns/sum": {"tries": len(answers), "tried": answers, "help": ""}}
+        found = hints_of(records, lambda digest: [])
+        return {
+            student: [said for said in found[student, "turns/sum"] if "tried on the way" in said]
+            for student in (one, other, third)
+        }
+
+    shared = said_of(["aaaaaa", "bbbbbb", "cccccc"], ["bbbbbb", "aaaaaa"], ["dddddd"])
+    assert shared[one] == shared[other] == ["2 unusual wrong answers were tried on the way that one other tried, too"]
+    assert shared[third] == []
+    assert not any(said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values())  # one may be chance
+    usual = said_of(*[["aaaaaa", "bbbbbb"]] * len(records))
+    assert not any(usual.values())
+
+
+def test_names_are_hidden_on_request(out):
+    with Served(out, hide_names=True) as served:
+        _, text = served.ask(f"/{served.secret}/answer/{first_of(served, 'hints')}")
+        shown = re.sub(r'(value|href)="[^"]*"', "", text)
+        assert "student " in shown and not re.search("copies|was-copied|pokes", shown)
+
+
+def test_shares_are_disjoint_and_together_all(out):
+    whole = set(Class(out).clusters)
+    parts = [set(Class(out, (order, 3)).clusters) for order in (1, 2, 3)]
+    assert set.union(*parts) == whole and sum(map(len, parts)) == len(whole)
+
+
+def test_the_commands(out, capsys, tmp_path, graded):
+    with pytest.raises(SystemExit, match="a share is one of several"):
+        main(["review", str(out), "--share", "4/3"])
+    with pytest.raises(SystemExit, match="no records"):
+        main(["review", str(tmp_path / "empty")])
+    other = tmp_path / "other"
+    shutil.copytree(out, other)
+    found = Store(out).read("copies", "turns")
+    Ledger(out).add(found, "turns/sum", 1, who="Ann")
+    Ledger(other).add(found, "turns/sum", 0, who="Bea")
+    main(["merge", str(out), str(other / "ledger.jsonl")])
+    assert "1 decisions" in capsys.readouterr().out.splitlines()[0]
+    with pytest.raises(SystemExit, match="there is no .*decided nothing yet"):
+        main(["merge", str(out), str(tmp_path / "none")])
+
+
+def test_who_stops_judging_has_the_decisions_in_the_marks(out, graded):
+    solutions = str(graded / "solutions")
+    command = [sys.executable, "-m", "coursework", "review", str(out), "--solutions", solutions]
+    # Whoever starts the tests in the background has them, and all that they start, not hear Ctrl+C.
+    hear = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=hear) as page:
+        assert "Open this address" in page.stdout.readline()
+        Ledger(out).add(Store(out).read("rounded-1", "turns"), "turns/sum", 0.5, comment="Nearly.")
+        page.send_signal(signal.SIGINT)
+        said = page.stdout.read()
+    assert "'rounded-1', turns: 5 -> 5.5" in said and "1 moved." in said
+    assert "Nearly." in (out / "feedback" / "rounded-1" / "turns.html").read_text()
+
+
+# ---- free text and plots
+
+PLOT = [
+    ("code", "import matplotlib.pyplot as plt\n\nfrom coursework import check"),
+    ("code", "### BEGIN SOLUTION\nplt.plot([0, 1, 2], [0, 1, 4])\n### END SOLUTION"),
+    ("code", '### BEGIN SOLUTION\nseen = "It bends upwards, as a square does."\n### END SOLUTION'),
+    (
+        "code",
+        "check('plots/seen', seen)\n### BEGIN HIDDEN TESTS\nquestion('plots/seen', kind='free text', worth=4, "
+        "rubric=['sees the bend', 'names the square'])\n### END HIDDEN TESTS",
+    ),
+]
+
+
+def picture(color):
+    """A plot as Jupyter keeps it."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure, data = Figure(figsize=(5, 3), dpi=80), io.BytesIO()
+    figure.subplots().plot([0, 1, 2], [0, 1, 4], color=color)
+    FigureCanvasAgg(figure).print_png(data)
+    return base64.b64encode(data.getvalue()).decode()
+
+
+@pytest.fixture(scope="module")
+def plotted(tmp_path_factory):
+    """The results of a class that drew and wrote; not all of what they drew is a picture."""
+    place = tmp_path_factory.mktemp("plots")
+    (place / "solutions").mkdir()
+    nbformat.write(notebook(PLOT), place / "solutions" / "plots.ipynb")
+    drawn = {
+        "ada": [{"image/png": picture("C0"), "text/plain": "<Figure>"}],
+        "ben": [{"image/png": picture("C3")}, {"image/png": base64.b64encode(SCRIPT.encode()).decode()}],
+        "eve": [{"image/svg+xml": f"<svg>{SCRIPT}</svg>"}, {"image/png": f'"> {SCRIPT}'}, {"text/html": SCRIPT}],
+    }
+    for student, shown in drawn.items():
+        cells = [PLOT[0], "plt.plot([0, 1, 2], [0, 1, 4])", f"seen = 'It bends upwards, says {student}.'"]
+        made = notebook([*cells, "check('plots/seen', seen)"])
+        made.cells[2].source = f"plt.plot([0, 1, 2], [0, 1, 4])\n{made.cells[2].source}"
+        made.cells[2].outputs = [nbformat.v4.new_output("display_data", data) for data in shown]
+        put(place / "submissions", student, made, "plots.ipynb")
+    grade(place / "submissions", place / "out", solutions=place / "solutions", limits=LIMITS, show=io.StringIO())
+    return place / "out"
+
+
+def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
+    with Served(plotted) as served:
+        assert "img-src data:;" in POLICY
+        _, text = served.ask(f"/{served.secret}/")
+        answers = re.findall(r"answer/([0-9a-f]{16})", text)
+        pages = [served.ask(f"/{served.secret}/answer/{one}")[1] for one in dict.fromkeys(answers)]
+    assert len(pages) == 3
+    for page in pages:
+        (student,) = re.findall(r"bends upwards, says (\w+)", page.partition("The code of")[0])
+        beside, _, code = page.partition("<form")
+        assert beside.count('<img src="data:image/png;base64,') == (student != "eve") and "<img" not in code
+        assert f'<p class="prose">It bends upwards, says {student}.</p>' in beside
+        assert "sees the bend" in page and "<svg>" not in page and "onerror=alert(2)>" not in page
+        assert len(re.findall("<script", page)) == 1
+
+
+# ---- in a browser
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_pages_are_accessible_and_fit_a_telephone(out, plotted, browser, scheme):
+    from pathlib import Path
+
+    axe = (Path(__file__).parents[3] / "node_modules" / "axe-core" / "axe.min.js").read_text("utf8")
+    with Served(out) as served, Served(plotted) as of_plots:
+        # The page's own policy lets no script in; it is tested elsewhere, and set aside for this one.
+        context = browser.new_context(color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True)
+        page = context.new_page()
+        written = [out / "report.html", *(out / "feedback").glob("[hb]*/turns.html")]
+        assert len(written) == 3
+        for place in (
+            f"{served.address}?show=all",
+            f"{served.address}answer/{first_of(served, 'hints')}?show=hints",
+            f"{of_plots.address}answer/{first_of(of_plots)}",
+            *(path.as_uri() for path in written),
+        ):
+            page.goto(place)
+            page.evaluate(axe)
+            found = page.evaluate("async () => (await axe.run()).violations.map(v => v.id + ': ' + v.nodes[0].html)")
+            assert found == []
+            assert page.evaluate("document.documentElement.scrollWidth") <= 380
+        context.close()
+
+
+@pytest.mark.long
+def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
+    """A class of a hundred, each answer different: every one decided, without a mouse, and nothing lost."""
+    out = shutil.copytree(graded / "out", tmp_path / "out")
+    store = Store(out)
+    found = store.read("rounded-0", "turns")
+    for record in store.all():
+        store.place(record["student"], record["assignment"]).unlink()
+    for number in range(100):
+        one = json.loads(json.dumps(found))
+        one["student"] = f"student-{number:03}"
+        one["marks"]["turns/sum"]["group"] = f"{number:016x}"
+        one["answers"]["turns/sum"]["plain"]["nodes"][0][-1] = f"1.000{number:03}"
+        store.save(one)
+    with Served(out) as served:
+        # The page's own policy lets no script of a test in either; what it says is tested above.
+        page = browser.new_context(bypass_csp=True).new_page()
+        requests = []
+        page.on("request", lambda request: requests.append(request.url))
+        page.goto(served.address)
+        page.keyboard.press("n")
+        for number in range(100):
+            # The page's policy forbids to wait by a script; what is seen on it does as well.
+            page.locator(".steps", has_text=re.compile(rf"\b1 of {100 - number}\b")).wait_for(timeout=60_000)
+            if number == 3:
+                page.keyboard.press("c")
+                page.keyboard.type("Rounded: 4 digits")  # a sign in a field is no command
+                page.keyboard.press("Escape")
+            with page.expect_navigation():
+                page.keyboard.press("4" if number % 2 else "2")
+        page.goto(served.address)
+        assert "0 answers wait" in page.text_content("main")
+        page.context.close()
+    assert all(url.startswith("http://127.0.0.1:") for url in requests)
+    decided = Ledger(out).current()
+    assert len(decided) == 100
+    assert sorted(one.credit for one in decided.values()) == [0.5] * 50 + [1] * 50
+    assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]

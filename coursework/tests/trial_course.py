@@ -1,0 +1,57 @@
+"""A course of one notebook for the tests of authoring: its source, and where everything goes."""
+
+import nbformat
+
+from coursework.authoring.course import Course
+
+
+def made_in(folder, sources=None, exercises=None, sealed=None):
+    """A course in a folder, or with some of its folders elsewhere."""
+    places = {"sources": sources, "exercises": exercises, "sealed": sealed}
+    return Course(
+        folder,
+        "Trial",
+        archive=folder / "exercises.zip",
+        **{name: given or folder / name for name, given in places.items()},
+    )
+
+
+def write_source(folder, *cells, name="trial"):
+    notebook = nbformat.v4.new_notebook()
+    for number, (kind, text, *tags) in enumerate(cells):
+        cell = nbformat.v4.new_code_cell(text) if kind == "code" else nbformat.v4.new_markdown_cell(text)
+        cell["id"] = f"cell-{number}"
+        cell.metadata["tags"] = list(tags)
+        notebook.cells.append(cell)
+    folder.mkdir(exist_ok=True)
+    nbformat.write(notebook, folder / f"{name}.ipynb")
+    return folder / f"{name}.ipynb"
+
+
+SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("theta")'
+SOLUTION = (
+    "### BEGIN SOLUTION\nworking = sm.sin(theta)\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), working], "
+    "[0, -working, sm.cos(theta)]])\n### END SOLUTION"
+)
+HIDDEN = (
+    "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='rotation matrix', frames=('A', 'N'), "
+    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not "
+    "move.')\n"
+    "### END HIDDEN TESTS"
+)
+FUNCTION = (
+    '### BEGIN SOLUTION\ndef doubled(number):\n    """Return twice the number."""\n    "a quoted remark"\n'
+    "    return 2*number\n### END SOLUTION"
+)
+HIDDEN_FUNCTION = (
+    "### BEGIN HIDDEN TESTS\nquestion('trial/doubled', kind='function', result='expression', "
+    "calls=[[0.5], [0.75]])\n### END HIDDEN TESTS"
+)
+CELLS = [
+    ("markdown", "# Exercises"),
+    ("code", SETUP),
+    ("code", SOLUTION),
+    ("code", f"check('trial/about-x', A_C_N)\n{HIDDEN}"),
+    ("code", FUNCTION),
+    ("code", f"check('trial/doubled', doubled)\n{HIDDEN_FUNCTION}"),
+]

@@ -1,0 +1,305 @@
+"""``python -m notebook_pages.anywhere``: numbers as other machines have them.
+
+Every cell is run, all that is sealed or released is made, and every doctest is tried as if this processor were
+another one: with each kernel of OpenBLAS, without the instructions that NumPy would not have there, on one thread and
+on many; and what needs SymPy only in WebAssembly, in the Python of browsers. A table says what moved and by how much.
+"""
+
+import argparse
+import ctypes
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections import defaultdict
+from concurrent.futures import ProcessPoolExecutor
+from hashlib import sha256
+from importlib.util import find_spec
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+
+from .execution import STORED
+from .live.cells import ALONE, kinds_of_cells, outputs_of_messages, stored_outputs, write_python
+from .live.runtime import COMPILER, PYODIDE
+from .moves import moves, moves_of_outputs
+from .notebooks import all_notebooks
+from .paths import NODE, PACKAGES, REPOSITORY
+from .warm_kernels import WarmAsyncKernelManager
+
+#: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a processor has not that is as old as that.
+KERNELS = {
+    "Prescott": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
+    "Nehalem": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
+    "Haswell": ("X86_V4", "AVX512_ICL", "AVX512_SPR"),
+    "SkylakeX": (),
+}
+#: What SkylakeX needs.
+NEEDED = "X86_V4"
+#: Among threads OpenBLAS shares out what it adds up: the sums come in another order.
+THREADS = {"one thread": "1", "four threads": "4"}
+DOCTESTS = ("src/orientation", "src/orientation_figures", "src/orientation_recordings", "coursework/src/coursework")
+BROWSERS = "WebAssembly"
+
+
+# --- on one machine -----------------------------------------------------------------------------
+
+
+def numbers_here(only):
+    """What this process finds: the moves of cells, the failed doctests, and a digest of all that is released."""
+    return {
+        "kernel": kernel_in_use(),
+        "cells": moves_of_cells(only),
+        "doctests": failed_doctests(),
+        "released": digests_of_releases(only),
+    }
+
+
+def kernel_in_use():
+    """The kernel that NumPy's OpenBLAS has chosen, by its own word; empty where NumPy has another library."""
+    import numpy  # loads it
+
+    for file in Path(numpy.__file__).parent.with_name("numpy.libs").glob("*openblas*"):
+        name = ctypes.CDLL(str(file)).scipy_openblas_get_corename64_
+        name.restype = ctypes.c_char_p
+        return name().decode()
+    return ""
+
+
+def notebooks(only):
+    paths = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
+    return [path for path in paths if not only or path.stem in only]
+
+
+def moves_of_cells(only):
+    with ProcessPoolExecutor(os.cpu_count()) as pool:  # each has a process of its own that forks kernels
+        return [told for found in pool.map(moves_in, notebooks(only)) for told in found]
+
+
+def moves_in(path):
+    """Run a notebook; give each move as its place, its words, and which share it is of what is allowed."""
+    stored, now = (nbformat.read(path, as_version=4) for _ in range(2))
+    NotebookClient(
+        now,
+        timeout=600,
+        allow_errors=True,
+        coalesce_streams=True,
+        kernel_manager_class=WarmAsyncKernelManager,
+        resources={"metadata": {"path": str(path.parent)}},
+    ).execute()
+    cells = [pair for pair in zip(stored.cells, now.cells) if pair[0].cell_type == "code"]
+    return [
+        told
+        for number, (before, after) in enumerate(cells)
+        if before.execution_count is not None
+        for told in in_words(place_of(path, number), moves_of_outputs(before.outputs, after.outputs))
+    ]
+
+
+def place_of(path, number):
+    return f"{path.relative_to(REPOSITORY).with_suffix('')}, cell {number}"
+
+
+def in_words(place, found):
+    if found is None:
+        return [(place, "other outputs than stored", math.inf)]
+    exact = place.startswith(STORED)  # what is released is compared byte by byte
+    return [(place, str(move), math.inf if exact else move.share) for move in found]
+
+
+def failed_doctests():
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "pytest",
+            "--doctest-modules",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "-o",
+            "addopts=",
+            *DOCTESTS,
+        ],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
+    )
+    failed = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return failed or ([done.stdout + done.stderr] if done.returncode else [])
+
+
+def digests_of_releases(only):
+    """What is released of each notebook and sealed of each variant, before the slow hash that seals it."""
+    from coursework.authoring.course import find_course
+    from coursework.authoring.source import notebooks_in
+
+    paths = [path for path in notebooks_in(find_course(REPOSITORY).sources) if not only or path.stem in only]
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        return {name: digest for found in pool.map(digests_of, paths) for name, digest in found.items()}
+
+
+def digests_of(path):
+    from coursework.authoring.release import exercise_notebook
+    from coursework.authoring.source import read_source
+
+    with open(os.devnull, "w") as nowhere:
+        sys.stdout = nowhere
+        try:
+            source = read_source(path)
+            found = {path.stem: digest([cell.source for cell in exercise_notebook(source).cells])}
+            count = max((rule.count for rule in source.rules.values()), default=1)
+            for number in range(count):
+                of_variant = source if number == 0 else read_source(path, number)
+                for name, question in of_variant.questions.items():
+                    found[f"{name}, variant {number}"] = digest(contents(question))
+        finally:
+            sys.stdout = sys.__stdout__
+    return found
+
+
+def contents(question):
+    """All that a seal follows from."""
+    cases = {text: entry.cases for text, entry in question.entries.items()}
+    return [question.public, cases, question.near, question.solution, question.after, question.ladder]
+
+
+def digest(content):
+    return sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()[:16]
+
+
+# --- in the Python of browsers ------------------------------------------------------------------
+
+#: Run as the page runs it, by the program with which the build finds out what each cell needs.
+IN_A_BROWSER = """
+import io, os, sys
+os.chdir("/wheels")
+sys.path.insert(0, "/wheels/packages")
+sys.argv = ["-c", "python", *{packages!r}]
+sys.stdin = io.StringIO(open("codes.json").read())
+sys.__stdout__ = open("told.json", "w")
+{program}
+sys.__stdout__.close()
+"""
+
+
+def numbers_in_a_browser(only):
+    kinds = kinds_of_cells()
+    with tempfile.TemporaryDirectory() as packages:
+        for name in PACKAGES:
+            shutil.copytree(find_spec(name).submodule_search_locations[0], Path(packages, name), ignore=UNUSED)
+        for name in ("sympy", "mpmath"):
+            shutil.copytree(find_spec(name).submodule_search_locations[0], Path(packages, name), ignore=UNUSED)
+        found = []
+        for path in notebooks(only):
+            found += moves_in_a_browser(path, kinds[str(path.relative_to(REPOSITORY).with_suffix(""))], packages)
+    return {"kernel": "", "cells": found, "doctests": [], "released": {}}
+
+
+UNUSED = shutil.ignore_patterns("__pycache__", "tests", "variants")
+
+
+def moves_in_a_browser(path, kinds, packages):
+    """The moves of those cells of a notebook that need SymPy only."""
+    cells = [cell for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    if not any(not kind["needs"] for kind in kinds):
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        write_python(folder / "python")
+        shutil.copytree(packages, folder / "packages")
+        (folder / "codes.json").write_text(json.dumps([cell.source for cell in cells]), "utf8")
+        program = folder / "program.py"
+        program.write_text(IN_A_BROWSER.format(packages=PACKAGES, program=ALONE), "utf8")
+        subprocess.run([NODE, COMPILER[0], PYODIDE / "pyodide.mjs", program, folder], check=True)
+        told = json.loads((folder / "told.json").read_text("utf8"))
+    found = []
+    for number, (cell, kind, one) in enumerate(zip(cells, kinds, told, strict=True)):
+        if kind["needs"] or cell.execution_count is None:
+            continue
+        before, after = stored_outputs(cell), outputs_of_messages(one["messages"])
+        if one["outcome"]["status"] != "ok" or [form for form, _ in before] != [form for form, _ in after]:
+            found.append((place_of(path, number), str(one["outcome"])[:200], math.inf))
+        for (_, text), (_, now) in zip(before, after):
+            found += in_words(place_of(path, number), moves(text, now))
+    return found
+
+
+# --- on all of them -----------------------------------------------------------------------------
+
+
+def machines():
+    """Each machine that this processor can be, with what is to be said to its libraries; and those it cannot be."""
+    import numpy._core._multiarray_umath as umath
+
+    has = {name for name, there in umath.__cpu_features__.items() if there}
+    possible, impossible = {"as it is": {}}, {}
+    for kernel, lacking in KERNELS.items():
+        if kernel == "SkylakeX" and NEEDED not in has:
+            impossible[kernel] = "this processor has no AVX-512"
+            continue
+        disabled = " ".join(name for name in lacking if name in has)
+        for words, threads in THREADS.items():
+            possible[f"{kernel}, {words}"] = {
+                "OPENBLAS_CORETYPE": kernel,
+                "OPENBLAS_NUM_THREADS": threads,
+                **({"NPY_DISABLE_CPU_FEATURES": disabled} if disabled else {}),
+            }
+    return possible, impossible
+
+
+def numbers_of(environment, only):
+    done = subprocess.run(
+        [sys.executable, "-m", __spec__.name, "--here", *only],
+        cwd=REPOSITORY,
+        env=os.environ | environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("only", nargs="*", help="notebooks, by the names of their files; all of them if there is none")
+    parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.here:
+        print(json.dumps(numbers_here(options.only)))
+        return
+    possible, impossible = machines()
+    faults, first = [], None
+    print("| machine | cells that moved | the largest move | doctests that fail | released otherwise |")
+    print("| --- | ---: | --- | ---: | ---: |")
+    for name, environment in [*possible.items(), (BROWSERS, None)]:
+        found = numbers_in_a_browser(options.only) if environment is None else numbers_of(environment, options.only)
+        wanted = (environment or {}).get("OPENBLAS_CORETYPE")
+        if wanted and found["kernel"] and found["kernel"] != wanted:
+            faults.append(f"{name}: OpenBLAS has chosen {found['kernel']}")
+        first = first or found["released"]
+        others = [what for what, known in found["released"].items() if first.get(what) != known]
+        print(row(name, found["cells"], found["doctests"], others), flush=True)
+        faults += [f"{name}: {place}: {words}" for place, words, share in found["cells"] if share > 1]
+        faults += [f"{name}: {line}" for line in found["doctests"]]
+        faults += [f"{name}: {what} is released otherwise than on this machine as it is" for what in others]
+    for name, why in impossible.items():
+        print(f"| {name} | not tried: {why} | | | |")
+    sys.exit("\n".join(faults) or 0)
+
+
+def row(name, moved, doctests, released):
+    places = defaultdict(list)
+    for place, words, _ in moved:
+        places[place].append(words)
+    largest = max(moved, key=lambda told: told[2], default=("", "", 0))
+    told = f"{largest[0]}: {largest[1]}" if moved else ""
+    return f"| {name} | {len(places)} | {told} | {len(doctests)} | {len(released)} |"
+
+
+if __name__ == "__main__":
+    main()

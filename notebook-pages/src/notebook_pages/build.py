@@ -1,0 +1,65 @@
+"""``python -m notebook_pages.build``: build the book, and accept nothing less than all of it."""
+
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import yaml
+
+from . import install, lite, whole_book
+from .paths import BUILD, HTML, contents, exam_edition, pages
+
+EXAM_CONTENTS = BUILD / "_toc.yml"  # what is in an exam edition
+
+
+def missing_pages():
+    """Pages that did not come out as real HTML with a title of their own."""
+    files = {page: HTML / f"{page}.html" for page in pages()}
+    return [page for page, file in files.items() if not file.is_file() or "<h1>" not in file.read_text("utf8")]
+
+
+def forget_site():
+    """Remove the built site, so that the next build makes every page anew."""
+    for folder in (HTML, BUILD / ".doctrees"):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def contents_of_this_edition():
+    """What Jupyter Book is told of the contents; of an edition that was built before, nothing is left over."""
+    if EXAM_CONTENTS.exists() != exam_edition():
+        forget_site()
+    EXAM_CONTENTS.unlink(missing_ok=True)
+    if not exam_edition():
+        return []
+    BUILD.mkdir(exist_ok=True)
+    EXAM_CONTENTS.write_text(yaml.safe_dump(contents(), sort_keys=False), "utf8")
+    return ["--toc", EXAM_CONTENTS.resolve()]
+
+
+def main():
+    start = time.monotonic()
+    print("Building the book ...", flush=True)
+    jupyter_book = Path(sys.executable).with_name("jupyter-book")
+    # What was fetched for browsers is byte-compiled while the pages are read one by one.
+    ahead = subprocess.Popen([sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"])
+    command = [jupyter_book, "build", ".", "-q", "-W", "-n", "--keep-going", *contents_of_this_edition()]
+    code = subprocess.run(command).returncode
+    ahead.wait()
+    if code == 0 and (missing := missing_pages()):
+        print("These pages did not come out:", ", ".join(missing), file=sys.stderr)
+        code = 1
+    if code:
+        # Sphinx warns of a page only when it reads it: without this, a second
+        # try would find nothing to do and call the same faulty book built.
+        forget_site()
+        sys.exit("The book was not built: see the warnings above.")
+    lite.write(HTML)
+    whole_book.withdraw_outdated()
+    install.write_list(HTML)
+    print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
+
+
+if __name__ == "__main__":
+    main()

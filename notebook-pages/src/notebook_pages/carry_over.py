@@ -1,0 +1,76 @@
+"""``python -m notebook_pages.carry_over PREVIOUS [SITE]``: let tabs that show the edition published last go on.
+
+A page that is open asks, when its code first runs, for files named by their content. ``PREVIOUS``, the address or the
+folder at which the last edition is published, lists them (``lasting.json``): those that ``SITE``, about to be published
+there, has not are put beside its own. Of the edition before that nothing is kept: such a page says that it is to be
+loaded anew.
+"""
+
+import json
+import sys
+import urllib.error
+import urllib.parse
+import urllib.request
+from pathlib import Path, PurePosixPath
+
+from .install import BY_CONTENT, LASTING
+from .paths import HTML
+
+PATIENCE = 60  # seconds
+
+
+def reader(previous):
+    """What gives a file of the last edition by its path: its bytes, or ``None`` where there is none."""
+    if "://" not in previous:
+        return lambda path: (Path(previous) / path).read_bytes() if (Path(previous) / path).is_file() else None
+
+    def read(path):
+        address = urllib.parse.urljoin(previous.rstrip("/") + "/", urllib.parse.quote(path))
+        try:
+            with urllib.request.urlopen(address, timeout=PATIENCE) as answer:
+                return answer.read()
+        except urllib.error.HTTPError as error:
+            if error.code in (404, 410):
+                return None
+            raise
+
+    return read
+
+
+def carry_over(previous, site=HTML):
+    """Put into ``site`` what the edition at ``previous`` names by its content; return the paths, or ``None``.
+
+    ``None`` means that nothing is published there, or no list: it is the first edition that has one.
+    """
+    read = reader(previous)
+    listed = read(LASTING)
+    if listed is None:
+        return None
+    carried = []
+    for path in json.loads(listed):
+        if not BY_CONTENT.fullmatch(path) or ".." in PurePosixPath(path).parts:
+            raise ValueError(f"{LASTING} of {previous} names {path!r}, which is not named by its content")
+        place = site / path
+        if not place.exists() and (content := read(path)) is not None:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(content)
+            carried.append(path)
+    return carried
+
+
+def main():
+    if not 2 <= len(sys.argv) <= 3:
+        sys.exit(
+            "python -m notebook_pages.carry_over PREVIOUS [SITE]: where the last edition is, and the new one's folder"
+        )
+    previous, site = sys.argv[1], Path(*sys.argv[2:]) if sys.argv[2:] else HTML
+    carried = carry_over(previous, site)
+    if carried is None:
+        print(f"Nothing is carried over: at {previous} no edition lists what lasts ({LASTING}).")
+    else:
+        size = sum((site / path).stat().st_size for path in carried)
+        print(f"{len(carried)} files ({size / 1e6:.1f} MB) of the last edition stay, for the tabs that are open.")
+
+
+if __name__ == "__main__":
+    main()

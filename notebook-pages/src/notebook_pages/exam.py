@@ -1,0 +1,73 @@
+"""The exam edition: the book without worked solutions, and without a sentence that leads to one.
+
+``exam_edition: true`` in ``_config.yml`` makes it, or BOOK_EXAM=1 for one build. The pages of solutions are left out of
+the contents (see :mod:`notebook_pages.paths`), so that nothing is made of them; here the sentences that refer to them
+go.
+"""
+
+import re
+
+from docutils import nodes
+from sphinx import addnodes
+
+from .paths import exam_edition, is_solutions
+
+#: Between two sentences of a paragraph.
+BETWEEN = re.compile(r"(?<=[.!?])\s+")
+#: The label of a worked solution begins so, and that of a page of them is so.
+LABEL = re.compile(r"solutions?(?:-|$)")
+
+
+def leads_to_solution(node):
+    """Whether ``node`` refers to a worked solution, or to a page of them."""
+    if not isinstance(node, addnodes.pending_xref):
+        return False
+    target = node["reftarget"]
+    return is_solutions(target) if node["reftype"] == "doc" else LABEL.match(target) is not None
+
+
+def sentences(paragraph):
+    """The children of ``paragraph`` by sentence: lists of nodes, text cut where a sentence ends."""
+    found = [[]]
+    for child in paragraph.children:
+        if not isinstance(child, nodes.Text):
+            found[-1].append(child)
+            continue
+        for place, piece in enumerate(BETWEEN.split(child.astext())):
+            if place:
+                found.append([])
+            if piece:
+                found[-1].append(nodes.Text(piece))
+    return [sentence for sentence in found if sentence]
+
+
+def without_solutions(paragraph):
+    """Take the sentences that lead to a solution out of ``paragraph``; the whole of it, if no other is left."""
+    kept = [
+        sentence
+        for sentence in sentences(paragraph)
+        if not any(leads_to_solution(node) for child in sentence for node in child.findall())
+    ]
+    if not kept:
+        paragraph.parent.remove(paragraph)
+        return
+    paragraph.clear()
+    for place, sentence in enumerate(kept):
+        paragraph += [*([nodes.Text(" ")] if place else []), *sentence]
+
+
+def strip(app, doctree):
+    """Leave in a page nothing that leads to a solution."""
+    for paragraph in list(doctree.findall(nodes.paragraph)):
+        if any(leads_to_solution(node) for node in paragraph.findall()):
+            without_solutions(paragraph)
+
+
+def begin(app, config):
+    if exam_edition():
+        app.connect("doctree-read", strip, priority=100)  # before others note what a page refers to
+
+
+def setup(app):
+    app.add_config_value("exam_edition", False, "env", bool)
+    app.connect("config-inited", begin)

@@ -1,0 +1,221 @@
+"""JupyterLite: the notebooks of the book in the reader's browser, in the site's folder ``lite``.
+
+It shares the interpreter and the wheels of the folder ``runtime`` (see :mod:`notebook_pages.live`), and adds to
+them what a notebook's kernel needs. A lock file of its own lists them all, so that a plain ``import`` works.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from array import array
+from collections import Counter
+from hashlib import sha256
+from pathlib import Path
+
+import nbformat
+import yaml
+
+from ..live import runtime, scripts
+from ..live.cells import kinds_of_cells
+from ..paths import BUILD, fingerprint, moment_of_sources
+from ..take_away import first_words, is_notebook, notebook_address, notebook_pages
+
+HERE = Path(__file__).parent
+FOLDER = "lite"
+LOCK = "lite-lock.json"
+FETCHED = runtime.FETCHED_FOR_NOTEBOOKS
+WORKSHOP = BUILD / FOLDER
+APPS = ("notebooks", "tree", "edit")  # one notebook, the list of all of them, a text file
+# The parts of the interface that are not JupyterLite's own: the kernel, sliders, and the moving figures.
+EXTENSIONS = ("@jupyterlite/pyodide-kernel-extension", "@jupyter-widgets/jupyterlab-manager", "anywidget")
+LABEXTENSIONS = Path(sys.prefix) / "share" / "jupyter" / "labextensions"
+KERNEL_WHEELS = LABEXTENSIONS / EXTENSIONS[0] / "static" / "pypi"
+KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
+NOTE = (
+    "> This page of *{title}* runs in your browser. What you change is kept in this browser, on this machine; "
+    "*File > Download* gives you the notebook. Text: CC BY 4.0. Code: BSD-3-Clause."
+)
+NUMERICAL = (
+    "*From here on, cells of this page compute or draw with NumPy and Matplotlib. The next cell fetches them from "
+    "{place}.*",
+    "import matplotlib\nimport numpy",
+)
+PLACES = {"official": "`cdn.jsdelivr.net`, where Pyodide's makers serve them", "folder": "the place of these pages"}
+
+
+def wheels_of_kernel():
+    kernel = [wheel for name in KERNEL for wheel in KERNEL_WHEELS.glob(f"{name}-*.whl")]
+    return [*sorted(FETCHED.glob("*.whl")), *kernel]
+
+
+def compile_ahead():
+    """Byte-compile what was fetched for browsers, the dearest part first; whoever needs it then finds it."""
+    for wheels in (sorted(runtime.FETCHED.glob("*.whl")), wheels_of_kernel()):
+        runtime.compile_wheels(wheels)
+
+
+def write_lock(site):
+    """Put the wheels of the kernel beside the others, and list all of them; return the names of what to load."""
+    target = site / runtime.FOLDER
+    lock = json.loads((target / runtime.LOCK).read_text("utf8"))
+    added = runtime.own_packages(runtime.compile_wheels(wheels_of_kernel()), target)
+    packages = lock["packages"] | added
+    (target / LOCK).write_text(json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8")
+    return sorted({*added, *runtime.with_dependencies([runtime.DISTRIBUTION], packages)})
+
+
+def fingerprint_of_code(text):
+    """The short hash that the scripts of the page make of a cell's code (``fingerprint`` in live/js/answers.js)."""
+    a, b, word = 0xDEADBEEF, 0x41C6CE57, 0xFFFFFFFF
+    for unit in array("H", text.encode("utf-16-le")):
+        a = (a ^ unit) * 2654435761 & word
+        b = (b ^ unit) * 1597334677 & word
+    a = ((a ^ a >> 16) * 2246822507 ^ (b ^ b >> 13) * 3266489909) & word
+    b = ((b ^ b >> 16) * 2246822507 ^ (a ^ a >> 13) * 3266489909) & word
+    number, digits = (b & 0x1FFFFF) << 32 | a, ""
+    while number:
+        number, digit = divmod(number, 36)
+        digits = "0123456789abcdefghijklmnopqrstuvwxyz"[digit] + digits
+    return digits or "0"
+
+
+def stamp(notebook):
+    """Say in the notebook what the book had in each of its code cells, by the names that the page gives them.
+
+    A copy that a reader keeps can then be told from a newer edition, and its answers from the book's code.
+    """
+    seen, cells = Counter(), {}
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            print_ = fingerprint_of_code(cell.source.rstrip())
+            name = cell.metadata.get("nbgrader", {}).get("grade_id") or f"{print_}-{seen[print_]}"
+            seen[print_] += not cell.metadata.get("nbgrader", {}).get("grade_id")
+            cells[cell.id] = [name, print_]
+    notebook.metadata["book"] = {"cells": cells}
+    return notebook
+
+
+def announce_numpy(notebook, kinds, place):
+    """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws with it.
+
+    The kernel fetches what a cell imports; most cells here use NumPy through our own package only. Here nothing stands
+    in for it, as on the page.
+    """
+    codes = [position for position, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
+    for position, kind in zip(codes, kinds, strict=True):
+        if kind["numpy"] or set(kind["needs"]) & set(runtime.NUMERICAL):
+            words, code = NUMERICAL
+            notebook.cells[position:position] = [
+                nbformat.v4.new_markdown_cell(words.format(place=place), id="numpy-why"),
+                nbformat.v4.new_code_cell(code, id="numpy"),
+            ]
+            return
+
+
+def notebook_for(site, page, settings):
+    """The notebook of a page: exercises as they were released, others as they are taken away."""
+    notebook = stamp(nbformat.read(site / notebook_address(page), as_version=4))
+    if page.startswith("exercises/"):
+        return nbformat.writes(notebook)
+    first = notebook.cells[0]
+    notes = [line for line in first.source.splitlines() if line.startswith(first_words(settings["title"]))]
+    if len(notes) != 1:
+        raise RuntimeError(f"the notebook of {page} does not say how to run it, or says it in other words")
+    first.source = first.source.replace(notes[0], NOTE.format(title=settings["title"]))
+    setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
+    if setting not in (False, "off"):
+        announce_numpy(notebook, kinds_of_cells()[page], PLACES.get(setting, PLACES["folder"]))
+    return nbformat.writes(notebook)
+
+
+def write_workshop(site, settings, names):
+    """Write what the interface is made from: the notebooks, and the settings."""
+    shutil.rmtree(WORKSHOP, ignore_errors=True)
+    for page in notebook_pages():
+        path = WORKSHOP / "files" / f"{page}.ipynb"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(notebook_for(site, page, settings), "utf8")
+    lock = sha256((site / runtime.FOLDER / LOCK).read_bytes()).hexdigest()[:12]
+    # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
+    kernel = {
+        # The kernel takes it for a module by the end of the address, servers by the name of the file.
+        "pyodideUrl": f"./../{runtime.FOLDER}/{runtime.pyodide_folder()}/pyodide.js?as=.mjs",
+        "disablePyPIFallback": True,
+        # The name is the same in every version of the book: what follows it tells them apart.
+        "loadPyodideOptions": {"lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}", "packages": names},
+    }
+    page = {
+        "appName": settings["title"],
+        "appUrl": f"./{APPS[1]}",
+        "faviconUrl": "./../_static/favicon.svg",
+        "litePluginSettings": {f"{EXTENSIONS[0]}:kernel": kernel},
+    }
+    build = {
+        "apps": APPS,
+        "contents": ["files"],
+        "ignore_sys_prefix": ["federated_extensions"],
+        "federated_extensions": [str(LABEXTENSIONS / name) for name in EXTENSIONS],
+        "no_sourcemaps": True,
+        "no_unused_shared_packages": True,
+    }
+    for name, content in (
+        ("jupyter-lite.json", {"jupyter-lite-schema-version": 0, "jupyter-config-data": page}),
+        ("jupyter_lite_config.json", {"LiteBuildConfig": build}),
+        ("overrides.json", {"@jupyterlab/apputils-extension:themes": {"adaptive-theme": True}}),
+    ):
+        (WORKSHOP / name).write_text(json.dumps(content, indent=1), "utf8")
+
+
+def bring_answers_first(target):
+    """Have the interface wait, before it opens a notebook, for what brings the page's answers into it."""
+    page = target / APPS[0] / "index.html"
+    before = page.read_text("utf8")
+    start = re.compile(r"await import\(\s*'\.\./config-utils\.js")
+    script = f"../../{scripts.folder_name()}/notebook.js"
+    # Asked for by another name, a script that did not come is fetched once more; without it the notebook opens as it is
+    # kept here, and the page's answers come into it another time.
+    wait = (
+        f"await import('{script}').catch(() => import('{script}?again')).then((first) => first.prepare())"
+        ".catch((error) => console.warn(`The answers of the page are not in this notebook yet: ${error.message}`));\n"
+        "        "
+    )
+    after, count = start.subn(lambda found: wait + found[0], before)
+    if count != 1:
+        raise RuntimeError(f"{page} starts in another way than it did: answers of the pages would not come into it")
+    page.write_text(after, "utf8")
+
+
+def write(site):
+    """Write the notebook interface into ``site``, a folder with the built pages, if anything has changed."""
+    settings = yaml.safe_load(Path("_config.yml").read_text("utf8"))
+    names = write_lock(site)
+    write_workshop(site, settings, names)
+    target = site / FOLDER
+    made = target / "made-from.txt"
+    made_from = fingerprint(WORKSHOP, HERE, *(LABEXTENSIONS / name for name in EXTENSIONS)) + scripts.folder_name()
+    if made.exists() and made.read_text("utf8") == made_from:
+        return
+    shutil.rmtree(target, ignore_errors=True)
+    # It drops local settings without a word if it finds the notes of an older run: the workshop is new each time.
+    command = [sys.executable, "-m", "jupyterlite_core", "build", "--output-dir", target.resolve()]
+    environment = os.environ | {"SOURCE_DATE_EPOCH": str(int(moment_of_sources().timestamp()))}
+    done = subprocess.run(command, cwd=WORKSHOP, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if done.returncode:
+        sys.exit(f"JupyterLite was not built:\n{done.stdout.decode()}")
+    bring_answers_first(target)
+    made.write_text(made_from, "utf8")
+
+
+def add_link(app, pagename, templatename, context, doctree):
+    """Give a page with a notebook the address that opens it."""
+    if is_notebook(app, pagename, doctree):
+        context["notebook_interface"] = (
+            context["pathto"](f"{FOLDER}/{APPS[0]}/index.html", 1) + f"?path={pagename}.ipynb"
+        )
+
+
+def setup(app):
+    app.connect("html-page-context", add_link)

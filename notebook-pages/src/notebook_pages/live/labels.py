@@ -1,0 +1,41 @@
+"""Write down how the labels of the book's drawings are set, so that a page draws them without Matplotlib.
+
+Run it with ``python -m notebook_pages.live.labels`` when a drawing has a new label: it runs the notebooks that draw.
+"""
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+
+import nbformat
+
+from orientation_figures.drawing import LABELS, labels_to_keep
+
+from ..notebooks import all_notebooks
+from ..paths import REPOSITORY
+from .cells import run_alone
+
+COMMAND = "python -m notebook_pages.live.labels"
+RECORD = """
+from orientation_figures import drawing as _drawing
+_plain, _texts = _drawing.typeset, set()
+_drawing.typeset = lambda text: (_texts.add(text), _plain(text))[1]
+"""
+TELL = "print(__import__('json').dumps(sorted(_texts)))"
+
+
+def texts_of(path):
+    """The texts that the drawings of a notebook hold, found by running it."""
+    cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    told = run_alone([RECORD, *cells, TELL], "everything")
+    return json.loads("".join(message["text"] for message in told[-1]["messages"] if message["type"] == "stream"))
+
+
+def main():
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        texts = {text for found in pool.map(texts_of, all_notebooks(REPOSITORY)) for text in found}
+    LABELS.write_text(json.dumps(labels_to_keep(texts), separators=(",", ":")) + "\n", "utf8")
+    print(f"{len(texts)} labels, {LABELS.stat().st_size:,} bytes")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,264 @@
+"""``python -m notebook_pages.new``: a new chapter or a new question, with every part that the book asks of one.
+
+What an author has to say stands there as TO BE WRITTEN, and :mod:`notebook_pages.chapters` tells where it still does.
+"""
+
+import argparse
+import re
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import nbformat
+
+from .chapters import CHAPTERS_SOURCE, INDEX, SOLUTIONS, TO_BE_WRITTEN, source_of
+from .notebooks import METADATA, normalise
+
+NAME = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
+
+
+class Example(NamedTuple):
+    """An answer of one kind: its variable, the statements that make it, what it is, and what the author says of it."""
+
+    variable: str
+    code: str
+    is_: str
+    arguments: str
+
+
+THETA = "an expression in the symbol `theta` (radians)"
+#: One of each kind of question; an author writes another in its place.
+EXAMPLES = {
+    "expression": Example("height", "height = sm.sin(theta)", THETA, "symbols='theta'"),
+    "vector": Example(
+        "direction",
+        "direction = [sm.cos(theta), sm.sin(theta), 0]",
+        "its three components in $N$, a list of expressions in `theta` (radians)",
+        "length=3, frames=('N',), symbols='theta', unit_vector=True",
+    ),
+    "direction cosine matrix": Example(
+        "A_C_N",
+        "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]])",
+        "the direction cosine matrix ${}^A\\mathbf{C}^N$, in the symbol `theta` (radians)",
+        "frames=('A', 'N'), symbols='theta', turns=[('x', theta)]",
+    ),
+    "matrix": Example(
+        "shear", "shear = sm.Matrix([[1, theta], [0, 1]])", "a matrix in `theta`", "shape=(2, 2), symbols='theta'"
+    ),
+    "quaternion": Example(
+        "q",
+        "q = [sm.cos(theta/2), sm.sin(theta/2), 0, 0]",
+        "the quaternion of $A$ in $N$, scalar first, in the symbol `theta` (radians)",
+        "symbols='theta', turns=[('x', theta)]",
+    ),
+    "Euler angles": Example(
+        "angles", "angles = [0.1, 0.2, 0.3]", "the three angles in radians, to four decimals", "sequence='zxy'"
+    ),
+    "axis and angle": Example(
+        "turn", "turn = ([0, 0, 1], sm.pi/3)", "a pair of the unit vector's components and the angle in radians", ""
+    ),
+    "sequence": Example("order", "order = 'zxy'", "the sequence as a text such as `'xyz'`", ""),
+    "choice": Example(
+        "side", "side = 'left'", "one of `'left'`, `'right'`, `'neither'`", "options=['left', 'right', 'neither']"
+    ),
+    "words": Example(
+        "sides",
+        "sides = ['left', 'right']",
+        "a list of two texts, each `'left'` or `'right'`",
+        "length=2, options=['left', 'right']",
+    ),
+    "measurement": Example("rate", "rate = (3.2, 'rad/s')", "the number and its unit, such as `(1.5, 'm/s')`", ""),
+    "order": Example(
+        "steps",
+        "steps = ['first', 'then', 'last']",
+        "a list of the three texts in their order",
+        "options=['first', 'last', 'then']",
+    ),
+    "free text": Example(
+        "why",
+        "why = 'Since the axis is shared.'",
+        "one or two sentences, as a text",
+        "rubric=['names the shared axis']",
+    ),
+    "truth values": Example("holds", "holds = [True, False]", "a list of two truth values", "length=2"),
+    "function": Example(
+        "doubled",
+        "def doubled(number):\n    return 2*number",
+        "a function `doubled(number)`",
+        "calls=[[1], [-2.5]], result='expression'",
+    ),
+}
+
+
+def markdown(*paragraphs):
+    return nbformat.v4.new_markdown_cell("\n\n".join(paragraphs))
+
+
+def code(text, **metadata):
+    return nbformat.v4.new_code_cell(text, metadata=metadata)
+
+
+def question_cells(name, kind):
+    """The two cells of a question: the answer, and its check with what the author says of it."""
+    example = EXAMPLES[kind]
+    symbols = "theta = sm.symbols('theta')\n" if "theta" in example.code else ""
+    arguments = ", ".join(part for part in (f"kind={kind!r}", example.arguments) if part)
+    return [
+        code(f"{symbols}### BEGIN SOLUTION\n{example.code}\n### END SOLUTION"),
+        code(
+            f"check('{name}', {example.variable})\n### BEGIN HIDDEN TESTS\n"
+            f"question('{name}', {arguments}, worth=2,\n         solution='{TO_BE_WRITTEN}: how one gets there.')\n"
+            "### END HIDDEN TESTS"
+        ),
+    ]
+
+
+def asked(kind):
+    return f"Bind `{EXAMPLES[kind].variable}` to {EXAMPLES[kind].is_}."
+
+
+def chapter_cells(name, title):
+    figure = {
+        "tags": ["hide-input"],
+        "mystnb": {"figure": {"name": f"figure-{name}", "caption": f"{TO_BE_WRITTEN}: what to see here."}},
+    }
+    return [
+        markdown(
+            f"(chapter-{name})=\n# {title}",
+            ":::{admonition} Learning objectives\n:class: objectives\nAfter this chapter you can\n\n"
+            f"- {TO_BE_WRITTEN}: what a reader can do, in a verb that can be checked.\n:::",
+            f"{TO_BE_WRITTEN}: a question from practice, which the chapter answers.",
+            f"## {TO_BE_WRITTEN}: the first idea",
+            f"{{numref}}`figure-{name}` {TO_BE_WRITTEN}: a picture before the formula.",
+        ),
+        code(
+            "import numpy as np\n\nfrom orientation import simple_dcm\n"
+            "from orientation_figures.drawing import Drawing\n\n"
+            f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for who does not see it.')\n"
+            "drawing.triad('N', np.eye(3)).triad('A', simple_dcm('z', np.radians(30)))",
+            **figure,
+        ),
+        markdown(
+            "## Exercises",
+            f"```{{exercise}} {TO_BE_WRITTEN}\n:label: exercise-{name}\n{TO_BE_WRITTEN}: the question. "
+            f"{asked('expression')}\n```",
+        ),
+        code(
+            f"from coursework import check\n\n{EXAMPLES['expression'].variable} = ...  # your answer\n"
+            f"check('chapters/{name}', {EXAMPLES['expression'].variable})"
+        ),
+        markdown(
+            f"Worked solution: {{ref}}`in the appendix <solution-{name}>`. More to answer: "
+            f"{{doc}}`the exercises of this chapter <../exercises/{name}>`.",
+            "## Summary",
+            f":::{{admonition}} Summary\n:class: summary\n- {TO_BE_WRITTEN}: what to keep.\n:::",
+        ),
+    ]
+
+
+def exercise_cells(notebook, question, title, kind):
+    """A question of a notebook of exercises, with its text; its number is the next one there."""
+    number = 1 + sum(cell.cell_type == "markdown" and cell.source.startswith("## ") for cell in notebook.cells)
+    text = f"{TO_BE_WRITTEN}: the question, with the symbols, the frames and their order, the unit of each angle."
+    return [markdown(f"## {number}. {title}", text, asked(kind)), *question_cells(question, kind)]
+
+
+def add_cells(path, cells):
+    notebook = nbformat.read(path, as_version=4)
+    notebook.cells += cells
+    nbformat.write(normalise(notebook), path)
+
+
+def add_line(path, after, line):
+    """Put ``line`` after the line ``after``, as far in as that one."""
+    lines = path.read_text("utf8").splitlines()
+    places = [number for number, text in enumerate(lines) if text.strip() == after]
+    if len(places) != 1:
+        sys.exit(f"{path}:1: the line `{after}`, after which `{line}` belongs, stands there {len(places)} times")
+    indent = lines[places[0]][: len(lines[places[0]]) - len(lines[places[0]].lstrip())]
+    lines.insert(places[0] + 1, indent + line)
+    path.write_text("\n".join(lines) + "\n", "utf8")
+
+
+def new_chapter(name, title, after):
+    """Make a chapter and its exercises, and enter both wherever the book lists them."""
+    if not re.fullmatch(NAME, name) or not title.strip():
+        sys.exit(f"A chapter has a NAME in small letters and hyphens and a TITLE; these are {name!r} and {title!r}.")
+    chapter, source = Path("chapters", f"{name}.ipynb"), source_of(name)
+    for path in (chapter, source):
+        if path.exists():
+            sys.exit(f"{path} is there already; nothing was changed.")
+    listed = re.findall(r"^ *- file: chapters/(\S+)$", Path("_toc.yml").read_text("utf8"), re.M)
+    after = after or listed[-1]
+    if after not in listed:
+        sys.exit(f"_toc.yml lists no chapter {after!r}; it has {', '.join(listed)}.")
+    add_line(Path("_toc.yml"), f"- file: chapters/{after}", f"- file: chapters/{name}")
+    add_line(Path("_toc.yml"), f"- file: exercises/{after}", f"- file: exercises/{name}")
+    add_line(INDEX, f"- {{doc}}`{after}`", f"- {{doc}}`{name}`")
+    exercises = nbformat.v4.new_notebook(metadata=METADATA)
+    exercises.cells = [
+        markdown(f"# Exercises: {title}", f"After the chapter *{title}*. {TO_BE_WRITTEN}: what holds for all of them."),
+        code("import sympy as sm\n\nfrom coursework import check"),
+    ]
+    exercises.cells += exercise_cells(exercises, f"{name}/first", TO_BE_WRITTEN, "expression")
+    nbformat.write(normalise(exercises), source)
+    new = nbformat.v4.new_notebook(cells=chapter_cells(name, title), metadata=METADATA)
+    nbformat.write(normalise(new), chapter)
+    add_cells(CHAPTERS_SOURCE, [markdown(f"## {title}"), *question_cells(f"chapters/{name}", "expression")])
+    add_cells(
+        SOLUTIONS[-1],
+        [
+            markdown(
+                f"## {title}",
+                f"```{{solution-start}} exercise-{name}\n:label: solution-{name}\n```",
+                f"{TO_BE_WRITTEN}: the worked solution, in as many cells as it takes.",
+            ),
+            markdown("```{solution-end}\n```"),
+        ],
+    )
+    return [
+        f"made     {chapter}: the chapter",
+        f"made     {source}: its exercises, with their solutions",
+        f"added to _toc.yml and {INDEX}: both pages, after those of {after}",
+        f"added to {CHAPTERS_SOURCE}: the question chapters/{name}, which the chapter asks",
+        f"added to {SOLUTIONS[-1]}: its worked solution",
+    ]
+
+
+def new_question(name, title, kind):
+    """Add a question to a notebook of exercises."""
+    notebook, _, question = name.partition("/")
+    if not re.fullmatch(f"{NAME}/{NAME}", name) or notebook == "chapters":
+        sys.exit(f"The NAME of a question is CHAPTER/QUESTION, in small letters and hyphens; this is {name!r}.")
+    if kind not in EXAMPLES:
+        sys.exit(f"There is no KIND of question {kind!r}; there are {', '.join(EXAMPLES)}.")
+    source = source_of(notebook)
+    if not source.exists():
+        sys.exit(f"There is no {source}: `make new-chapter NAME={notebook} TITLE=...` makes it.")
+    old = nbformat.read(source, as_version=4)
+    if any(f"('{name}'" in cell.source or f'("{name}"' in cell.source for cell in old.cells):
+        sys.exit(f"{source} has a question {name} already; nothing was changed.")
+    add_cells(source, exercise_cells(old, name, title or question.replace("-", " ").capitalize(), kind))
+    return [f"added to {source}: the question {name}, its answer and its check"]
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="python -m notebook_pages.new", description=__doc__.partition("\n")[0])
+    commands = parser.add_subparsers(required=True)
+    chapter = commands.add_parser("chapter")
+    chapter.add_argument("name")
+    chapter.add_argument("title")
+    chapter.add_argument("--after", help="the chapter that it follows; the last one")
+    chapter.set_defaults(make=new_chapter)
+    question = commands.add_parser("question")
+    question.add_argument("name")
+    question.add_argument("title")
+    question.add_argument("--kind", default="expression")
+    question.set_defaults(make=new_question)
+    given = vars(parser.parse_args())
+    print(*given.pop("make")(**given), sep="\n")
+    print(f"Now look for {TO_BE_WRITTEN}; `make check` tells where it stands.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,73 @@
+"""``python -m notebook_pages.notebooks [paths]``: run every notebook and store it with its outputs.
+
+This is how notebooks are committed: run from a clean kernel from the first
+cell to the last, and free of what differs from one machine or day to another.
+"""
+
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError
+
+from .moving import WIDGET
+
+PLACES = ("*.ipynb", "chapters/*.ipynb", "appendix/*.ipynb")
+METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    "language_info": {"name": "python"},
+}
+KEPT_IN_CELLS = ("tags", "mystnb")
+
+
+def all_notebooks(book):
+    """The book's notebooks, in the folder ``book``."""
+    return sorted(path for place in PLACES for path in book.glob(place))
+
+
+def normalise(notebook):
+    """Keep of the metadata what the book uses; name the cells by their place."""
+    notebook.metadata = nbformat.from_dict(METADATA)
+    notebook.nbformat, notebook.nbformat_minor = 4, 5
+    for position, cell in enumerate(notebook.cells):
+        cell["id"] = f"cell-{position}"
+        cell.metadata = {key: cell.metadata[key] for key in KEPT_IN_CELLS if key in cell.metadata}
+        for output in cell.get("outputs", []):
+            output.get("data", {}).pop(WIDGET, None)  # it names a model in a kernel that is gone
+        cell.source = "\n".join(line.rstrip() for line in cell.source.strip().splitlines())
+    return notebook
+
+
+def run(path):
+    """Run the notebook at ``path`` and store it; return what went wrong, if anything."""
+    notebook = nbformat.read(path, as_version=4)
+    notebook.cells = [cell for cell in notebook.cells if cell.source.strip()]
+    normalise(notebook)
+    client = NotebookClient(
+        notebook,
+        timeout=120,
+        resources={"metadata": {"path": path.parent}},
+        record_timing=False,
+        coalesce_streams=True,
+    )
+    try:
+        client.execute()
+    except CellExecutionError as error:
+        return f"{path}: {error}"
+    nbformat.validate(normalise(notebook))
+    nbformat.write(notebook, path)
+    print(f"ran {path}", flush=True)
+    return None
+
+
+def main():
+    paths = [Path(name) for name in sys.argv[1:]] or all_notebooks(Path())
+    with ThreadPoolExecutor(max_workers=2) as pool:  # each has a kernel of its own
+        faults = [fault for fault in pool.map(run, paths) if fault]
+    sys.exit("\n".join(faults) or 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""The packages that readers and students install: a wheel for each project that the book names.
+
+They hold no grader and no author's tools. The version of each follows from its sources, so that pip installs a
+newer one over an older one, and says that nothing is to be done where nothing has changed.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from datetime import UTC, datetime
+from functools import cache, cached_property
+from pathlib import Path
+
+from coursework.authoring.packing import TIME, dated
+
+from .paths import REGISTERED, REPOSITORY
+
+#: What else a wheel is made of, where a project has it.
+ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
+#: Where a project states its version: in its ``pyproject.toml``, or else in the first of its packages.
+STATED = re.compile(r'^(__version__|version) = "(?P<version>.*)"$', re.M)
+
+
+class Project:
+    """A project whose wheel is built for readers.
+
+    Parameters
+    ----------
+    folder, packages, left_out : str, sequences of str
+        Its folder, the packages that the wheel holds, and parts of those that readers do not get; from the root of
+        the repository.
+    repository : path, optional
+    """
+
+    def __init__(self, folder, packages, left_out=(), repository=REPOSITORY):
+        self.repository, self.folder = Path(repository), Path(folder)
+        self.packages, self.left_out = tuple(packages), tuple(left_out)
+
+    @cached_property
+    def about(self):
+        """What ``pyproject.toml`` says of it."""
+        return tomllib.loads((self.repository / self.folder / "pyproject.toml").read_text("utf8"))["project"]
+
+    @property
+    def name(self):
+        return self.about["name"]
+
+    def sources(self):
+        """The files that the wheel is made of."""
+        files = [path for place in self.packages for path in Path(self.repository, place).rglob("*") if path.is_file()]
+        left_out = [self.repository / place for place in self.left_out]
+        about = [self.repository / self.folder / name for name in ABOUT]
+        return [path for path in about if path.exists()] + sorted(
+            path
+            for path in files
+            if "__pycache__" not in path.parts
+            and path not in about
+            and not any(path.is_relative_to(place) for place in left_out)
+        )
+
+    @cache  # noqa: B019  (there are as many as the book names, and they last)
+    def version(self):
+        """The version of the wheel, such as ``1.1.0.post20261122093000``."""
+        paths = [*(str(self.folder / name) for name in ABOUT), *self.packages]
+        paths += [f":(exclude){place}" for place in self.left_out]
+        stated = STATED.search(self._stating(self.repository).read_text("utf8"))["version"]
+        return dated(stated, f"{self.name}-{stated}", self.repository, paths, self.sources())
+
+    def _stating(self, repository):
+        """The file that states the version."""
+        file = "pyproject.toml" if "version" in self.about else None
+        return Path(repository, self.folder, file) if file else Path(repository, self.packages[0], "__init__.py")
+
+    def wheel_name(self):
+        """The name of the wheel's file."""
+        return f"{self.name.replace('-', '_')}-{self.version()}-py3-none-any.whl"
+
+    def build_wheel(self, folder):
+        """Build the wheel, from a copy: setuptools leaves files behind, and here the version is set."""
+        with tempfile.TemporaryDirectory() as place:
+            for path in self.sources():
+                target = Path(place, path.relative_to(self.repository))
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(path, target)
+            stating = self._stating(place)
+            text, count = STATED.subn(rf'\1 = "{self.version()}"', stating.read_text("utf8"))
+            if count != 1:
+                raise RuntimeError(f"{stating.relative_to(place)} must state the version once; it does {count} times")
+            stating.write_text(text, "utf8")
+            command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps"]
+            subprocess.run(
+                [*command, "--no-build-isolation", "--wheel-dir", folder, Path(place, self.folder)],
+                check=True,
+                env={**os.environ, "SOURCE_DATE_EPOCH": str(int(datetime(*TIME, tzinfo=UTC).timestamp()))},
+            )
+        return Path(folder, self.wheel_name())
+
+
+#: What the book names, its own project last.
+PROJECTS = [Project(one["project"], one["packages"], one.get("leave-out", ())) for one in REGISTERED["wheels"]]
+
+
+def build_wheels(folder):
+    """Build the wheels for students; give their files."""
+    return [project.build_wheel(folder) for project in PROJECTS]

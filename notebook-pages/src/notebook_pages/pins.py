@@ -1,0 +1,179 @@
+"""``python -m notebook_pages.pins``: renew every exact version that the set-up installs, all of them or none.
+
+- ``constraints.txt``: the newest versions that pyproject.toml allows and that come as wheels, found by pip;
+- the wheels for browsers, ``live/wheels.txt`` and ``lite/wheels.txt``: the same versions, with their hashes;
+- ``package.json`` and ``package-lock.json``: the newest of each major version, found by npm. The lock names no
+  addresses, so that it serves whoever has another registry.
+
+A new major version in ``package.json``, or a package that a wheel for browsers newly needs, is a decision: the first is
+made by hand there, the second is told here.
+"""
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+
+from packaging.markers import default_environment
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+from packaging.version import Version
+
+from .packing import PROJECTS
+from .paths import NODE, REPOSITORY, WEBSITE
+
+CONSTRAINTS = REPOSITORY / "constraints.txt"
+WHEELS = [WEBSITE / place / "wheels.txt" for place in ("live", "lite")]
+PACKAGE, LOCK = REPOSITORY / "package.json", REPOSITORY / "package-lock.json"
+#: Packages of npm that stay as they are, and why.
+HELD = {"codemirror": "later numbers hold an older editor, published by mistake"}
+#: For wheels that run in browsers, as the Makefile fetches them. The Python that matters is not the one that asks.
+IN_BROWSERS = ("--python-version", "3.14", "--platform", "any", "--implementation", "py", "--abi", "none")
+IN_BROWSERS += ("--ignore-requires-python",)
+#: What wheels for browsers ask for and do not get: front ends, which JupyterLite brings itself.
+NOT_IN_BROWSERS = {"jupyterlab-widgets", "widgetsnbextension"}
+
+
+def comments(text):
+    """The lines of comment that a list of pins begins with."""
+    return [line for line in text.splitlines() if line.startswith("#")]
+
+
+def pins(text):
+    """The versions in a list of pins, by name."""
+    lines = (line.split()[0].split("==") for line in text.splitlines() if line.strip() and not line.startswith("#"))
+    return {canonicalize_name(name): version for name, version in lines}
+
+
+def oldest_python():
+    """The oldest Python that the book supports, such as ``(3, 11)``."""
+    stated = re.fullmatch(r">=(\d+)\.(\d+)", PROJECTS[-1].about["requires-python"])
+    return int(stated[1]), int(stated[2])
+
+
+def resolve(*arguments):
+    """What pip would install: a list of its reports on each package. Nothing is installed."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder, "report.json")
+        command = [sys.executable, "-m", "pip", "install", "--quiet", "--dry-run", "--ignore-installed"]
+        command += ["--disable-pip-version-check", "--only-binary=:all:", "--report", report, *arguments]
+        subprocess.run(command, check=True)
+        return json.loads(report.read_text("utf8"))["install"]
+
+
+def asked_for():
+    """What the projects of this repository ask for, each with all its extras, but for one another."""
+    folders = [*(project.folder for project in PROJECTS), WEBSITE.parents[1]]
+    stated = [
+        tomllib.loads(Path(REPOSITORY, folder, "pyproject.toml").read_text("utf8"))["project"] for folder in folders
+    ]
+    ours = {project["name"] for project in stated}
+    every = [
+        one
+        for project in stated
+        for group in (project["dependencies"], *project.get("optional-dependencies", {}).values())
+        for one in group
+    ]
+    return [one for one in dict.fromkeys(every) if Requirement(one).name not in ours]
+
+
+def constraints():
+    """The new text of ``constraints.txt``."""
+    found = [one["metadata"] for one in resolve(*asked_for())]
+    lines = sorted(f"{canonicalize_name(one['name'])}=={one['version']}" for one in found)
+    return "\n".join([*comments(CONSTRAINTS.read_text("utf8")), *lines]) + "\n"
+
+
+def wheels(old, versions):
+    """The new text of a list of wheels for browsers, whose old text is ``old``, and what pip reports of each."""
+    wanted = [
+        f"{name}=={versions[name]}" if name in versions else f"{name}>={version}" for name, version in pins(old).items()
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        reports = resolve("--no-deps", *IN_BROWSERS, "--target", folder, *wanted)
+    found = {canonicalize_name(one["metadata"]["name"]): one for one in reports}
+    lines = comments(old)
+    for name in pins(old):
+        digest = found[name]["download_info"]["archive_info"]["hashes"]["sha256"]
+        lines.append(f"{name}=={found[name]['metadata']['version']} --hash=sha256:{digest}")
+    return "\n".join(lines) + "\n", reports
+
+
+def missing(reports):
+    """What wheels for browsers need there and no list has: one sentence for each."""
+    browser = default_environment() | {
+        "python_version": "3.14",
+        "python_full_version": "3.14.0",
+        "sys_platform": "emscripten",
+        "platform_system": "Emscripten",
+    }
+    there = {canonicalize_name(one["metadata"]["name"]) for one in reports} | NOT_IN_BROWSERS
+    for one in reports:
+        for requirement in map(Requirement, one["metadata"].get("requires_dist", ())):
+            needed = requirement.marker is None or requirement.marker.evaluate(browser | {"extra": ""})
+            if needed and canonicalize_name(requirement.name) not in there:
+                yield f"{one['metadata']['name']} {one['metadata']['version']} needs {requirement.name}"
+
+
+def npm(*arguments, **keywords):
+    program = NODE.parent.parent / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
+    return subprocess.run([NODE, program, *arguments], check=True, text=True, **keywords)
+
+
+def scripts():
+    """The new texts of ``package.json`` and ``package-lock.json``."""
+    wanted = json.loads(PACKAGE.read_text("utf8"))
+    for group in ("dependencies", "devDependencies"):
+        for name, version in wanted[group].items():
+            if name not in HELD:
+                found = json.loads(
+                    npm("view", f"{name}@^{version}", "version", "--json", stdout=subprocess.PIPE).stdout
+                )
+                wanted[group][name] = max([found] if isinstance(found, str) else found, key=Version)
+    with tempfile.TemporaryDirectory() as folder:
+        text = json.dumps(wanted, indent=2, ensure_ascii=False) + "\n"
+        Path(folder, PACKAGE.name).write_text(text, "utf8")
+        npm(
+            "install",
+            "--package-lock-only",
+            "--omit-lockfile-registry-resolved",
+            "--ignore-scripts",
+            "--no-audit",
+            "--no-fund",
+            "--silent",
+            cwd=folder,
+        )
+        return text, Path(folder, LOCK.name).read_text("utf8")
+
+
+def main():
+    oldest = oldest_python()
+    if sys.version_info[:2] != oldest:
+        wanted, this = (".".join(map(str, version[:2])) for version in (oldest, sys.version_info))
+        sys.exit(
+            f"Pins must serve the oldest Python that the book supports, {wanted}, and are found by it; this is {this}. "
+            f"Remove .venv, then: make PYTHON=python{wanted} renew-pins"
+        )
+    new, reports = {CONSTRAINTS: constraints()}, []
+    for path in WHEELS:
+        new[path], found = wheels(path.read_text("utf8"), pins(new[CONSTRAINTS]))
+        reports += found
+    new[PACKAGE], new[LOCK] = scripts()
+    if untold := list(missing(reports)):
+        sys.exit(
+            "Nothing was written. In browsers "
+            + "; ".join(untold)
+            + ": add a line with its name and version to notebook_pages/lite/wheels.txt, then try again."
+        )
+    for path, text in new.items():
+        changed = path.read_text("utf8") != text
+        path.write_text(text, "utf8")
+        print(f"{path.relative_to(REPOSITORY)}: {'renewed' if changed else 'as it was'}")
+    print("Now: make test-all")
+
+
+if __name__ == "__main__":
+    main()

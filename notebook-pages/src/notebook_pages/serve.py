@@ -1,0 +1,63 @@
+"""Show the built book on a local address: ``python -m notebook_pages.serve [port]``.
+
+In the offline book: ``python serve.py [port]``. Needs nothing but Python's standard library.
+"""
+
+import sys
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+# The offline book carries a copy of this file, with the pages beside it.
+BOOK = HERE if (HERE / "index.html").is_file() else Path("_build/html")
+
+
+class Handler(SimpleHTTPRequestHandler):
+    # Browsers run a module only if it is served as JavaScript, and the
+    # system's own table of types may not know .mjs or .wasm.
+    extensions_map = SimpleHTTPRequestHandler.extensions_map | {
+        ".js": "text/javascript",
+        ".mjs": "text/javascript",
+        ".wasm": "application/wasm",
+        ".whl": "application/octet-stream",
+        ".ipynb": "application/x-ipynb+json",
+        ".svg": "image/svg+xml",
+    }
+
+    # Only an isolated page may share memory with its Python, which can then be interrupted and
+    # keep its names. Other servers may not send these headers; the page does without.
+    isolated = True
+
+    def end_headers(self):
+        # JupyterLite's kernel hangs in an isolated page when a file is written, or an error is shown.
+        if self.isolated and not self.path.startswith("/lite/"):
+            self.send_header("Cross-Origin-Opener-Policy", "same-origin")
+            self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+            self.send_header("Cross-Origin-Resource-Policy", "cross-origin")  # for frames without an origin
+        super().end_headers()
+
+    def log_message(self, *arguments):
+        """Say nothing about each request."""
+
+
+def server(folder=BOOK, port=0, handler=Handler):
+    """A server of ``folder``; port 0 takes any that is free."""
+    return ThreadingHTTPServer(("127.0.0.1", port), partial(handler, directory=folder))
+
+
+def main():
+    port = int(sys.argv[1]) if len(sys.argv) > 1 else 0
+    try:
+        book = server(port=port)
+    except OSError:
+        book = server()  # the port is taken
+    print(f"The book is at http://127.0.0.1:{book.server_port}/ (stop with Ctrl+C)", flush=True)
+    try:
+        book.serve_forever()
+    except KeyboardInterrupt:
+        print()
+
+
+if __name__ == "__main__":
+    main()

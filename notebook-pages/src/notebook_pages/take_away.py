@@ -1,0 +1,192 @@
+"""Every page that is a notebook can be taken away as a notebook and as a script.
+
+Both hold the page's prose in plain Markdown, with the numbers and names that
+the book gives to equations, figures and exercises, and the code as it stands
+in the chapter. Outputs are left out: the reader's own run makes them, and
+they cannot be old. The package that the code imports lies beside them.
+"""
+
+import shutil
+from pathlib import Path
+
+import jupytext
+import nbformat
+
+from coursework.authoring.course import find_course
+from coursework.authoring.packing import archive as pack
+from coursework.authoring.packing import write_zip
+
+from .markdown import MarkdownWriter
+from .packing import PROJECTS
+from .paths import PACKAGES, REPOSITORY, pages
+
+FOLDER = "take-away"
+ARCHIVE = "exercises.zip"
+RECORDINGS = PACKAGES["orientation_recordings"] / "data"
+RECORDINGS_ARCHIVE = "recordings.zip"
+EXERCISES = REPOSITORY / "exercises"
+KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
+NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
+
+
+def notebook_pages():
+    """The names of the pages that are notebooks."""
+    return [page for page in pages() if Path(f"{page}.ipynb").is_file()]
+
+
+def notebook_address(page):
+    """Where in the site the notebook of a page is."""
+    return f"{FOLDER}/{page if page.startswith('exercises/') else page.rsplit('/', 1)[-1]}.ipynb"
+
+
+def is_notebook(app, pagename, doctree):
+    return doctree is not None and str(app.env.doc2path(pagename)).endswith(".ipynb")
+
+
+def first_words(title):
+    """The beginning of :func:`introduction`, by which it is found again."""
+    return f"> This is a page of *{title}*."
+
+
+def packages_archive():
+    """The name of the zip of all packages that the notebooks import; its version is that of the newest of them."""
+    stated, _, moment = PROJECTS[-1].version().partition(".post")
+    newest = max([moment, *(project.version().partition(".post")[2] for project in PROJECTS)])
+    return f"{PROJECTS[-1].name}-{stated}.post{newest}.zip"
+
+
+def introduction(title):
+    """What the notebook of a page says first, below its title, in a paragraph of one line."""
+    return (
+        f"{first_words(title)} To run it, install the packages that it "
+        f"imports: download `{packages_archive()}` from the page's menu, unpack it, and in its folder `packages` run "
+        f"`python -m pip install -r requirements.txt`. Text: CC BY 4.0. Code: BSD-3-Clause."
+    )
+
+
+def make_notebook(app, docname, doctree):
+    source = nbformat.read(app.env.doc2path(docname), as_version=4)
+    cells, next_source = [], 0
+
+    def add_code(stop):
+        """Add the code cells up to ``stop``, those that the page hides among them."""
+        nonlocal next_source
+        for cell in source.cells[next_source:stop]:
+            if cell.cell_type == "code":
+                code = nbformat.v4.new_code_cell(cell.source)
+                if "hide-input" in cell.metadata.get("tags", []):
+                    code.metadata["jupyter"] = {"source_hidden": True}
+                cells.append(code)
+        next_source = max(next_source, stop)
+
+    for is_cell, piece in MarkdownWriter(app.env, docname).page(doctree):
+        if is_cell:
+            add_code(piece["cell_index"] + 1)
+        elif cells and cells[-1].cell_type == "markdown":
+            cells[-1].source += "\n\n" + piece
+        else:
+            cells.append(nbformat.v4.new_markdown_cell(piece))
+    add_code(len(source.cells))
+    note = introduction(app.config.html_title)
+    title, _, rest = cells[0].source.partition("\n\n")
+    cells[0].source = "\n\n".join(filter(None, [title, note, rest]))
+    for position, cell in enumerate(cells):
+        cell["id"] = f"cell-{position}"  # not random, so that builds are the same
+    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
+
+
+def write_page(app, pagename, templatename, context, doctree):
+    context["downloads"] = []
+    if not is_notebook(app, pagename, doctree):
+        return
+    downloads = exercise_downloads if pagename.startswith("exercises/") else chapter_downloads
+    context["downloads"] = downloads(app, pagename, doctree)
+    if "orientation_recordings" in Path(app.env.doc2path(pagename)).read_text("utf8"):
+        context["downloads"].append(
+            {
+                "path": f"{FOLDER}/{RECORDINGS_ARCHIVE}",
+                "text": "Measured data",
+                "note": "what the instruments recorded, as CSV",
+            }
+        )
+
+
+def chapter_downloads(app, pagename, doctree):
+    notebook = make_notebook(app, pagename, doctree)
+    target = Path(app.outdir) / FOLDER / pagename.rsplit("/", 1)[-1]
+    target.parent.mkdir(exist_ok=True)
+    nbformat.write(notebook, target.with_suffix(".ipynb"))
+    notebook.metadata = {"jupytext": NO_METADATA}
+    target.with_suffix(".py").write_text(jupytext.writes(notebook, fmt="py:percent"), "utf8")
+    return [
+        {"path": notebook_address(pagename), "text": "Notebook", "note": "for Jupyter, with the prose"},
+        {"path": f"{FOLDER}/{target.name}.py", "text": "Python script", "note": "the prose as comments"},
+        {
+            "path": f"{FOLDER}/{packages_archive()}",
+            "text": "Packages",
+            "note": "what the code imports, with how to install it",
+        },
+    ]
+
+
+def exercise_downloads(app, pagename, doctree):
+    """An exercise is taken away as it was released: graders know its cells by their metadata."""
+    target = Path(app.outdir) / FOLDER / f"{pagename}.ipynb"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(app.env.doc2path(pagename), target)
+    return [
+        {"path": notebook_address(pagename), "text": "Notebook", "note": "to answer in Jupyter and hand in"},
+        {"path": f"{FOLDER}/{ARCHIVE}", "text": "All exercises", "note": "with the package and how to start"},
+    ]
+
+
+def pack_exercises(app, exception):
+    """Put the archive of all exercises into the site, if what it holds has changed."""
+    if exception or app.builder.format != "html":
+        return
+    archive = Path(app.outdir) / FOLDER / ARCHIVE
+    sources = [path for project in PROJECTS for path in project.sources()]
+    newest = max(path.stat().st_mtime for path in [*sources, *EXERCISES.glob("*.ipynb")])
+    if not archive.exists() or archive.stat().st_mtime < newest:
+        pack(find_course(), archive)
+
+
+def pack_recordings(app, exception):
+    """Put what instruments measured into the site as it stands in the package, with its licences."""
+    if exception or app.builder.format != "html":
+        return
+    files = {f"recordings/{path.name}": path.read_bytes() for path in RECORDINGS.iterdir()}
+    write_zip(Path(app.outdir) / FOLDER / RECORDINGS_ARCHIVE, files)
+
+
+def build_wheels(app, exception):
+    """Build our packages into the site, as wheels and all in one zip; their names tell what they were built from."""
+    if exception or app.builder.format != "html":
+        return
+    folder = Path(app.outdir) / FOLDER
+    wheels = {folder / project.wheel_name(): project for project in PROJECTS}
+    archive = folder / packages_archive()
+    for outdated in [*folder.glob("*.whl"), *folder.glob(f"{PROJECTS[-1].name}-*.zip")]:
+        if outdated not in (*wheels, archive):
+            outdated.unlink()
+    for wheel, project in wheels.items():
+        if not wheel.exists():
+            project.build_wheel(folder)
+    if not archive.exists():
+        files = {f"packages/{wheel.name}": wheel.read_bytes() for wheel in wheels}
+        files["packages/requirements.txt"] = "".join(f"./{wheel.name}\n" for wheel in wheels).encode()
+        write_zip(archive, files)
+
+
+def note_packages(app, config):
+    """Write every page anew that names the packages, when they get another version."""
+    config.take_away_packages = packages_archive()
+
+
+def setup(app):
+    app.add_config_value("take_away_packages", "", "html", str)
+    app.connect("config-inited", note_packages)
+    app.connect("html-page-context", write_page)
+    app.connect("build-finished", build_wheels)
+    app.connect("build-finished", pack_exercises)
+    app.connect("build-finished", pack_recordings)

@@ -1,0 +1,309 @@
+"""The build refuses a faulty book: tiny books, each with one fault."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+
+import nbformat
+import pytest
+import yaml
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from places import REPOSITORY
+
+from notebook_pages import page
+from notebook_pages.alternative_text import says_something
+from notebook_pages.notebooks import all_notebooks, normalise
+from notebook_pages.paths import NODE, NODE_MODULES, WEBSITE, fingerprint
+from notebook_pages.serve import Handler
+from orientation_figures.plot import Plot
+
+FIGURE = '''
+class Figure:
+    def __repr__(self):
+        return "a figure"
+    def _repr_html_(self):
+        return """<figure><svg viewBox="0 0 9 9" {}><path d="M0 0h9"/></svg></figure>"""
+Figure()'''
+GOOD_FIGURE = FIGURE.format('role="img" aria-label="A line from left to right along the top"')
+PLOT = """
+import matplotlib.pyplot as plt
+plt.plot([1, 2])
+plt.show()"""
+
+GOOD_TEXT = r"""
+(chapter-one)=
+# A chapter
+
+:::{admonition} Learning objectives
+:class: objectives
+- Know ${}^A\mathbf{C}^N$.
+:::
+
+```{math}
+:label: eq-first
+{}^A\mathbf{C}^N = \begin{bmatrix} \cos\theta & \sin\theta \\ -\sin\theta & \cos\theta \end{bmatrix}
+```
+
+See {eq}`eq-first`, {numref}`fig-line`, {ref}`exercise-one` and {ref}`chapter-one`.
+
+$$ a = b $$ (eq-second)
+
+| a | b |
+|---|---|
+| $x^2$ | `code` |
+
+1. first
+   - nested *point*
+
+> Quoted
+
+```{exercise} Try
+:label: exercise-one
+:difficulty: 2
+:minutes: 15
+
+Do it.
+```
+
+```{predict}
+:label: predict-one
+:answer: B
+Which?
+
+$x$
+: It is *not* this one.
+
+$y$
+: This one.
+```
+
+````{recap}
+```{question}
+:label: question-one
+:number: 0.5
+:tolerance: 0.01
+How much?
+
+0.5
+: Half.
+
+anything else
+: Think of a half.
+```
+````
+"""
+
+
+def build(folder, chapters, **changed):
+    """Build a book of ``chapters``, cells by file name, with the real settings but for some that are ``changed``.
+
+    Returns the exit code and the words.
+    """
+    settings = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
+    settings["sphinx"]["local_extensions"] = {"notebook_pages": str(REPOSITORY / "notebook-pages" / "src")}
+    settings["html"].pop("favicon")
+    settings.pop("bibtex_bibfiles")
+    for key in list(settings["sphinx"]["config"]):
+        if key.startswith("bibtex"):
+            settings["sphinx"]["config"].pop(key)
+    settings["sphinx"]["config"] |= {"moved": {}, **changed}
+    (folder / "_config.yml").write_text(json.dumps(settings))
+    contents = {
+        "format": "jb-book",
+        "root": "index",
+        "parts": [{"caption": "Part", "numbered": True, "chapters": [{"file": name} for name in chapters]}],
+    }
+    (folder / "_toc.yml").write_text(json.dumps(contents))
+    (folder / "index.md").write_text("# Front\n\nWords.\n")
+    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    for name, cells in chapters.items():
+        nbformat.write(new_notebook(cells=cells, metadata=kernel), folder / f"{name}.ipynb")
+    jupyter_book = Path(sys.executable).with_name("jupyter-book")
+    done = subprocess.run(
+        [jupyter_book, "build", folder, "-q", "-W", "-n", "--keep-going"],
+        env=os.environ | {"NO_COLOR": "1"}, capture_output=True, text=True,
+    )  # fmt: skip
+    return done.returncode, done.stdout + done.stderr
+
+
+def chapter(text=GOOD_TEXT, code=GOOD_FIGURE, metadata=None):
+    figure = {"figure": {"name": "fig-line", "caption": "A *line*, as in {eq}`eq-second`."}}
+    cell = new_code_cell(code.strip(), metadata={"mystnb": figure | (metadata or {})})
+    return [new_markdown_cell(text), cell]
+
+
+ALTERNATIVE = "A straight line that rises from one to two."
+
+
+def test_good_book(tmp_path):
+    plot = chapter(code=PLOT, metadata={"image": {"alt": ALTERNATIVE}})
+    code, words = build(tmp_path, {"chapter": chapter(), "plot": own_labels(plot, "plot")})
+    assert code == 0, words
+    html = (tmp_path / "_build/html/chapter.html").read_text("utf8")
+    assert "Figure 1.1" in html and "(1.1)" in html and "Exercise 1.1" in html
+    assert ALTERNATIVE in (tmp_path / "_build/html/plot.html").read_text("utf8")
+    assert 'class="katex"' in html and "<math" in html
+    assert "mathjax@" not in html.lower() and "thebe" not in html.lower()
+    markdown = nbformat.read(tmp_path / "_build/html/take-away/chapter.ipynb", as_version=4)
+    text = "\n\n".join(cell.source for cell in markdown.cells if cell.cell_type == "markdown")
+    for expected in (
+        "# 1. A chapter",
+        "> **Learning objectives**\n>\n> - Know ${}^A\\mathbf{C}^N$.",
+        "\\end{bmatrix} \\tag{1.1}\n$$",
+        "See (1.1), Figure 1.1, Exercise 1.1 and A chapter.",
+        "$$\na = b \\tag{1.2}\n$$",
+        "| a | b |\n| --- | --- |\n| $x^2$ | `code` |",
+        "1. first\n\n   - nested *point*",
+        "> Quoted",
+        "> **Exercise 1.1 (Try)**\n>\n> Difficulty 2 of 3, about 15 minutes\n>\n> Do it.",
+        "> **Predict, then see (1)**\n>\n> Which?\n>\n> - **A.** $x$\n> - **B.** $y$",
+        "> **Recap**\n>\n> **Question 1.**\n>\n> How much?",
+        "## Answers to the predictions and the recap\n\n**Prediction 1.**\n\n"
+        "- **A**, not so: It is *not* this one.\n- **B**, right: This one.\n\n"
+        "**Question 1.**\n\n- **0.5**, right: Half.",
+        "**Figure 1.1.** A *line*, as in (1.2).",
+    ):
+        assert expected in text, text
+
+
+FAULTS = {
+    "a cell fails": (chapter(code="1 / 0"), "ZeroDivisionError"),
+    "a cell warns": (chapter(code="import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE), "stderr"),
+    "a figure is not there": (chapter(GOOD_TEXT + "\nSee {numref}`fig-nowhere`.\n"), "fig-nowhere"),
+    "an equation is not there": (chapter(GOOD_TEXT + "\nSee {eq}`eq-nowhere`.\n"), "eq-nowhere"),
+    "a section is not there": (chapter(GOOD_TEXT + "\nSee {ref}`nowhere`.\n"), "nowhere"),
+    "a link leads nowhere": (chapter(GOOD_TEXT + "\nSee [it](#nowhere).\n"), "nowhere"),
+    "a term is not in the glossary": (chapter(GOOD_TEXT + "\nA {term}`thing`.\n"), "thing"),
+    "inline TeX is wrong": (
+        chapter(GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here")),
+        "inline-tex-is-wrong.ipynb:26 (cell 1): WARNING: bad TeX",
+    ),
+    "TeX is unknown": (chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")), "Undefined control sequence"),
+    "a figure says nothing": (chapter(code=FIGURE.format("")), "no alternative text"),
+    "a figure says too little": (chapter(code=FIGURE.format('role="img" aria-label="figure"')), "found 'figure'"),
+    "a plot says nothing": (chapter(code=PLOT), "no alternative text"),
+    "no choice is right": (chapter(GOOD_TEXT.replace(":answer: B", ":answer: C")), "the right answer is C"),
+    "a question has no replies": (chapter(GOOD_TEXT.replace("\n: ", "\n")), "must end in its choices"),
+    "a question has no label": (chapter(GOOD_TEXT.replace(":label: predict-one\n", "")), "needs a `:label:`"),
+    "a number has no other": (chapter(GOOD_TEXT.replace("anything else", "0.7")), "to `anything else`"),
+    "an exercise is too hard": (chapter(GOOD_TEXT.replace("difficulty: 2", "difficulty: 4")), "from 1 to 3"),
+}
+LABELS = ("chapter-one", "eq-first", "eq-second", "exercise-one", "fig-line", "predict-one", "question-one")
+
+
+def file_name(fault):
+    return fault.lower().replace(" ", "-")
+
+
+def own_labels(cells, name):
+    """The same cells with labels that no other chapter has."""
+    text = json.dumps(cells)
+    for label in LABELS:
+        text = text.replace(label, f"{label}-{name}")
+    return nbformat.from_dict(json.loads(text))
+
+
+@pytest.fixture(scope="module")
+def faulty_book(tmp_path_factory):
+    """One book with a chapter for each fault: the exit code, and the warnings, each with its lines."""
+    names = {file_name(fault): cells for fault, (cells, _) in FAULTS.items()}
+    chapters = {name: own_labels(cells, name) for name, cells in names.items()}
+    code, words = build(tmp_path_factory.mktemp("faulty"), chapters | {"good": own_labels(chapter(), "good")})
+    return code, re.split(r"^(?=\S+?\.(?:ipynb|md)\S*(?: \(cell \d+\))?: )", words, flags=re.MULTILINE)
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faulty_book(faulty_book, fault):
+    code, warnings = faulty_book
+    assert code != 0
+    own = [warning for warning in warnings if f"/{file_name(fault)}.ipynb" in warning.partition(": ")[0]]
+    assert own, warnings
+    assert all("WARNING" in warning or "ERROR" in warning for warning in own), own
+    assert any(FAULTS[fault][1] in warning.replace("\n", " ") for warning in own), own
+
+
+def test_nothing_is_said_of_a_good_chapter_among_faulty_ones(faulty_book):
+    assert [warning for warning in faulty_book[1] if "/good.ipynb" in warning.partition(": ")[0]] == []
+
+
+def test_alternative_text_needs_words():
+    assert not any(map(says_something, (None, "", "figure", "plot.png", "a b c")))
+    assert says_something("Frame A turned about z")
+
+
+def test_fingerprint_follows_every_file(tmp_path):
+    (tmp_path / "inner").mkdir()
+    file = tmp_path / "inner" / "module.py"
+    file.write_text("a = 1")
+    before = fingerprint(tmp_path)
+    assert fingerprint(tmp_path) == before
+    file.write_text("a = 2")
+    changed = fingerprint(tmp_path)
+    assert changed != before
+    file.rename(tmp_path / "inner" / "other.py")
+    assert fingerprint(tmp_path) not in (before, changed)
+
+
+def test_modules_are_served_as_javascript():
+    assert Handler.extensions_map[".mjs"] == "text/javascript"
+
+
+@pytest.mark.parametrize("path", all_notebooks(REPOSITORY), ids=lambda path: path.stem)
+def test_notebook_is_stored_as_make_notebooks_stores_it(path):
+    """Run in order, every cell, with normal metadata: else nbval would compare nothing."""
+    notebook = nbformat.read(path, as_version=4)
+    counts = [cell.execution_count for cell in notebook.cells if cell.cell_type == "code"]
+    assert counts == list(range(1, len(counts) + 1)), "run `make notebooks`"
+    stored = dedent(path.read_text("utf8"))
+    assert nbformat.writes(normalise(notebook)) == stored.rstrip("\n"), "run `make notebooks`"
+
+
+def test_formulas_are_set_by_one_process_which_is_missed_when_it_ends():
+    from notebook_pages import mathematics
+
+    katex = mathematics.KaTeX()
+    assert "<math" in katex(r"\hat{a}_x", False, "1.15")["html"]
+    assert "Undefined control sequence" in katex(r"\nonsense", True, "1.15")["fault"]
+    assert 'class="katex-display"' in katex(r"\frac{1}{2}\text{ä}", True, "1.6")["html"]
+    katex.process.kill()
+    katex.process.wait()
+    with pytest.raises(RuntimeError, match=r"KaTeX ended with code -9 .* at the formula \\theta"):
+        katex(r"\theta", False, "1.15")
+    katex.close()
+
+
+def test_letters_are_drawn_once_and_a_blank_not_at_all():
+    with Plot(alt="Empty axes with two words above them and the same two below.") as plot:
+        plot.axes.set(title="two words", xlabel="two words")
+    alone = plot._repr_html_()
+    blank = re.search(r'<path (?![^>]*\bd=)[^>]*\bid="', alone)
+    assert blank, "Matplotlib draws blanks no more: share_outlines need not know them"
+    body = page.share_outlines(alone + alone)
+    outlines = re.findall(r'<path id="(o\d+)"([^>]*)/>', body)
+    assert all(re.search(r'\bd="[^"]', outline) for _, outline in outlines)
+    assert len({outline for _, outline in outlines}) == len(outlines)
+    links = re.findall(r'<use [^>]*href="#([^"]*)"', body)
+    assert set(links) == {name for name, _ in outlines} and links.count(links[0]) >= 2
+
+
+@pytest.mark.long
+def test_python_for_browsers_finds_itself_in_any_folder(tmp_path):
+    """Left to itself it reads the trace of an error, and takes brackets for the place of a line."""
+    folder = tmp_path / "book (2)"
+    shutil.copytree(NODE_MODULES / "pyodide", folder / "pyodide")
+    (folder / "program.py").write_text("import sys; open('/wheels/made', 'w').write(sys.platform)", "utf8")
+    command = [
+        NODE,
+        WEBSITE / "live" / "compile.mjs",
+        folder / "pyodide" / "pyodide.mjs",
+        folder / "program.py",
+        folder,
+    ]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (folder / "made").read_text() == "emscripten"

@@ -1,0 +1,126 @@
+"""What the cases from practice print, against formulas for small errors."""
+
+import json
+import re
+
+import numpy as np
+from places import REPOSITORY
+from scipy.spatial.transform import Rotation
+
+from orientation_recordings import bright_stars
+
+
+def printed(words):
+    """What the cell that prints these words has printed."""
+    notebook = json.loads((REPOSITORY / "chapters" / "cases-from-practice.ipynb").read_text("utf8"))
+    texts = ["".join(out.get("text", "")) for cell in notebook["cells"] for out in cell.get("outputs", [])]
+    return next(text for text in texts if words in text)
+
+
+def test_the_phone_is_as_wrong_as_its_noise_says():
+    # Across the level field of 20 microtesla, and up as far as it is wrong, times the tangent of the dip.
+    heading = np.degrees(np.hypot(0.5 / 20, 0.03 / 9.81 * 44 / 20))
+    told = float(re.search(r"heading: ([\d.]+)", printed("of which the heading"))[1])
+    assert abs(told / heading - 1) < 0.05, "one draw stands for many, or the noise is another"
+
+
+def test_an_unturned_reading_of_the_other_maker_is_half_a_turn_wrong():
+    found = re.search(r"wrong by ([\d.]+) to ([\d.]+) degrees", printed("to 180.0 degrees"))
+    assert found and float(found[1]) > 175 and float(found[2]) <= 180
+
+
+def numbers(text):
+    return np.array([float(number) for number in re.findall(r"-?\d+\.?\d*", text)])
+
+
+def test_the_stars_say_what_another_program_finds():
+    names, directions, magnitudes = bright_stars()
+    rows = [names.index(name) for name in "Betelgeuse Rigel Bellatrix Alnilam Alnitak Mintaka Saiph".split()]
+    stars, deviations = directions[rows], np.radians(15 / 3600) * 10 ** (0.2 * (magnitudes[rows] - 2))
+    out = stars.sum(axis=0) / np.linalg.norm(stars.sum(axis=0))
+    east = np.cross([0, 0, 1], out) / np.linalg.norm(np.cross([0, 0, 1], out))
+    seen = stars @ np.array([east, np.cross(out, east), out]).T
+    random, errors = np.random.default_rng(3), []
+    for _ in range(400):
+        noisy = seen + deviations[:, None] * random.normal(size=seen.shape)
+        errors.append(Rotation.align_vectors(noisy, seen, weights=deviations**-2.0)[0].as_rotvec())
+    arcseconds = np.degrees(np.sqrt(np.mean(np.square(errors), axis=0))) * 3600
+    one, many, foretold, alike = (numbers(line.partition(":")[2]) for line in printed("rms over 2000").splitlines())
+    # An rms over 400 is uncertain by 3.5 per cent, one over 2000 by 1.6: three times that.
+    assert np.abs(arcseconds / foretold - 1).max() < 0.11 and np.abs(many / foretold - 1).max() < 0.06
+    assert (alike > 1.1 * many).all() and np.abs(one[2]) < 4 * many[2]
+
+
+def test_a_second_camera_sees_what_the_first_does_not():
+    first, second, both, runs = (numbers(line[8:]) for line in printed("S and T:").splitlines()[:4])
+    assert (both < first).all() and (both < second).all() and 4 < first[2] / both[2] < 5
+    assert np.abs(runs / both - 1).max() < 0.06
+
+
+def test_a_wrist_near_straight_must_hurry():
+    for line in printed("degrees from straight").splitlines():
+        miss, fastest, _, told = numbers(line)
+        assert abs(fastest * np.sin(np.radians(miss)) / 60 - 1) < 0.02 and abs(told - fastest) <= 2
+
+
+def test_an_axis_that_is_marked_wrong_makes_an_adduction():
+    # The marked frame is turned by 5 degrees about y from the true one; by SciPy, whose matrices are active.
+    for line in printed("5 sin:").splitlines():
+        bend, *report, _, told = numbers(line)
+        true = Rotation.from_euler("z", -bend, degrees=True)
+        seen = (Rotation.from_euler("y", -5, degrees=True) * true).as_euler("ZXY", degrees=True) * (-1, 1, 1)
+        assert np.abs(seen - report).max() < 0.06 and abs(told - 5 * np.sin(np.radians(bend))) < 0.06
+
+
+def test_the_filter_is_better_than_either_sensor_on_a_walk():
+    found, where = {}, None
+    for line in printed("by the car").rpartition("\n9 s after")[0].splitlines()[1:]:
+        if line.startswith("  "):
+            found[where, line[2:18].strip()] = numbers(line[18:])
+        else:
+            where = line.rstrip(":")
+    for where in ("walking", "by the car", "9 s after it"):
+        others = [found[where, name] for name in ("two sensors", "gyroscope")]
+        assert all(found[where, "filter"][0] < other[0] for other in others)
+        assert all(found[where, "filter"][3] < other[3] for other in others)
+    # Ten microtesla across twenty turn the level field by 26.6 degrees, along it by none; steps add a little.
+    assert found["by the car", "two sensors"][1] < 10 and 26.6 < found["by the car", "two sensors"][2] < 33
+    # A field that corrects the heading only cannot tip the horizon.
+    assert found["by the car", "heading only"][5] < found["by the car", "filter"][3]
+
+
+def test_what_varies_from_walk_to_walk_decides_what_is_left_after_the_car():
+    """One lucky walk had stood for all: where only noise varied, nine in ten lay within two degrees."""
+    rows = printed("9 s after the car").rpartition("heading only\n")[2]
+    left = {line.split()[0]: numbers(line) for line in rows.splitlines() if line.strip()}
+    assert list(left) == ["nothing", "step", "look", "pose", "side", "all"]
+    spread = {name: high - low for name, (_, low, high, *_) in left.items()}
+    assert spread["nothing"] < 2.5 and spread["step"] < 2.5
+    assert min(spread[name] for name in ("look", "pose", "side", "all")) > 3
+    assert left["all"][0] > 3 * left["nothing"][0]
+
+
+def test_skin_that_tips_a_plate_does_more_harm_than_balls_that_slip_each_for_itself():
+    lines = {line[:20].strip(): numbers(line[20:]) for line in printed("plate tips").splitlines()[1:]}
+    alone, together = lines["skin, each its way"], lines["skin, plate tips"]
+    assert (together[::3] > 1.4 * alone[::3]).all()
+
+
+def test_one_turn_is_quicker_than_three():
+    one, three = (numbers(line.partition(":")[2]) for line in printed("three single turns:").splitlines())
+    assert one[0] < three[0] and one[1] < three[1]
+    lines = printed("the quickest of twelve").splitlines()
+    assert all(numbers(line.partition("times (")[2])[0] > 1 for line in lines[1:])
+    assert float(re.search(r"target by (\S+)", printed("off the target"))[1]) < 1e-9
+
+
+def test_the_attitude_of_an_aircraft_for_a_robot():
+    """East, north, up and forwards, left, up, by SciPy: its rotations turn components of the body into the ground's."""
+    text = json.loads((REPOSITORY / "chapters" / "convention-card.ipynb").read_text("utf8"))
+    outputs = ["".join(out.get("text", "")) for cell in text["cells"] for out in cell.get("outputs", [])]
+    told = next(text for text in outputs if "south-west" in text).splitlines()
+    swap = Rotation.from_matrix([[0, 1, 0], [1, 0, 0], [0, 0, -1]])
+    for line, angles in zip(told, ((90, 0, 0), (225, 10, 25)), strict=True):
+        aviation = Rotation.from_euler("ZYX", angles, degrees=True)
+        robot = swap * aviation * Rotation.from_matrix(np.diag([1, -1, -1]))
+        assert np.abs(robot.as_euler("ZYX", degrees=True) - numbers(line.partition(":")[2])).max() < 1e-6

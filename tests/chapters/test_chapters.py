@@ -1,0 +1,169 @@
+"""Every chapter has its parts; what is forgotten is told by file, line and cell; what is new has all of them."""
+
+import re
+import shutil
+import subprocess
+import sys
+
+import nbformat
+import pytest
+from places import REPOSITORY
+
+import orientation_course
+from coursework.authoring.source import read_source
+from coursework.checking.kinds import KINDS
+from notebook_pages import chapters, new
+
+
+@pytest.fixture
+def book(tmp_path, monkeypatch):
+    """The texts of the book, in a folder of their own."""
+    for name in ("chapters", "appendix", "exercises", "tests/solutions"):
+        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns(".*"))
+    shutil.copy(REPOSITORY / "_toc.yml", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_every_chapter_has_its_parts(monkeypatch):
+    monkeypatch.chdir(REPOSITORY)
+    told = list(chapters.faults())
+    assert not told, "\n" + "\n".join(told)
+
+
+FORGOTTEN = {
+    "objectives": (
+        "chapters/gimbal-lock.ipynb",
+        ":class: objectives",
+        "",
+        r"chapters/gimbal-lock.ipynb:1 \(cell 1\): no objectives",
+    ),
+    "summary": (
+        "chapters/gimbal-lock.ipynb",
+        ":class: summary",
+        "",
+        r"chapters/gimbal-lock.ipynb:\d+ \(cell \d+\): no summary",
+    ),
+    "label": ("chapters/gimbal-lock.ipynb", "(chapter-gimbal-lock)=", "(gimbal)=", r"gimbal-lock.ipynb:1 \(cell 1\)"),
+    "solution": (
+        "appendix/solutions-going-further.ipynb",
+        "{solution-start} exercise-scalar-last",
+        "{solution-start} exercise-scalar",
+        r"chapters/unit-quaternions.ipynb:\d+ \(cell \d+\): exercise-scalar-last has no",
+    ),
+    "sealed question": (
+        "tests/solutions/chapters.ipynb",
+        "question('chapters/scalar-last'",
+        "question('chapters/scalar'",
+        r"chapters/unit-quaternions.ipynb:\d+ \(cell \d+\): chapters/scalar-last is no question of",
+    ),
+    "place among the chapters": (
+        "_toc.yml",
+        "      - file: chapters/gimbal-lock\n",
+        "",
+        r"_toc.yml:\d+: the chapter chapters/gimbal-lock.ipynb is not in",
+    ),
+    "place among the exercises": (
+        "_toc.yml",
+        "      - file: exercises/gimbal-lock\n",
+        "",
+        r"_toc.yml:\d+: exercises/gimbal-lock is not in",
+    ),
+    "page": (
+        "_toc.yml",
+        "- file: chapters/gimbal-lock",
+        "- file: chapters/gimbal-lok",
+        r"_toc.yml:\d+: there is no page chapters/gimbal-lok$",
+    ),
+    "line of the index": ("exercises/index.md", "- {doc}`gimbal-lock`\n", "", r"exercises/index.md:\d+: .*gimbal-lock"),
+    "sentence": (
+        "chapters/gimbal-lock.ipynb",
+        "# Gimbal lock",
+        "# TO BE WRITTEN",
+        r"chapters/gimbal-lock.ipynb:2 \(cell 1\): # TO BE WRITTEN",
+    ),
+}
+
+
+@pytest.mark.parametrize("part", FORGOTTEN)
+def test_what_is_forgotten_is_told_by_its_place(book, part):
+    path, old, other, says = FORGOTTEN[part]
+    text = (book / path).read_text("utf8")
+    assert old in text
+    (book / path).write_text(text.replace(old, other), "utf8")
+    told = list(chapters.faults())
+    assert any(re.search(says, fault) for fault in told), told
+
+
+def test_a_notebook_of_exercises_that_is_not_there(book):
+    (book / "tests/solutions/gimbal-lock.ipynb").unlink()
+    (book / "exercises/gimbal-lock.ipynb").unlink()
+    told = "\n".join(chapters.faults())
+    assert "its exercises are missing, tests/solutions/gimbal-lock.ipynb" in told
+    assert re.search(r"_toc.yml:\d+: there is no page exercises/gimbal-lock; `make release` makes it", told)
+
+
+def make(*arguments):
+    return subprocess.run([sys.executable, "-m", "notebook_pages.new", *arguments], capture_output=True, text=True)
+
+
+def test_a_new_chapter_has_all_its_parts(book):
+    done = make("chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "quaternions-in-full")
+    assert done.returncode == 0, done.stderr
+    shutil.copy("tests/solutions/chapter-of-the-tests.ipynb", "exercises")  # as a release would put it there
+    told = list(chapters.faults())
+    assert told and all("TO BE WRITTEN" in fault for fault in told), told
+    pages = re.findall(r"file: (\S+)", (book / "_toc.yml").read_text("utf8"))
+    for folder in ("chapters", "exercises"):
+        place = pages.index(f"{folder}/chapter-of-the-tests")
+        assert pages[place - 1] == f"{folder}/quaternions-in-full"
+    for cell in nbformat.read("chapters/chapter-of-the-tests.ipynb", as_version=4).cells:
+        if "check(" not in cell.source and cell.cell_type == "code":
+            exec(cell.source, {})
+    again = make("chapter", "chapter-of-the-tests", "Chapter of the tests")
+    assert again.returncode != 0 and "there already; nothing was changed" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("chapter", "Chapter of the tests", "Chapter of the tests"), "NAME in small letters and hyphens"),
+        (("chapter", "chapter-of-the-tests", ""), "a TITLE"),
+        (
+            ("chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "gimbals"),
+            "no chapter 'gimbals'; it has",
+        ),
+        (("question", "gimbal-lock", ""), "is CHAPTER/QUESTION"),
+        (("question", "chapter-of-the-tests/twist", ""), "`make new-chapter NAME=chapter-of-the-tests"),
+        (("question", "gimbal-lock/twist", "", "--kind", "riddle"), "no KIND of question 'riddle'; there are expr"),
+    ],
+)
+def test_what_cannot_be_made_is_told_and_nothing_changed(book, capsys, monkeypatch, arguments, says):
+    before = {path: path.read_bytes() for path in book.rglob("*") if path.is_file()}
+    monkeypatch.setattr(sys, "argv", ["new", *arguments])
+    with pytest.raises(SystemExit, match=says):
+        new.main()
+    assert {path: path.read_bytes() for path in book.rglob("*") if path.is_file()} == before
+
+
+def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
+    assert set(new.EXAMPLES) == {*KINDS, *orientation_course.KINDS}
+    path = book / "tests" / "solutions" / "trial.ipynb"
+    notebook = nbformat.v4.new_notebook(cells=[new.code("import sympy as sm\n\nfrom coursework import check")])
+    nbformat.write(notebook, path)
+    for kind in new.EXAMPLES:
+        new.new_question(f"trial/{kind.replace(' ', '-').lower()}", "", kind)
+    assert len(read_source(path).questions) == len(new.EXAMPLES)
+    with pytest.raises(SystemExit, match="has a question trial/words already"):
+        new.new_question("trial/words", "", "words")
+
+
+EQUATIONS = re.findall(
+    r":eq:`([^`]*)`", "".join(path.read_text("utf8") for path in (REPOSITORY / "src" / "orientation").glob("*.py"))
+)
+
+
+def test_docstrings_name_equations_of_the_book():
+    """By their labels, from which the reference page makes numbers and links: numbers move."""
+    texts = "".join(path.read_text("utf8") for path in (REPOSITORY / "chapters").glob("*.ipynb"))
+    assert len(EQUATIONS) >= 20 and [label for label in EQUATIONS if f"$$ ({label})" not in texts] == []

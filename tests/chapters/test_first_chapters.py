@@ -1,0 +1,270 @@
+"""What every chapter holds; and what the first eight claim: their own code is run, and held against other results."""
+
+import re
+from functools import cache
+
+import nbformat
+import numpy as np
+import pytest
+import sympy as sm
+from places import REPOSITORY
+from scipy.spatial.transform import Rotation
+
+from orientation import PROPER_EULER, SEQUENCES, multiply_quaternions
+
+FIRST = (
+    "reference-frames", "simple-orientations", "direction-cosine-matrices", "successive-orientations",
+    "orientation-with-sympy", "euler-angles", "other-descriptions", "unit-quaternions",
+)  # fmt: skip
+
+ALL = sorted(path.stem for path in (REPOSITORY / "chapters").glob("*.ipynb"))
+
+
+@cache
+def cells(name):
+    return nbformat.read(REPOSITORY / "chapters" / f"{name}.ipynb", as_version=4).cells
+
+
+@cache
+def names_of(name):
+    """The names that a chapter's code defines, its figures and exercises left out."""
+    names = {"__name__": name}
+    for cell in cells(name):
+        if (
+            cell.cell_type == "code"
+            and "hide-input" not in cell.metadata.get("tags", [])
+            and "check(" not in cell.source
+        ):
+            exec(cell.source, names)
+    return names
+
+
+def code_with(name, text):
+    [code] = [cell.source for cell in cells(name) if cell.cell_type == "code" and text in cell.source]
+    return code
+
+
+# --- what every chapter has -----------------------------------------------------------------------
+
+
+def text_of(name):
+    return "\n\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown")
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_chapter_leads_from_reading_to_doing(name):
+    """Predictions, a worked example, a recap with a reply to each choice, and exercises with difficulty and time."""
+    text = text_of(name)
+    assert len(re.findall(r"^`{3,}\{predict\}", text, re.MULTILINE)) >= 3
+    [recap] = re.findall(r"^````\{recap\}\n(.*?)^````$", text, re.MULTILINE | re.DOTALL)
+    questions = re.findall(r"^```\{question\}\n(.*?)^```$", recap, re.MULTILINE | re.DOTALL)
+    assert len(questions) >= 5
+    for question in questions:
+        choices = len(re.findall(r"\n\n(?=[^\n]+\n: )", question))
+        assert choices >= 2, question
+    assert re.search(r"worked[ -]example", text, re.IGNORECASE)
+    exercises = re.findall(r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL)
+    assert len(exercises) >= 2
+    for exercise in exercises:
+        assert re.search(r"^:difficulty: [123]$", exercise, re.MULTILINE), exercise
+        assert re.search(r"^:minutes: \d+$", exercise, re.MULTILINE), exercise
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_some_exercise_asks_for_a_proof_or_an_explanation(name):
+    text = text_of(name)
+    exercises = re.findall(r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL)
+    assert any(re.search(r"\b([Pp]rove|[Ss]how|[Ee]xplain|[Ww]hy)\b", exercise) for exercise in exercises)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_no_sentence_is_cut_in_two_by_a_cell(name):
+    """Text before a cell ends as a sentence does, or with a colon, and what follows begins as one."""
+    for before, cell in zip(cells(name), cells(name)[1:]):
+        if before.cell_type == "markdown":
+            last = before.source.rstrip().splitlines()[-1]
+            assert re.search(r"([.:?!)*]|\$\$.*|:::|```+|</\w+>|^#.*|\|)$", last), last
+        if cell.cell_type == "markdown":
+            assert not re.match(r"[a-z,;]", cell.source), cell.source[:60]
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_chapter_says_what_for_shows_something_that_moves_and_sums_up(name):
+    text = text_of(name)
+    for part in ("objectives", "summary"):
+        [points] = re.findall(rf"^:::\{{admonition\}} .*\n:class: {part}\n(.*?)^:::$", text, re.MULTILINE | re.DOTALL)
+        assert len(re.findall(r"^- ", points, re.MULTILINE)) >= 3
+    code = "\n".join(cell.source for cell in cells(name) if cell.cell_type == "code")
+    assert re.search(r"^from orientation_figures\.(moving|animation) import ", code, re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_chapter_has_six_sealed_questions(name):
+    notebook = nbformat.read(REPOSITORY / "exercises" / f"{name}.ipynb", as_version=4)
+    code = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "code")
+    assert len(set(re.findall(rf"^check\([\"']({name}/[\w-]+)[\"']", code, re.MULTILINE))) >= 6
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_directives_begin_their_line(name):
+    """Within a line they would be printed as they stand, and no warning says so."""
+    assert re.findall(r"^[^`:\n].*(?:`{3,}|:{3,})\{[\w-]+\}.*$", text_of(name), re.MULTILINE) == []
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_prediction_is_a_question_and_not_only_a_box(name):
+    """What is asked can be answered on the page, and every choice has its reply."""
+    text = text_of(name)
+    assert not re.search(r"admonition\} Predict", text)
+    for question in re.findall(r"^```\{predict\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+        assert len(re.findall(r"\n\n(?=[^\n]+\n: )", question)) >= 2, question
+
+
+# --- chapter 1: hands -----------------------------------------------------------------------------
+
+
+def test_a_left_handed_triad_passes_where_it_is_measured_along_itself_and_fails_along_a_right_handed_one():
+    names = names_of("reference-frames")
+    mirrored, turned = (sm.Matrix.hstack(*(names[f"{letter}_{axis}"] for axis in "xyz")) for letter in "ma")
+    assert mirrored.det() == -1 and turned.det() == 1
+    for triad in (mirrored, turned):
+        assert triad * triad.T == sm.eye(3)
+        # Along itself every triad is the identity, whichever hand it has.
+        assert triad.T * triad == sm.eye(3)
+    # By the cross products, which the chapter names as the rule.
+    assert mirrored.col(0).cross(mirrored.col(1)) == -mirrored.col(2)
+    assert turned.col(0).cross(turned.col(1)) == turned.col(2)
+
+
+# --- chapter 5: SymPy's frames --------------------------------------------------------------------
+
+
+def test_orienting_a_frame_again_leaves_old_matrices_and_cuts_the_path():
+    import sympy.physics.mechanics as me
+
+    theta, alpha = sm.symbols("theta, alpha")
+
+    def chain():
+        N, B, C = (me.ReferenceFrame(name) for name in "NBC")
+        B.orient_axis(N, N.z, theta)
+        C.orient_axis(B, B.x, alpha)
+        return N, B, C
+
+    for angle in (2 * theta, theta):  # changed, and run again as it was
+        N, B, C = chain()
+        before = C.dcm(N)
+        B.orient_axis(N, N.z, angle)
+        assert C.dcm(N) == before and B.dcm(N)[0, 0] == sm.cos(angle)
+        with pytest.raises(ValueError, match="No connecting orientation path found"):
+            C.dcm(B)
+        N, B, C = chain()
+        B.orient_axis(N, N.z, angle)
+        with pytest.raises(ValueError, match="No connecting orientation path found"):
+            C.dcm(N)  # not asked for before
+    # The chapter shows both symptoms, and the habit that avoids them.
+    names = names_of("orientation-with-sympy")
+    assert "No connecting orientation path" in str(
+        [
+            cell.outputs
+            for cell in cells("orientation-with-sympy")
+            if cell.cell_type == "code" and "C.dcm(B)" in cell.source
+        ]
+    )
+    fresh = names["fresh"]
+    assert fresh["C"].dcm(fresh["N"])[0, 0] == sm.cos(2 * names["theta"])
+
+
+# --- chapter 6: the second triple -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_the_second_triple_is_the_same_orientation_for_scipy(sequence):
+    random = np.random.default_rng(SEQUENCES.index(sequence))
+    for psi, theta, phi in random.uniform(-np.pi, np.pi, (20, 3)):
+        middle = -theta if sequence in PROPER_EULER else np.pi - theta
+        first, second = (
+            Rotation.from_euler(sequence.upper(), angles)
+            for angles in ((psi, theta, phi), (psi + np.pi, middle, phi + np.pi))
+        )
+        assert (first.inv() * second).magnitude() < 1e-12
+        # The rule of the other kind of sequence is another orientation.
+        wrong = np.pi - theta if sequence in PROPER_EULER else -theta
+        other = Rotation.from_euler(sequence.upper(), (psi + np.pi, wrong, phi + np.pi))
+        assert (first.inv() * other).magnitude() > 1e-6 or abs(np.cos(theta) * np.sin(theta)) < 1e-3
+
+
+def test_the_chapter_tries_the_second_triple_for_all_twelve():
+    code = code_with("euler-angles", "for sequence in SEQUENCES:\n    middle")
+    names = dict(names_of("euler-angles"))
+    exec(code, names)  # asserts
+    with pytest.raises(AssertionError):
+        exec(code.replace("-theta if", "theta if"), names)
+
+
+# --- chapter 8: the half angle, the matrix, and drift ---------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_two_half_turns_are_one_turn_through_twice_the_angle_between_their_axes(seed):
+    random = np.random.default_rng(seed)
+    first, across = np.linalg.qr(random.normal(size=(3, 2)))[0].T
+    theta = random.uniform(0.1, 3)
+    second = np.cos(theta / 2) * first + np.sin(theta / 2) * across
+    axis = np.cross(first, across)
+    q = np.array([np.cos(theta / 2), *np.sin(theta / 2) * axis])
+    u_1, u_2 = ([0, *first], [0, *second])
+    assert multiply_quaternions(u_2, u_1) == pytest.approx(-q, abs=1e-15)
+    # SciPy makes the two half turns, and the one turn.
+    halves = Rotation.from_rotvec(np.pi * second) * Rotation.from_rotvec(np.pi * first)
+    assert (halves.inv() * Rotation.from_rotvec(theta * axis)).magnitude() < 1e-7
+    vector = random.normal(size=3)
+    turned = multiply_quaternions(multiply_quaternions(q, [0, *vector]), q * [1, -1, -1, -1])
+    assert turned == pytest.approx([0, *Rotation.from_rotvec(theta * axis).apply(vector)], abs=1e-14)
+
+
+def test_the_matrix_of_a_quaternion_is_that_of_rodrigues_for_every_unit_axis():
+    names = names_of("unit-quaternions")
+    difference, e, c, s = names["by_quaternion"] - names["by_rodrigues"], names["e"], names["c"], names["s"]
+    # With the two conditions that the text names, every entry is zero: they divide it.
+    conditions = sm.groebner([e.dot(e) - 1, c**2 + s**2 - 1], *e, c, s)
+    assert all(conditions.contains(sm.expand(entry)) for entry in difference)
+    assert not conditions.contains(sm.expand((names["by_quaternion"] - names["by_rodrigues"].T)[0, 1]))
+
+
+def test_drift_of_quaternions_and_of_matrices_is_alike_when_like_is_set_against_like():
+    """|q|^2 belongs beside the stretch of a matrix. One angle for all steps would share one rounding error."""
+    names = names_of("unit-quaternions")
+    squared, matrices = names["drifts"]((111, 112, 113, 114, 115, 116, 117, 118))
+    quaternion, matrix = abs(squared - 1), names["worst_stretch"](matrices)
+    assert max(*quaternion, *matrix) < 5e-5
+    assert 1 / 5 < np.exp(np.mean(np.log(quaternion / matrix))) < 5
+    constant = np.float32([np.cos(0.01), np.sin(0.01)])
+    assert abs(np.hypot(*constant.astype(float)) ** 20_000 - 1) > 1e-4
+    # The matrix of a quaternion stretches by its length squared, and one step of Newton's puts a matrix right.
+    q = np.array([0.7, -0.2, 0.5, 0.6])
+    image = multiply_quaternions(multiply_quaternions(q, [0, 1, 2, 3]), q * [1, -1, -1, -1])
+    assert np.linalg.norm(image) == pytest.approx(q @ q * np.sqrt(14))
+    assert abs(np.linalg.svd(names["restored"], compute_uv=False) - 1).max() < 1e-9 < matrix.min()
+
+
+def test_two_full_turns_shrink_to_a_point_with_both_ends_held_and_one_does_not():
+    names = names_of("unit-quaternions")
+    parts = sm.lambdify((names["beta"], names["half_turned"]), [names["scalar"], names["along_e"], names["along_u"]])
+    turned = np.linspace(0, 2 * np.pi, 200)
+    loops = np.array([np.broadcast_arrays(*parts(beta, turned)) for beta in np.linspace(0, np.pi / 2, 50)])
+    assert np.allclose(np.linalg.norm(loops, axis=1), 1)
+    assert np.allclose(loops[:, :, [0, -1]], np.array([1, 0, 0])[:, None])
+    assert np.allclose(loops[0], [np.cos(turned), np.sin(turned), 0 * turned])  # two full turns about e
+    assert np.allclose(loops[-1], np.array([1, 0, 0])[:, None])  # flat
+    assert abs(np.diff(loops, axis=0)).max() < 0.1  # nothing jumps
+
+
+def test_the_components_of_a_vector_that_stays_go_the_other_way():
+    """q* v q, derived in the chapter, against the dot products with A's unit vectors."""
+    random = np.random.default_rng(6)
+    for q in random.normal(size=(20, 4)):
+        q, vector = q / np.linalg.norm(q), random.normal(size=3)
+        conjugate = q * [1, -1, -1, -1]
+        units = [multiply_quaternions(multiply_quaternions(q, [0, *n]), conjugate)[1:] for n in np.eye(3)]
+        along_a = multiply_quaternions(multiply_quaternions(conjugate, [0, *vector]), q)
+        assert np.allclose(along_a, [0, *(np.array(units) @ vector)])

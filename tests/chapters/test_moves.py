@@ -1,0 +1,125 @@
+"""What numbers mean on another processor: how far they may move, and that no cell prints what is rounding alone."""
+
+import re
+import subprocess
+import sys
+
+import nbformat
+import pytest
+from places import REPOSITORY
+from stored_outputs import compare_outputs
+
+from notebook_pages.moves import FREE, moves
+from notebook_pages.notebooks import all_notebooks
+
+NOTEBOOKS = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob("exercises/*.ipynb"))]
+
+
+@pytest.mark.parametrize(
+    ("stored", "now", "far"),
+    [
+        ("off by 0.1", "off by 0.10000000000001700", False),
+        ("off by 0.1", "off by 0.1000000000002", True),
+        ("[2.0e+06]", "[2.00000000000001e+06]", False),
+        ("1e-16 rad", "3e-16 rad", False),
+        ("3 turns", "4 turns", True),
+        ("3 turns", "3.0 turns", True),
+        ("A_1 at 0.5", "A_2 at 0.5", True),
+        ("wrong by 1e-09", "wrong by 2e-09", True),
+        ("same", "other", True),
+        (
+            '<p style="x:0.1"><path class="a" d="M10.1-3L4 5"/>',
+            '<p style="x:0.1"><path class="a" d="M10.2-3L4 5"/>',
+            False,
+        ),
+        (
+            '<p style="x:0.1"><path class="a" d="M10.1-3L4 5"/>',
+            '<p style="x:0.2"><path class="a" d="M10.1-3L4 5"/>',
+            True,
+        ),
+        ('<path d="M10.1-3L4 5"/>', '<path d="M10.1-3.3L4 5"/>', True),
+        ('<path d="M10.1-0.1L4 5"/>', '<path d="M10.1 0L4 5"/>', False),
+        ('<path d="M10.1-3L4 5"/>', '<path d="M10.1-3L4 5L4 6"/>', True),
+        ('<path d="M10.1-3L4 5"/>', '<path d="M10.1-3C4 5"/>', True),
+        ('<path id="g0123456789-0"/>', '<path id="g012345678a-0"/>', False),
+    ],
+)
+def test_numbers_may_move_by_their_last_digits(stored, now, far):
+    assert any(move.too_far for move in moves(stored, now)) == far
+    assert moves(stored, stored) == []
+
+
+def test_a_move_says_how_far_and_what_is_allowed():
+    (move,) = moves("0.25", "0.250000000000017")
+    assert "1.7e-14" in str(move) and "allowed 1e-13" in str(move)
+
+
+class Cell:
+    """What nbval's own comparison asks of a cell."""
+
+    class parent:
+        skip_compare = ("metadata", "execution_count")
+
+    class colors:
+        OKBLUE = FAIL = ENDC = ""
+
+    class ihook:
+        @staticmethod
+        def pytest_assertrepr_compare(**about):
+            return []
+
+    config = None
+
+    def sanitize(self, text):
+        return text
+
+    def format_output_compare(self, key, left, right):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("now", "same"), [("0.5 and 2e-16", True), ("0.50001 and 2e-16", False), ("0.5 and 2e-16 and more", False)]
+)
+def test_stored_outputs_are_compared_by_number(now, same):
+    def outputs(text):
+        return [
+            nbformat.v4.new_output("stream", name="stdout", text=text),
+            nbformat.v4.new_output("display_data", {"text/plain": text}),
+        ]
+
+    assert compare_outputs(Cell(), outputs(now), outputs("0.5 and 1e-16")) == same
+
+
+def printed(notebook):
+    """The place of each output of a notebook, and its text."""
+    for number, cell in enumerate(notebook.cells):
+        for output in cell.get("outputs", []):
+            data = output.get("data", {})
+            for text in (output.get("text", ""), data.get("text/plain", ""), data.get("text/latex", "")):
+                yield number, text
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_no_cell_prints_rounding(path):
+    """Another processor rounds otherwise: what is that small is said as a bound, which the cell asserts."""
+    for number, text in printed(nbformat.read(path, as_version=4)):
+        for found in FREE.finditer(text):
+            said = re.search(r"(less than|below|under) (about )?$", text[: found.start()])
+            assert said or not 0 < abs(float(found[0])) < 1e-12, f"cell {number} prints {found[0]}: {text}"
+
+
+@pytest.mark.parametrize("day", [(2026, 11, 23), (2027, 2, 28), (2028, 2, 29)])
+def test_the_same_is_run_and_drawn_every_day(day):
+    program = f"""
+import datetime, os
+class Today(datetime.date):
+    @classmethod
+    def today(cls):
+        return cls{day}
+datetime.date = Today
+os.environ.pop("BOOK_TEST_SEED", None)
+import seed
+print(seed.SEED, seed.spread(range(100), 7))
+"""
+    told = subprocess.check_output([sys.executable, "-c", program], cwd=REPOSITORY / "coursework" / "tests", text=True)
+    assert told == "every day [7, 21, 35, 50, 64, 78, 92]\n"

@@ -1,0 +1,727 @@
+"""The check as a student uses it: replies, hints, progress; and the locks that hold the answers."""
+
+import base64
+import hashlib
+import json
+import random
+import sys
+import threading
+from functools import cache
+from types import ModuleType
+
+import numpy as np
+import pytest
+import sympy as sm
+from seed import SEED
+from sympy.physics import units
+from sympy.physics.mechanics import ReferenceFrame
+
+import coursework
+from coursework.authoring.author import AuthorError, question
+from coursework.authoring.forms import equivalent_forms, flat, random_form
+from coursework.checking import plugins, questions, sealing
+from coursework.checking.kinds import Fault, Undecidable, fault, read
+from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.questions import NoSuchQuestion
+from coursework.checking.reply import Reply
+from orientation import (
+    SEQUENCES,
+    body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    dcm_from_rotation_vector,
+    dcm_from_space_fixed,
+    multiply_quaternions,
+    quaternion_from_axis_angle,
+    simple_dcm,
+)
+
+# The package gives the function of this name; the module is looked up.
+check_module = sys.modules["coursework.checking.check"]
+theta, alpha, phi = sm.symbols("theta alpha varphi")
+GIMBAL = dcm_from_body_fixed((theta, alpha, phi), "zxy")
+TWO = simple_dcm("x", alpha) * simple_dcm("z", theta)
+TURNS = [("z", theta), ("x", alpha), ("y", phi)]
+
+
+def make(name="trial/gimbal", kind="direction cosine matrix", answer=GIMBAL, **about):
+    if name == "trial/gimbal" and kind == "direction cosine matrix":
+        about = {"frames": ("D", "A"), "symbols": "theta alpha varphi", "turns": TURNS, **about}
+    return question(name, kind, answer, **about)
+
+
+KINDS = {
+    "symbols in a matrix": make(),
+    "numbers in a matrix": make(
+        "trial/n", answer=dcm_from_body_fixed((sm.pi / 3, sm.pi / 5, -sm.pi / 7), "zxy"), frames=("D", "A")
+    ),
+    "a quaternion": make(
+        "trial/q", "quaternion", quaternion_from_axis_angle((1, 0, 0), theta), symbols="theta", turns=[("x", theta)]
+    ),
+    "numbers in a quaternion": make("trial/qn", "quaternion", sm.Matrix([sm.sqrt(2) / 2, 0, -sm.sqrt(2) / 2, 0])),
+    "a vector": make("trial/v", "vector", TWO * sm.Matrix([1, 2, 0]), symbols="theta alpha", turned=(TWO, [1, 2, 0])),
+    "another matrix": make("trial/m", "matrix", TWO.diff(theta)[:2, :], symbols="theta alpha", shape=(2, 3)),
+    "an expression": make("trial/e", "expression", sm.acos(sm.sin(theta) * sm.cos(alpha)), symbols="theta alpha"),
+    "a number": make("trial/en", "expression", sm.pi / 7, quantity="angle"),
+    "Euler angles": make("trial/a", "Euler angles", [0.3, 0.5, -0.7], sequence="zxz"),
+    "axis and angle": make(
+        "trial/aa", "axis and angle", [[sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)], sm.pi / 4]
+    ),
+    "a sequence": make("trial/s", "sequence", "zxy"),
+    "truth values": make("trial/t", "truth values", [True, False, True, True, False, False, True, False], length=8),
+    "words": make("trial/w", "words", ["first", "last", "first"], options=["first", "last"], length=3),
+    "a function": make(
+        "trial/f",
+        "function",
+        dcm_from_quaternion,
+        calls=[[[0.6, 0, 0, 0.8]], [[0.5, 0.5, 0.5, 0.5]]],
+        result="direction cosine matrix",
+        frames=("A", "N"),
+    ),
+}
+
+
+@pytest.fixture
+def student(tmp_path, monkeypatch):
+    """``student(question, ...)``: a check of these questions in a folder of the student's own."""
+    monkeypatch.chdir(tmp_path)
+
+    def prepare(*authored):
+        sealed = {one.name: one.sealed() for one in authored}
+        # As a student has it: read back from a file, with nothing of the author's left in it.
+        sealed = json.loads(json.dumps(sealed))
+
+        def find(name):
+            if name not in sealed:
+                raise NoSuchQuestion(name)
+            return sealed[name]
+
+        monkeypatch.setattr(check_module, "find_question", find)
+        return check_module.check
+
+    return prepare
+
+
+def passes(one, answer):
+    return one.reply_to(one.to_plain(answer)).outcome == "correct"
+
+
+# --- any right form passes ----------------------------------------------------------------------
+
+
+def try_forms(one, number):
+    """Draw forms of the right answer by this run's lot; there are few where algebra has nothing to change."""
+    chance = random.Random(f"{SEED} {one.name}")
+    if one.public["kind"] in ("sequence", "truth values", "words", "function"):
+        number = min(number, 20)
+    for _ in range(number):
+        form = random_form(one.public, one.answer, chance)
+        assert passes(one, form), (f"BOOK_TEST_SEED={SEED}", form)
+
+
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
+def test_any_form_of_the_right_answer_passes(one):
+    try_forms(one, 50)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
+def test_a_thousand_forms_of_the_right_answer_pass(one):
+    try_forms(one, 1000)
+
+
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
+def test_named_forms_pass(one):
+    for form, answer in equivalent_forms(one.public, one.answer):
+        assert passes(one, answer), form
+
+
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_euler_angles_pass_if_their_orientation_is_right(sequence):
+    one = make("trial/a", "Euler angles", [0.4, 0.9, -1.1], sequence=sequence)
+    psi, middle, last = 0.4, 0.9, -1.1
+    proper = sequence[0] == sequence[2]
+    twin = [psi - sm.pi, -middle if proper else sm.pi - middle, last + sm.pi]
+    for answer in (
+        twin,
+        [psi + 2 * sm.pi, middle, last],
+        body_fixed_from_dcm(dcm_from_body_fixed((psi, middle, last), sequence), sequence),
+    ):
+        assert passes(one, answer)
+
+
+# --- each mistake has its message, and no answer a wrong one -------------------------------------
+
+
+@cache
+def sealed(one):
+    """The question with its locks, which are slow to make on purpose and the same each time."""
+    return one.sealed()
+
+
+def reply_to(one, answer):
+    try:
+        return questions.judge(one.name, sealed(one), one.to_plain(answer))[0]
+    except NotPlain as refused:
+        return questions.Reply(one.name, "invalid", "unreadable", [str(refused)])
+
+
+@pytest.mark.parametrize(
+    ("answer", "note", "words"),
+    [
+        (GIMBAL.T, "transposed", "A_C_D, the transpose of D_C_A"),
+        (dcm_from_space_fixed((theta, alpha, phi), "zxy"), "other order", "space fixed"),
+        (simple_dcm("z", theta) * simple_dcm("x", alpha) * simple_dcm("y", phi), "other order", "right"),
+        (GIMBAL.subs(alpha, -alpha), "sign of one turn", "second turn has the wrong sign"),
+        (dcm_from_body_fixed((phi, alpha, theta), "zxy"), "angles interchanged", "first turn and of the third"),
+        (dcm_from_body_fixed((theta, alpha, phi), "zxz"), "another sequence", "zxz"),
+        (dcm_from_body_fixed((theta, alpha, phi), "xyz"), "another sequence", "xyz"),
+        (simple_dcm("y", phi) * simple_dcm("z", theta), "turn missing", "second turn is missing"),
+        (GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}), "sign of every turn", "wrong sign"),
+        (2 * GIMBAL, "not orthogonal", "row should be a unit vector and has length 2 at"),
+        (GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)), "not orthogonal", "row"),
+        (sm.diag(1, -1, 1) * GIMBAL, "left-handed", "determinant is −1"),
+        (
+            GIMBAL.subs(theta, sm.Symbol("w")),
+            "stray symbol",
+            "holds w; this question has the symbols theta, alpha, varphi",
+        ),
+        (GIMBAL[:2, :], "shape", "a matrix of 2 × 3"),
+        ([list(GIMBAL)], "shape", "rows"),
+        (theta, "shape", "a single expression"),
+        ("zxy", "shape", "a text"),
+        (GIMBAL * sm.I, "not real", "imaginary"),
+        (GIMBAL / sm.Add(theta, -theta, evaluate=False), "undefined", "no finite value"),
+        (object(), "unreadable", "cannot be read"),
+        (ReferenceFrame("E").x + ReferenceFrame("F").y, "unreadable", "not connected"),
+        (ReferenceFrame("E"), "frame", "This is the frame E"),
+        (ReferenceFrame("E").x, "shape", "a vector"),
+        (simple_dcm("x", sm.Rational(1, 3)), "", "a direction cosine matrix, but not the one"),
+        (..., "", "in place of"),
+        (None, "", "in place of"),
+    ],
+)
+def test_the_reply_names_what_is_wrong(answer, note, words):
+    reply = reply_to(KINDS["symbols in a matrix"], answer)
+    assert reply.note == note
+    assert words in repr(reply)
+    assert reply.outcome != "correct"
+
+
+@pytest.mark.parametrize(
+    ("kind", "answer", "note"),
+    [
+        ("a quaternion", [sm.cos(theta / 2), -sm.sin(theta / 2), 0, 0], "conjugate"),
+        ("a quaternion", [sm.sin(theta / 2), 0, 0, sm.cos(theta / 2)], "scalar last"),
+        ("a quaternion", [sm.cos(theta), sm.sin(theta), 0, 0], "whole angle"),
+        ("a quaternion", [sm.sin(theta / 2), sm.cos(theta / 2), 0, 0], "cosine for sine"),
+        ("a quaternion", [1, theta, 0, 0], "not unit length"),
+        ("a vector", TWO.T * sm.Matrix([1, 2, 0]), "turned the wrong way"),
+        ("a vector", [1, 2, 0], "not turned"),
+        ("Euler angles", [-0.3, 0.5, -0.7], "sign of one angle"),
+        ("Euler angles", [17.18873, 28.64789, -40.10705], "in degrees"),
+        ("Euler angles", [20.0, 30.0, 40.0], "degrees"),
+        ("a number", 25.7142857, "in degrees"),
+        ("a number", -sm.pi / 7, "opposite"),
+        ("a sequence", "yxz", "sequence reversed"),
+        ("a sequence", "zzx", "impossible sequence"),
+        ("a sequence", "abc", "shape"),
+        ("axis and angle", ([2, 1, -2], sm.pi / 4), "not unit length"),
+        ("axis and angle", ([sm.Rational(-2, 3), sm.Rational(-1, 3), sm.Rational(-2, 3)], sm.pi / 4), "axis reversed"),
+        ("a function", lambda q: dcm_from_quaternion(q).T, "transposed"),
+        ("a function", lambda q: 1 / 0, "raised an error"),
+        ("a function", dcm_from_quaternion([1, 0, 0, 0]), "unreadable"),
+        ("truth values", [True] * 7, "shape"),
+        ("words", ["first", "last", "middle"], "shape"),
+    ],
+)
+def test_other_kinds_name_what_is_wrong(kind, answer, note):
+    reply = reply_to(KINDS[kind], answer)
+    assert reply.note == note, reply
+    assert reply.messages and reply.outcome in ("wrong", "invalid")
+
+
+SIGNS = make("trial/r", "words", ["-i", "1", "k"], options=["1", "-1", "i", "-i", "k", "-k"], length=3)
+AXES = make("trial/up", "words", ["+x", "-z", "none"], options=["+x", "-x", "+z", "-z", "none"], length=3)
+
+
+@pytest.mark.parametrize(
+    ("one", "answer"),
+    [
+        (SIGNS, ["-i", 1, "k"]),
+        (SIGNS, ["\u2212i", 1.0, sm.Symbol("k")]),
+        (SIGNS, [-sm.Symbol("i"), sm.Integer(1), "+k"]),
+        (SIGNS, ["- i", "+ 1", " K "]),
+        (AXES, ["x", "- z", "None"]),
+        (KINDS["truth values"], ["True", "False", "true", True, 0, sm.false, np.True_, "False"]),
+        (KINDS["a number"], sm.pi / 7 + 0 * sm.Symbol("x")),
+        (KINDS["a vector"], TWO * sm.Matrix([1, 2, 0]) * units.radian),
+    ],
+)
+def test_words_and_truth_values_pass_as_beginners_write_them(one, answer):
+    assert passes(one, answer)
+
+
+THREE, MATRIX = "A list of 3 components is asked for; this is ", "A matrix of 3 × 3 is asked for; this is "
+
+
+@pytest.mark.parametrize(
+    ("kind", "answer", "words"),
+    [
+        ("a vector", ["1", "2", "0"], THREE + "a list that holds a text: numbers stand without quotation marks."),
+        ("a vector", [theta, ..., ...], THREE + "a list that is still blank in part."),
+        ("a vector", [theta, 1, [1, 2]], THREE + "a list with 3 entries, one of which is a list with 2 entries."),
+        ("a vector", sm.Matrix([1, 2, 0]) * units.meter, "the unit `meter`. Give numbers alone"),
+        ("numbers in a matrix", [["1", "0", "0"]] * 3, MATRIX + "a list that holds a text: numbers"),
+        ("numbers in a matrix", [[1, 0, 0], [0, 1], [0, 0, 1]], "a list of rows, one of which has 2 entries."),
+        ("numbers in a matrix", [[1, 0], [0, 1], [0, 0]], MATRIX + "a list of 3 rows with 2 entries each."),
+        ("numbers in a matrix", (GIMBAL, GIMBAL, GIMBAL), "3 entries, one of which is a matrix of 3 × 3."),
+        ("words", ["first", None, "first"], "this is a list that is still blank in part."),
+        ("truth values", [True] * 7 + [None], "this is a list that is still blank in part."),
+        ("truth values", [True] * 7 + [3], "a list with 8 entries, one of which is a single expression."),
+        ("a number", sm.zoo, "The answer has no finite value"),
+        ("a number", 1 / (sm.zoo + sm.pi) + sm.Mul(sm.nan, 2, evaluate=False), "The answer has no finite value"),
+        ("numbers in a matrix", sm.eye(3) * sm.oo, "The answer has no finite value"),
+    ],
+)
+def test_the_reply_says_which_part_of_a_list_is_not_as_asked_for(kind, answer, words):
+    try:
+        reply = KINDS[kind].reply_to(KINDS[kind].to_plain(answer))
+    except NotPlain as refused:
+        reply = questions.Reply("trial/x", "invalid", "unreadable", [str(refused)])
+    assert reply.outcome == "invalid" and words in " ".join(reply.messages)
+
+
+def test_a_function_that_ends_python_ends_nothing_but_its_own_answer():
+    reply = KINDS["a function"].reply_to(KINDS["a function"].to_plain(lambda quaternion: sys.exit()))
+    assert (reply.outcome, reply.note) == ("invalid", "raised an error")
+
+
+def test_a_frame_is_not_said_to_be_connected_with_itself():
+    A, B = ReferenceFrame("A"), ReferenceFrame("B")
+    B.orient_axis(A, A.z, theta)
+    [said] = KINDS["symbols in a matrix"].reply_to(to_plain(B)).messages
+    assert "This is the frame `B`, connected with `A`;" in said
+    [said] = KINDS["symbols in a matrix"].reply_to(to_plain(ReferenceFrame("C"))).messages
+    assert "connected with no other;" in said
+
+
+@pytest.mark.parametrize(("digits", "rounded"), [(2, True), (1, False)])
+def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
+    """Of a matrix and of an axis: the remark on rounding comes before the fault of geometry, and only where it may."""
+    matrix = sm.Matrix([[8, 1, 4], [-4, 4, 7], [-1, -8, 4]]) / 9
+    axis = [sm.Rational(2, 7), sm.Rational(3, 7), sm.Rational(6, 7)]
+    for kind, answer, given in (
+        ("direction cosine matrix", matrix, np.array(matrix, dtype=float).round(digits)),
+        ("axis and angle", [axis, sm.pi / 4], ([round(float(part), digits) for part in axis], 0.79)),
+    ):
+        one = make("trial/round", kind, answer, **({"frames": ("S", "B")} if kind[0] == "d" else {}))
+        reply = one.reply_to(to_plain(given))
+        assert reply.outcome == "invalid"
+        assert ("rounded too far" in reply.messages[0]) == rounded, reply.messages
+
+
+def test_no_turn_at_all_is_not_called_twice_half_a_turn():
+    axis = [sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)]
+    for half_turn in (sm.pi, np.pi, -3 * sm.pi):
+        one = make("trial/half", "axis and angle", [axis, half_turn])
+        assert one.reply_to(to_plain((axis, 0))).note == "" and one.reply_to(to_plain((axis, sm.pi / 2))).note == "half"
+    reply = KINDS["axis and angle"].reply_to(to_plain((axis, sm.pi / 2)))
+    assert reply.note == "double" and reply.messages[0].startswith("The angle is twice")
+
+
+@pytest.mark.parametrize("kind", ["numbers in a matrix", "numbers in a quaternion"])
+@pytest.mark.parametrize("off", [4, 6, 8])
+def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):
+    """The transpose of what is nearly right is in the cell of the mistake "transposed"; but that is no mistake here."""
+    one = KINDS[kind]
+    turned = np.array(
+        dcm_from_body_fixed((np.pi / 3, np.pi / 5, -np.pi / 7), "zxy")
+        if "matrix" in kind
+        else [0.5**0.5, 0, -(0.5**0.5), 0]
+    )
+    notes = set()
+    for chance in range(40):
+        small = np.random.default_rng(chance).normal(size=3)
+        small *= off * 0.0005 / np.abs(small).max()
+        if "matrix" in kind:
+            answer = turned @ dcm_from_rotation_vector(small)
+        else:
+            answer = multiply_quaternions(turned, [np.sqrt(1 - small @ small), *small])
+        notes.add(one.reply_to(to_plain(answer)).note)
+    assert "rounded too far" in notes and notes <= {"rounded too far", ""}, notes
+
+
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_every_mistake_of_the_catalogue_is_named_in_all_twelve_sequences(sequence):
+    one = make(
+        "trial/g",
+        answer=dcm_from_body_fixed((theta, alpha, phi), sequence),
+        frames=("D", "A"),
+        symbols="theta alpha varphi",
+        turns=[*zip(sequence, (theta, alpha, phi))],
+    )
+    for mistake in one.mistakes:
+        text = one.fingerprint_of(one.to_plain(mistake.answer))
+        assert [mistake.note, mistake.details] in one.entries[text].notes or passes(one, mistake.answer)
+
+
+def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
+    one, chance = KINDS["symbols in a matrix"], random.Random(4)
+    for _ in range(300):
+        axes = "".join(chance.choice("xyz") for _ in range(3))
+        angles = [chance.choice([-1, 1]) * chance.choice([theta, alpha, phi, theta / 2, alpha + phi]) for _ in range(3)]
+        answer = sm.eye(3)
+        for axis, angle in zip(axes, angles):
+            answer = simple_dcm(axis, angle) * answer
+        entry = one.entries.get(one.fingerprint_of(one.to_plain(answer)))
+        if entry and entry.outcome == "mistake":
+            said = [mistake for mistake in one.mistakes if [mistake.note, mistake.details] in entry.notes]
+            assert said and all(
+                (mistake.answer - answer).subs({theta: 0.3, alpha: 1.1, phi: -0.7}).norm() < 1e-12 for mistake in said
+            )
+
+
+@pytest.mark.parametrize(
+    ("change", "digits", "note"),
+    [
+        (lambda right: right, 3, "not orthogonal"),
+        (lambda right: right.T, 15, "transposed"),
+        (lambda right: right.subs(theta, -theta).T, 15, "transposed, and sign of one turn"),
+        (lambda right: simple_dcm("y", sm.pi / 3) * right, 15, ""),
+        (lambda right: simple_dcm("y", sm.pi / 3) * right, 4, "not orthogonal"),
+    ],
+)
+def test_decimals_cost_no_more_than_two_slow_hashes(change, digits, note, monkeypatch):
+    turns = [("x", sm.pi / 4), ("z", theta)]
+    right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
+    one = make("trial/decimals", answer=right, frames=("B", "N"), symbols="theta", turns=turns)
+    hidden, hashed = sealed(one), []
+    monkeypatch.setattr(sealing, "slow_key", lambda *known, slow=sealing.slow_key: hashed.append(known) or slow(*known))
+    reply = questions.judge(one.name, hidden, one.to_plain(change(right).evalf(digits)))[0]
+    assert reply.note == note and ("decimal fractions" in repr(reply) or digits == 15)
+    assert len(hashed) <= 2
+
+
+@pytest.mark.parametrize("threads", [True, False])
+def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(threads, monkeypatch):
+    """All digits that are no simple fraction's: rounded far, or with a slip? Both cost a slow hash."""
+    right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
+    one = make("trial/at-once", answer=right, frames=("B", "N"), symbols="theta")
+    both, looked = threading.Barrier(2), []
+
+    def find(text):
+        looked.append(text)
+        if threads and len(looked) > 1:
+            both.wait(timeout=60)
+
+    def refuse(thread):
+        raise RuntimeError("can't start new thread")
+
+    if not threads:
+        monkeypatch.setattr(threading.Thread, "start", refuse)
+    reply = questions.compare(one.name, one.public, one.to_plain((simple_dcm("y", 0.3) * right).evalf()), find)
+    assert reply.outcome == "wrong" and len(looked) == len(set(looked)) == 3
+
+
+def test_what_cannot_be_decided_is_said_to_be_undecided():
+    reply = reply_to(KINDS["an expression"], sm.gamma(theta) * alpha)
+    assert reply.outcome == "undecided"
+    with pytest.raises(Undecidable):
+        read(KINDS["an expression"].public, to_plain(sm.gamma(theta)))
+
+
+TOLERANT = {
+    "one number": make("trial/t1", "expression", sm.pi / 7),
+    "a larger tolerance": make("trial/t2", "vector", [1, -2, 30], tolerance=0.05),
+    "relative": make("trial/t3", "vector", [0.002, -2000, 31], tolerance=1e-6, relative=0.01),
+    "a matrix": make("trial/t4", "matrix", sm.Matrix([[1, 2], [3, 4]]) / 7, shape=(2, 2)),
+}
+
+
+@pytest.mark.parametrize("one", TOLERANT.values(), ids=TOLERANT)
+def test_the_tolerance_is_exact_on_both_sides(one):
+    """An answer within `tolerance + relative * |right|` passes, one just beyond does not: whatever cell it is in."""
+    entries, put = flat(one.answer)
+    absolute, relative = one.public["tolerance"], one.public.get("relative", 0)
+    sealed, chance = one.sealed(), random.Random(2)
+    for place in range(len(entries)):
+        for share, right in ((-0.9999, True), (0.9999, True), (-1.0001, False), (1.0001, False)):
+            answer = [float(entry) for entry in entries]
+            answer = [x + chance.uniform(-1, 1) * 0.99 * (absolute + relative * abs(x)) for x in answer]
+            exact = float(entries[place])
+            answer[place] = exact + share * (absolute + relative * abs(exact))
+            reply = questions.judge(one.name, sealed, one.to_plain(put(answer)))[0]
+            assert (reply.outcome == "correct") == right, (place, share)
+            if not right:
+                assert reply.note == "rounded too far" and "close" in repr(reply)
+
+
+def test_the_other_sign_of_a_quaternion_passes_unless_it_is_asked_for():
+    free = KINDS["numbers in a quaternion"]
+    assert passes(free, -free.answer)
+    signed = make("trial/qs", "quaternion", free.answer, either_sign=False)
+    assert not passes(signed, -free.answer)
+
+
+# --- the check itself ---------------------------------------------------------------------------
+
+
+def test_a_check_replies_and_shows_the_solution_only_to_the_right_answer(student):
+    check = student(make(solution="Take $x$ **first**."))
+    right = check("trial/gimbal", GIMBAL)
+    assert right.outcome == "correct"
+    page = right._repr_html_()
+    assert "$x$" in page and "<strong>first</strong>" in page
+    wrong = check("trial/gimbal", GIMBAL.T)
+    assert wrong.outcome == "wrong" and "first" not in wrong.solution
+    assert 'role="status"' in wrong._repr_html_()
+
+
+def test_what_a_student_wrote_is_shown_and_not_obeyed(student):
+    check = student(make())
+    evil = sm.Symbol("<script>alert(1)</script>$`*")
+    page = check("trial/gimbal", GIMBAL * evil)._repr_html_()
+    assert "<script" not in page
+
+
+def test_each_different_answer_earns_one_more_hint_and_pressing_run_again_does_not(student):
+    check = student(
+        make(
+            hints={"transposed": ["Look at the rows.", "Whose unit vectors are they?"]}, ladder=["Begin with one turn."]
+        )
+    )
+
+    def shown(answer):
+        return [line for line in check("trial/gimbal", answer).messages if line.startswith("Hint")]
+
+    assert [shown(GIMBAL.T) for _ in range(3)] == [[], [], []]
+    # Another mistake has no hints of its own: the ladder of the question goes on.
+    assert shown(GIMBAL.subs(theta, -theta)) == ["Hint: Begin with one turn."]
+    assert len(shown(GIMBAL.T)) == 1 and len(shown(GIMBAL.subs(phi, -phi))) == 1
+    assert shown(GIMBAL.T) == ["Hint: Look at the rows.", "Hint: Whose unit vectors are they?"]
+    said = repr(check_module.hint("trial/gimbal"))
+    assert "Whose" in said and "Begin" not in said and "1 more can be earned" in said
+    assert not said.startswith("Not attempted")
+
+
+def test_no_hint_that_is_not_yet_earned_stands_in_clear_on_the_disk(student, tmp_path):
+    one = make(hints={"transposed": ["Look at the rows."]}, ladder=["Begin with one turn."], solution="By hand.")
+    check = student(one)
+    check("trial/gimbal", GIMBAL.T)
+    text = json.dumps(one.sealed("CODE")) + "".join(path.read_text() for path in tmp_path.rglob("*") if path.is_file())
+    assert not any(words in text for words in ("Look at", "Begin with", "By hand"))
+
+
+def test_who_gives_up_sees_the_worked_solution_with_the_code_of_the_instructor(student):
+    one = make(solution="Take $x$ **first**.")
+    student(one)
+    assert "opens no solution" in repr(check_module.worked_solution("trial/gimbal", "ABCD"))
+    sealed = one.sealed("PYGG-ZGV7-G94A")
+    check_module.find_question = lambda name: sealed
+    assert "first" in check_module.worked_solution("trial/gimbal", "pygg zgv7 g94a").solution
+    assert check_module.worked_solution("trial/gimbal", "PYGG-ZGV7-G94B").solution == ""
+
+
+def test_a_right_answer_opens_the_hints_of_a_later_question(student):
+    check = student(make(after={"trial/s": ["Read it from the factors."]}), KINDS["a sequence"])
+    assert "no hint yet" in repr(check_module.hint("trial/s"))
+    check("trial/gimbal", GIMBAL)
+    assert "Read it" in repr(check_module.hint("trial/s"))
+
+
+def test_progress_is_kept_beside_the_notebook_and_right_stays_right(student, tmp_path):
+    check = student(make(), KINDS["a sequence"])
+    check("trial/s", "xyx")
+    check("trial/gimbal", GIMBAL)
+    check("trial/gimbal", GIMBAL.T)
+    assert [path.name for path in tmp_path.rglob("*.json")] == ["progress.json"]
+    said = repr(check_module.progress())
+    assert "1 of the 2" in said and "trial/s" in said and "Still open: trial/s" in said
+
+
+def test_a_folder_that_cannot_be_written_costs_no_check(student, tmp_path):
+    check = student(make())
+    (tmp_path / ".coursework").write_text("a file where the folder should be")
+    assert check("trial/gimbal", GIMBAL).outcome == "correct"
+
+
+def test_a_damaged_record_costs_no_check(student, tmp_path):
+    check = student(make())
+    (tmp_path / ".coursework").mkdir()
+    for damaged in ("{", "[]", '{"trial/gimbal": 3}', "\xff"):
+        (tmp_path / ".coursework" / "progress.json").write_text(damaged, "latin1")
+        assert check("trial/gimbal", GIMBAL).outcome == "correct"
+
+
+def test_where_nbgrader_runs_the_notebook_a_wrong_answer_is_an_error(student, monkeypatch):
+    check = student(make())
+    monkeypatch.setenv("NBGRADER_EXECUTION", "autograde")
+    assert check("trial/gimbal", GIMBAL).outcome == "correct"
+    for answer in (GIMBAL.T, ..., theta):
+        with pytest.raises(AssertionError):
+            check("trial/gimbal", answer)
+
+
+def test_a_misspelt_name_is_answered_with_the_nearest():
+    with pytest.raises(NoSuchQuestion, match="no question"):
+        coursework.check("nothing/like-this", 1)
+    for name in ("", "/", "../../etc/passwd", "a" * 5000, "\0"):
+        with pytest.raises(NoSuchQuestion):
+            coursework.check(name, 1)
+
+
+@pytest.mark.parametrize("sign", ["VSCODE_PID", "google.colab", "marimo", ""])
+def test_formulas_are_mathml_where_nobody_typesets_tex(monkeypatch, sign):
+    for name in ("google.colab", "marimo"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.delenv("VSCODE_PID", raising=False)
+    if sign.isupper():
+        monkeypatch.setenv(sign, "1")
+    elif sign:
+        monkeypatch.setitem(sys.modules, sign, ModuleType(sign))
+    solution = r"<p>So $$x = {}^A\mathbf{C}^N$$ and $a &lt; b$.</p>"
+    shown = Reply("a/b", "wrong", "", [r"The arm is $\frac{1}{2}x$."], solution)._repr_html_()
+    assert ("<mfrac>" in shown) == ("$" not in shown) == (shown.count("<math ") == 3) == bool(sign)
+    assert r"\frac" in shown or sign
+    monkeypatch.setitem(sys.modules, "latex2mathml.converter", None)  # students may not have it
+    assert "<math" not in Reply("a/b", "wrong", "", ["$x$"])._repr_html_()
+
+
+# --- the locks ----------------------------------------------------------------------------------
+
+
+def test_the_slow_hash_is_the_standard_one_without_openssl_too():
+    for password, salt, rounds in ((b"", b"", 1), (b"p" * 70, b"s", 5), (b"password", b"salt", 1000)):
+        expected = hashlib.pbkdf2_hmac("sha256", password, salt, rounds)
+        assert sealing.portable_pbkdf2(password, salt, rounds) == sealing.pbkdf2(password, salt, rounds) == expected
+
+
+def test_a_lock_opens_with_its_key_only_and_notices_a_change():
+    key, other = sealing.slow_key("00", "1"), sealing.slow_key("00", "2")
+    sealed = sealing.seal({"a": "ü"}, key)
+    assert sealing.unseal(sealed, key) == {"a": "ü"}
+    data = bytearray(base64.b85decode(sealed))
+    data[3] ^= 1
+    for wrong in ((sealed, other), (base64.b85encode(data), key)):
+        with pytest.raises(ValueError):
+            sealing.unseal(*wrong)
+
+
+def test_a_locker_opens_with_its_key_only_and_notices_a_change():
+    keys = [sealing.slow_key("00", str(number)) for number in range(3)]
+    lockers = sealing.pack([sealing.locker(keys[0], 0, [b"name"]), sealing.locker(keys[1], 1, [], 4, b"12345678")])
+    assert sealing.open_locker(lockers, keys[0]) == (0, None, b"name\0\0\0\0")
+    assert sealing.open_locker(lockers, keys[1]) == (1, 4, b"12345678")
+    assert sealing.open_locker(lockers, keys[2]) is None
+    data = base64.b85decode(lockers)
+    for place in range(len(data)):
+        changed = base64.b85encode(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
+        for key in keys[:2]:
+            try:
+                assert sealing.open_locker(changed, key) in (None, sealing.open_locker(lockers, key))
+            except ValueError as error:
+                assert "changed" in str(error)
+
+
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
+def test_no_page_can_be_tried_without_the_slow_hash(one):
+    """What a page says can often be known beforehand: so its key must cost as much as that of a locker."""
+    sealed, text = one.sealed(), one.fingerprint_of(one.plain)
+    secrets = [hashlib.sha256(text.encode()).digest(), text.encode()[:64], b""]
+    for content, _ in one.pages.contents.values():
+        known = json.dumps(content, ensure_ascii=False, sort_keys=True).encode()
+        for secret in secrets:
+            key = hashlib.blake2b(known, key=secret, digest_size=sealing.PAGE_KEY).digest()
+            for page in sealed["pages"]:
+                with pytest.raises(ValueError):
+                    sealing.unseal(page, key)
+
+
+@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
+def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
+    sealed = one.sealed()
+    data = base64.b85decode(sealed["lockers"])
+    lockers = [data[start : start + sealing.LOCKER] for start in range(0, len(data), sealing.LOCKER)]
+    assert lockers == sorted(lockers) and len(lockers) == len(one.entries) + len(one.near)
+    assert len(sealed["lockers"]) == 20 * len(lockers)
+    assert one.sealed() == sealed
+    assert questions.judge(one.name, sealed, one.plain)[0].outcome == "correct"
+
+
+def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
+    """The keys of the ladder follow from what is public, so its steps are general words."""
+    general = {words for kind in plugins.kinds().values() for words in [kind.begin]}
+    general |= {f"It is built of {turns} turns, one after another. Check each of them alone." for turns in range(2, 9)}
+    opened = 0
+    for folder in plugins.sealed_folders():
+        for file in sorted(folder.iterdir()):
+            for name in questions.notebook_questions(file.name.removesuffix(".json")):
+                for number in range(questions.find_question(name).get("variants", 1)):
+                    one = questions.in_variant(name, number)
+                    for order, step in enumerate(one.get("ladder", ())):
+                        opened += 1
+                        assert sealing.unseal(step, questions.rung_key(one, order)) in general, (name, number)
+    assert opened > 500
+    about = {"solution": "It is 7. And this is a long way of saying so, longer than the first sentence by far."}
+    assert make("trial/said", "expression", 7, **about).ladder == [plugins.kinds()["expression"].begin]
+
+
+def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():
+    """Nothing public but the seed of the points follows from the answer: no bit of a number, no order of lockers."""
+    for one in KINDS.values():
+        assert set(one.sealed()) <= {
+            "kind", "frames", "symbols", "unit", "shape", "length", "sequence", "options", "tolerance", "relative",
+            "calls", "takes", "result", "quantity", "either sign", "unit vector", "every symbol",
+            "salt", "lockers", "pages", "ladder", "worth",
+        }  # fmt: skip
+        assert one.public["salt"] in [
+            hashlib.sha256(f"{one.name} {attempt}".encode()).hexdigest()[:16] for attempt in range(50)
+        ]
+
+
+def test_the_order_in_which_symbols_are_listed_does_not_matter():
+    sealed = make().sealed()
+    for order in (sorted, lambda names: sorted(names, reverse=True)):
+        again = {**sealed, "symbols": {name: sealed["symbols"][name] for name in order(sealed["symbols"])}}
+        assert questions.judge("trial/gimbal", again, to_plain(GIMBAL))[0].outcome == "correct"
+
+
+def test_the_values_of_an_answer_do_not_stand_in_what_is_sealed():
+    text = json.dumps(KINDS["numbers in a matrix"].sealed())
+    for entry in KINDS["numbers in a matrix"].answer:
+        assert str(entry) not in text and f"{float(entry):.4f}" not in text
+
+
+# --- what an author may get wrong ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("about", "words"),
+    [
+        ({"kind": "riddle"}, "none of"),
+        ({"frames": None}, "needs 'frames'"),
+        ({"symbols": "theta"}, "cannot be read"),
+        ({"turns": TURNS[::-1]}, "turns do not give the right answer"),
+        ({"answer": ...}, "cannot be read"),
+    ],
+)
+def test_a_question_that_is_not_well_posed_is_refused(about, words):
+    with pytest.raises(AuthorError, match=words):
+        make(**{"kind": "direction cosine matrix", **about})
+
+
+def test_a_form_fault_is_found_only_where_there_is_one():
+    for one in KINDS.values():
+        assert fault(one.public, read(one.public, one.plain)) is None
+    with pytest.raises(Fault):
+        read(KINDS["symbols in a matrix"].public, to_plain([1, 2]))
+
+
+def test_products_of_quaternions_in_the_other_order_are_named():
+    turns = [("x", theta), ("y", alpha)]
+    first, second = (
+        quaternion_from_axis_angle(axis, angle) for axis, angle in (((1, 0, 0), theta), ((0, 1, 0), alpha))
+    )
+    one = make("trial/qq", "quaternion", multiply_quaternions(first, second), symbols="theta alpha", turns=turns)
+    assert reply_to(one, multiply_quaternions(second, first)).note == "other order"

@@ -1,0 +1,51 @@
+"""The instructors' page of the book shows what its sample class gives."""
+
+import io
+import re
+from pathlib import Path
+
+import pytest
+
+from coursework.grading import sample_class
+from coursework.grading.export import gradebooks
+from coursework.grading.grade import grade, regrade
+from coursework.grading.judging import term
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.store import Store
+
+
+@pytest.mark.long
+def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
+    said = io.StringIO()
+    notebooks = ["simple-orientations", "unit-quaternions"]
+    submissions = sample_class.make_class(tmp_path / "class", 200, 1, notebooks)
+    grade(submissions, tmp_path / "out", assignments={"homework": notebooks}, show=said)
+    manual = (Path(__file__).parents[2] / "appendix" / "instructors.md").read_text("utf8")
+    report = (tmp_path / "out" / "report.html").read_text("utf8")
+    for line in said.getvalue().splitlines():
+        if line.startswith(("196 to grade", "Isolation:", "homework:")):
+            assert line.partition("(")[0] in manual
+    (figure,) = re.findall(r'aria-label="(Number of students by points[^"]*)"', report)
+    assert figure in manual
+    (about,) = re.findall(r"<p>(\d+ students)\. The (mean is .*?)\.</p>", report)
+    assert "; the ".join(about) in manual
+    rows = re.findall(r"^\| (\d+) % \| .*\((\d+) of (\d+)\) \|$", manual, re.M)
+    found = re.findall(r"<strong>(\d+) %</strong>.*?\((\d+) of (\d+)\)</span>", report, re.S)
+    assert len(rows) == 4 and rows == found[:4]
+    # What waited is decided, and the gradebook filled, line for line as the page prints it; only places are others.
+    store, ledger = Store(tmp_path / "out"), Ledger(tmp_path / "out")
+    waiting = [(record, name) for record in store.all() for name, mark in record["marks"].items()
+               if mark["outcome"] == "undecided"]  # fmt: skip
+    for record, name in waiting:
+        ledger.add(record, name, 0.5, who="Ann")
+    for one in regrade(tmp_path / "out", show=said):
+        moved = f"{one.student!r}, {one.assignment}: {one.before:g} -> {one.after:g}"
+        assert f"{moved}  ({', '.join(one.questions)})\n{len(waiting)} moved.\n" in manual
+    (printed,) = re.findall(r"^\$ coursework export graded --lms class/gradebook.csv.*?\n(.*?)```", manual, re.M | re.S)
+    told = gradebooks.fill(tmp_path / "class" / "gradebook.csv", gradebooks.Marks(store))
+    feedback = gradebooks.write_feedback(tmp_path / "feedback.zip", gradebooks.Marks(store), store)
+    told = "\n".join([*told, f"{feedback} pages of feedback: feedback.zip\n"])
+    assert told.replace(f"{tmp_path}/", "") == printed
+    rules = tmp_path / "term.toml"
+    rules.write_text(re.search(r"```toml\n(.*?)```", manual, re.S)[1].replace('times = "worksheet.csv"\n', ""))
+    assert list(term.read_rules(rules).assignments) == notebooks

@@ -1,0 +1,32 @@
+"""The book's questions as the grader takes them, and the class of the instructors' page."""
+
+import pytest
+
+from coursework.authoring.course import find_course
+from coursework.authoring.release import read_source
+
+SOURCES = find_course().sources
+
+
+SLICED = ("simple-orientations",)
+
+
+OTHERS = [path for path in sorted(SOURCES.glob("*.ipynb")) if path.stem not in (*SLICED, "chapters")]
+
+
+@pytest.mark.parametrize("name", [*SLICED, *(pytest.param(path.stem, marks=pytest.mark.long) for path in OTHERS)])
+def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name):
+    path = SOURCES / f"{name}.ipynb"
+    rules = read_source(path).rules
+    for number in range(1, max((rule.count for rule in rules.values()), default=1)):
+        having = [question for question, rule in rules.items() if number < rule.count]
+        whole, part = read_source(path, number).questions, read_source(path, number, only=having).questions
+        assert list(whole) == list(part)
+        for one, other in zip(whole.values(), part.values(), strict=True):
+            assert {**one.public, "picture": None} == {**other.public, "picture": None}
+            assert (one.plain, one.entries, one.near, one.credit) == (
+                other.plain,
+                other.entries,
+                other.near,
+                other.credit,
+            )

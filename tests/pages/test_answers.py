@@ -1,0 +1,792 @@
+"""What a reader writes in the page: kept in two tabs, through crashes and new editions, handed in, brought back."""
+
+import csv
+import json
+import random
+import re
+from contextlib import contextmanager, suppress
+
+import nbformat
+import pytest
+from places import HTML, REPOSITORY
+from test_live import ELSEWHERE, solution
+
+from coursework.__main__ import main as coursework
+from notebook_pages.lite import fingerprint_of_code
+from notebook_pages.live.cells import kinds_of_cells
+from notebook_pages.take_away import notebook_address
+
+EXERCISE, CHAPTER = "exercises/simple-orientations", "chapters/successive-orientations"
+BLANK = "A_C_N = ...  # your answer"
+ANSWER, OTHER = 3, 5  # cells of the exercise, from 1
+CODES = """() => [...document.querySelectorAll('div.cell')].map((cell) =>
+  cell.querySelector('.cm-content')?.innerText ?? cell.querySelector('.cell_input pre').textContent)"""
+KEPT = "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => key.startsWith('book ')))"
+pytestmark = pytest.mark.sampled(2)
+
+
+@pytest.fixture
+def context(browser):
+    made = browser.new_context(viewport={"width": 1300, "height": 900}, accept_downloads=True)
+    made.route(ELSEWHERE, lambda route: route.abort())
+    yield made
+    made.close()
+
+
+class Tab:
+    """A page of the book in one tab."""
+
+    def __init__(self, context, site, name=EXERCISE):
+        self.page = context.new_page()
+        self.errors = []
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.goto(f"{site}{name}.html")
+        self.page.wait_for_selector("button.run-cell", state="attached")
+
+    def edit(self):
+        """Open the editors, as the first Run or a kept answer does, but without Python."""
+        if not self.page.locator(".cm-content").count():
+            self.page.route("**/pyodide*", lambda route: route.abort())
+            self.page.evaluate("document.querySelector('button.run-cell').click()")
+        self.page.wait_for_selector(".cm-content", state="attached")
+        self.page.wait_for_function("!document.querySelector('html.live-busy')")
+        return self
+
+    def write(self, number, code):
+        self.page.locator("div.cell").nth(number - 1).locator(".cm-content").focus()
+        self.page.keyboard.press("Control+a")
+        self.page.keyboard.insert_text(code)
+        self.wait(number, code)
+
+    def text(self, number):
+        return self.page.evaluate(CODES)[number - 1].strip("\n")
+
+    def wait(self, number, code):
+        self.page.wait_for_function(
+            f"([number, code]) => ({CODES})()[number - 1].replace(/\\s/g, '') === code.replace(/\\s/g, '')",
+            arg=[number, code],
+        )
+
+    def words(self):
+        return self.page.inner_text("#live-words")
+
+    def press(self, name):
+        self.page.locator(".live-bar").get_by_role("button", name=name).click()
+
+    def menu(self, action):
+        self.page.evaluate("document.querySelector('details.take-away').open = true")
+        self.page.click(f"button[data-answers={action}]")
+
+    def reload(self):
+        self.page.reload()
+        self.page.wait_for_selector("button.run-cell", state="attached")
+
+    def take(self, action="handIn"):
+        with self.page.expect_download() as download:
+            self.menu(action)
+        return download.value
+
+    def bring(self, path, action="load"):
+        before = self.words()
+        with self.page.expect_file_chooser() as chooser:
+            self.menu(action)
+        chooser.value.set_files(path)
+        self.page.wait_for_function(
+            "before => document.querySelector('#live-words').textContent !== before", arg=before
+        )
+
+    def shown(self):
+        """Everything that the page lets its reader see again: editors, offers, what was written before."""
+        return "\n".join([*self.page.evaluate(CODES), *self.page.locator(".live-choice pre").all_text_contents()])
+
+
+# --- two tabs, reloads, the book's code -------------------------------------------------------------
+
+
+def test_two_tabs_share_their_answers(context, site):
+    one, two = Tab(context, site).edit(), Tab(context, site).edit()
+    one.write(ANSWER, "first = 1")
+    two.write(OTHER, "second = 2")
+    one.wait(OTHER, "second = 2")
+    two.wait(ANSWER, "first = 1")
+    one.reload()
+    one.wait(ANSWER, "first = 1")
+    one.wait(OTHER, "second = 2")
+    two.write(ANSWER, "first = 10")
+    one.wait(ANSWER, "first = 10")
+    assert one.errors == two.errors == []
+
+
+def test_text_of_a_tab_that_slept_is_set_aside(context, site):
+    """A tab that has missed what another one wrote takes its place, and loses nothing."""
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    (key, entry) = next(iter(tab.page.evaluate(KEPT).items()))
+    elsewhere = json.loads(entry) | {"code": "theirs = 2"}
+    tab.page.evaluate("([key, text]) => localStorage.setItem(key, text)", [key, json.dumps(elsewhere)])
+    tab.write(ANSWER, "mine = 3")
+    tab.reload()
+    tab.wait(ANSWER, "mine = 3")
+    tab.page.click(".live-earlier summary")
+    assert "theirs = 2" in tab.page.inner_text(".live-earlier")
+    tab.page.get_by_role("button", name="Bring it back").click()
+    tab.wait(ANSWER, "theirs = 2")
+    assert "mine = 3" in tab.shown()
+
+
+def test_keys_carry_the_path_of_the_site(context, site):
+    """Two years' editions at one address do not share answers."""
+    context.route("**/2027/**", lambda route: route.continue_(url=route.request.url.replace("/2027/", "/")))
+    Tab(context, site).edit().write(ANSWER, "of this year = 1")
+    other = Tab(context, f"{site}2027/").edit()
+    assert other.text(ANSWER) == BLANK
+    other.write(ANSWER, "of the next = 1")
+    starts = {key.split()[1] for key in other.page.evaluate(KEPT)}
+    assert starts == {"/", "/2027/"}
+
+
+def test_books_code_asks_and_can_be_undone(context, site):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    tab.write(OTHER, "mine = 2")
+    tab.press("Book’s code")
+    assert "2 cells" in tab.words() and tab.text(ANSWER) == "mine = 1"
+    tab.press("Keep mine")
+    assert tab.text(ANSWER) == "mine = 1"
+    tab.press("Book’s code")
+    tab.press("Bring it back")
+    tab.wait(ANSWER, BLANK)
+    tab.press("Undo")
+    tab.wait(ANSWER, "mine = 1")
+    tab.wait(OTHER, "mine = 2")
+    tab.press("Book’s code")
+    tab.press("Bring it back")
+    tab.reload()  # too late for Undo: each cell has its own text still
+    tab.page.locator(".live-earlier summary").first.wait_for()
+    assert tab.page.locator(".live-earlier").count() == 2
+    assert "mine = 1" in tab.shown() and "mine = 2" in tab.shown()
+
+
+def test_edits_of_the_first_edition_come_along(context, site):
+    """They were one list for a page, under a name without the site's path."""
+    tab = Tab(context, site)
+    old = [
+        {"number": ANSWER, "original": fingerprint_of_code(BLANK), "code": "old = 1"},
+        {"number": OTHER, "original": "of code that is gone", "code": "old = 2"},
+    ]
+    tab.page.evaluate("([key, text]) => localStorage.setItem(key, text)", [f"code of {EXERCISE}", json.dumps(old)])
+    tab.reload()
+    tab.wait(ANSWER, "old = 1")
+    tab.page.locator(".live-choice", has_text="has changed since you edited it").wait_for()
+    assert "old = 2" in tab.shown()
+    tab.page.get_by_role("button", name="Use mine").click()
+    tab.wait(OTHER, "old = 2")
+
+
+def test_fingerprints_are_those_of_the_page(context, site):
+    tab = Tab(context, site, "appendix/solutions").edit()
+    for code in ("é = '数'  # 𝐂", "", "x"):
+        tab.write(1, f"{code} = 1")
+        tab.page.evaluate("null")
+    (entry,) = (json.loads(text) for key, text in tab.page.evaluate(KEPT).items() if " answer " in key)
+    notebook = nbformat.read(REPOSITORY / "appendix" / "solutions.ipynb", as_version=4)
+    source = next(cell.source for cell in notebook.cells if cell.cell_type == "code")
+    assert entry["original"] == fingerprint_of_code(source)
+    asides = [key for key in tab.page.evaluate(KEPT) if " earlier " in key]
+    assert asides == []  # typed over in one tab: nobody else's text
+
+
+# --- hand in and load, back up and restore ----------------------------------------------------------
+
+
+def test_page_is_handed_in_and_graded(context, site, tmp_path):
+    tab = Tab(context, site).edit()
+    right = re.sub("### (BEGIN|END) SOLUTION\n?", "", solution("simple-orientations/crank")).strip()
+    who = tab.text(1).replace("me('')", "me('ada')")
+    tab.write(1, who)  # the numbers are her own
+    tab.write(ANSWER, right)
+    download = tab.take()
+    assert download.suggested_filename == "simple-orientations.ipynb"
+    assert "2 cells of this page" in tab.words()
+    handed_in = tmp_path / "class" / "ada" / "simple-orientations.ipynb"
+    handed_in.parent.mkdir(parents=True)
+    download.save_as(handed_in)
+    taken, original = (nbformat.read(path, as_version=4) for path in (handed_in, REPOSITORY / f"{EXERCISE}.ipynb"))
+    nbformat.validate(taken)
+    assert [cell.metadata for cell in taken.cells] == [cell.metadata for cell in original.cells]
+    changed = [k for k, (mine, theirs) in enumerate(zip(taken.cells, original.cells)) if mine.source != theirs.source]
+    assert [taken.cells[k].source for k in changed] == [who, right]
+    coursework(["grade", str(tmp_path / "class"), "--out", str(tmp_path / "out")])
+    with open(tmp_path / "out" / "grades.csv", newline="", encoding="utf8") as table:
+        (row,) = csv.DictReader(table)
+    assert (float(row["points"]), row["simple-orientations/crank: outcome"]) == (2, "correct")
+
+
+def test_notebook_is_loaded_back(context, site, tmp_path):
+    tab = Tab(context, site).edit()
+    tab.write(1, "imports = 'mine'")
+    tab.write(ANSWER, "answer = 'mine'")
+    path = tmp_path / "mine.ipynb"
+    tab.take().save_as(path)
+    tab.write(ANSWER, "answer = 'newer'")
+    tab.bring(path)
+    tab.wait(ANSWER, "answer = 'mine'")
+    assert "answer = 'newer'" in tab.shown()
+    with_more = nbformat.read(path, as_version=4)  # as from JupyterLab: a cell of one's own among the others
+    with_more.cells.insert(2, nbformat.v4.new_code_cell("scratch = 1"))
+    with_more.cells[-1].source += "  # seen"
+    nbformat.write(with_more, path)
+    tab.bring(path)
+    assert "1 cell of yours" in tab.words()
+    path.write_text("no notebook", "utf8")
+    tab.bring(path)
+    assert "not a notebook" in tab.words()
+    tab.bring(HTML / notebook_address(CHAPTER))
+    assert "not the notebook of this page" in tab.words()
+    assert tab.text(ANSWER) == "answer = 'mine'" and tab.errors == []
+
+
+def test_chapter_is_taken_away_and_loaded(context, site, browser, tmp_path):
+    tab = Tab(context, site, CHAPTER).edit()
+    tab.write(3, "mine = 3")
+    tab.take().save_as(tmp_path / "mine.ipynb")
+    other = browser.new_context()
+    fresh = Tab(other, site, CHAPTER)
+    fresh.bring(tmp_path / "mine.ipynb")
+    fresh.wait(3, "mine = 3")
+    other.close()
+
+
+def test_everything_is_backed_up_and_restored(context, site, browser, tmp_path):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "answer = 1")
+    Tab(context, site, CHAPTER).edit().write(3, "chapter = 3")
+    visit_notebook(tab.page, site, EXERCISE, {"simple-orientations-boom": "boom = 2"})
+    download = tab.take("backUp")
+    assert "2 answers and 1 notebook" in tab.words()
+    download.save_as(tmp_path / "all.json")
+    other = browser.new_context()
+    fresh = Tab(other, site).edit()
+    fresh.write(ANSWER, "answer = 'newer'")
+    fresh.bring(tmp_path / "all.json", "restore")
+    assert fresh.text(ANSWER) == "answer = 'newer'" and "answer = 1" in fresh.shown()
+    fresh.reload()
+    fresh.wait(OTHER, "boom = 2")
+    Tab(other, site, CHAPTER).wait(3, "chapter = 3")
+    fresh.bring(HTML / notebook_address(CHAPTER), "restore")
+    assert "not a backup" in fresh.words()
+    other.close()
+
+
+# --- the page and its notebook ----------------------------------------------------------------------
+
+CHANGE_COPY = """async ([path, changes]) => {
+  const settled = (request) => new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = () => reject(request.error);
+  });
+  const [name] = (await indexedDB.databases()).map(({ name }) => name).filter((name) => name.startsWith('JupyterLite'));
+  if (!name) return undefined;
+  const database = await settled(indexedDB.open(name));
+  const copy = database.objectStoreNames.contains('files')
+    ? await settled(database.transaction('files').objectStore('files').get(path)) : undefined;
+  if (!copy) return database.close();
+  const text = (cell) => [cell.source].flat().join('');
+  for (const cell of copy.content.cells) {
+    const code = changes?.[cell.metadata.nbgrader?.grade_id];
+    if (code !== undefined) cell.source = code;
+  }
+  if (changes) {
+    copy.last_modified = new Date().toISOString();
+    await settled(database.transaction('files', 'readwrite').objectStore('files').put(copy, path));
+  }
+  database.close();
+  return copy.content.cells.map((cell) => [cell.metadata.nbgrader?.grade_id ?? null, text(cell)]);
+}"""
+WRITE_COPY = """async ([path, content]) => {
+  const settled = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
+  const opening = indexedDB.open('JupyterLite Storage - /lite/', 1);
+  opening.onupgradeneeded = () => opening.result.createObjectStore('files');
+  const database = await settled(opening);
+  const now = new Date().toISOString();
+  const copy = { name: path, path, last_modified: now, created: now, format: 'json', mimetype: 'application/json',
+    content, size: 1, writable: true, type: 'notebook' };
+  await settled(database.transaction('files', 'readwrite').objectStore('files').put(copy, path));
+  database.close();
+}"""
+
+
+READ_COPY = """async (path) => {
+  const settled = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
+  const database = await settled(indexedDB.open('JupyterLite Storage - /lite/'));
+  const copy = await settled(database.transaction('files').objectStore('files').get(path));
+  database.close();
+  return copy.content;
+}"""
+
+
+def visit_notebook(page, site, name, changes=None, choose="Open the new version"):
+    """What opening the notebook in JupyterLite does with its copy, and saving it with ``changes`` by grade_id.
+
+    The page's own script runs, as before JupyterLite starts; only JupyterLite itself is played.
+    """
+    tab = page.context.new_page()
+    tab.goto(f"{site}search.html?path={name}.ipynb")
+    if changes is not None and tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", None]) is None:
+        served = json.loads((HTML / "lite" / "files" / f"{name}.ipynb").read_text("utf8"))
+        start(tab, choose)
+        if tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", None]) is None:
+            tab.evaluate(WRITE_COPY, [f"{name}.ipynb", served])  # JupyterLite saves what it was given
+    else:
+        start(tab, choose)
+    cells = tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", changes])
+    tab.close()
+    return cells and {grade_id: text for grade_id, text in cells if grade_id}
+
+
+def start(tab, choose):
+    (folder,) = (HTML / "runtime").glob("scripts-*")
+    script = f"/runtime/{folder.name}/notebook.js"
+    tab.evaluate(f"() => {{ window.started = import('{script}').then((m) => m.prepare()).then(() => 'done'); }}")
+    tab.evaluate(
+        """(choose) => Promise.race([window.started, new Promise((resolve) => {
+          const look = () => {
+            const found = [...document.querySelectorAll('.book-choice button')].find((b) => b.textContent === choose);
+            if (found) { found.click(); resolve(); } else setTimeout(look, 20);
+          };
+          look();
+        })]).then(() => window.started)""",
+        choose,
+    )
+
+
+ALL_COPIES = """async () => {
+  if (!(await indexedDB.databases()).length) return [];
+  const settled = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
+  const database = await settled(indexedDB.open('JupyterLite Storage - /lite/'));
+  const all = database.objectStoreNames.contains('files')
+    ? await settled(database.transaction('files').objectStore('files').getAll()) : [];
+  database.close();
+  return all.map((copy) => [copy.path, copy.content.cells.map((cell) => [cell.source].flat().join('')).join('\\n')]);
+}"""
+CRANK, BOOM = "simple-orientations-crank", "simple-orientations-boom"
+
+
+def test_answers_go_to_the_notebook_and_come_back(context, site):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "page = 1")
+    assert visit_notebook(tab.page, site, EXERCISE)[CRANK] == "page = 1"
+    visit_notebook(tab.page, site, EXERCISE, {BOOM: "notebook = 2"})
+    tab.reload()
+    tab.wait(OTHER, "notebook = 2")
+    tab.wait(ANSWER, "page = 1")
+    # Each side's newer text goes to the other one, cell by cell.
+    tab.write(ANSWER, "page = 3")
+    cells = visit_notebook(tab.page, site, EXERCISE, {BOOM: "notebook = 4"})
+    assert (cells[CRANK], cells[BOOM]) == ("page = 3", "notebook = 4")
+    tab.reload()
+    tab.wait(ANSWER, "page = 3")
+    tab.wait(OTHER, "notebook = 4")
+    # The book's code, brought back on the page, comes to the notebook as well.
+    tab.press("Book’s code")
+    tab.press("Bring it back")
+    cells = visit_notebook(tab.page, site, EXERCISE)
+    assert cells[CRANK] == BLANK
+    assert "page = 3" in tab.shown()
+
+
+def test_progress_is_one_for_pages_and_notebooks(context, site):
+    """What was right on either side stays right on both, and no wrong answer and no help is forgotten."""
+    tab = Tab(context, site)
+    key, path = "book / coursework progress.json", "exercises/.coursework/progress.json"
+    here = {
+        "a/page": {"outcome": "correct", "answers": ["1"]},
+        "a/both": {"outcome": "correct", "answers": ["2"], "help": "hint"},
+        "a/tried": {"outcome": "wrong", "answers": ["3", "4"], "help": "solution"},
+    }
+    there = {
+        "a/notebook": {"outcome": "correct"},
+        "a/both": {"outcome": "wrong", "answers": ["5"], "help": "mistake"},
+        "a/tried": {"outcome": "wrong", "answers": ["4", "6"], "help": "hint"},
+    }
+    tab.page.evaluate(
+        "([key, text]) => localStorage.setItem(key, JSON.stringify({ text, at: 1 }))", [key, json.dumps(here)]
+    )
+    tab.page.evaluate(WRITE_COPY, [path, there])
+    notebook = tab.page.context.new_page()
+    notebook.goto(f"{site}search.html?path={EXERCISE}.ipynb")
+    start(notebook, "")
+    kept = json.loads(json.loads(notebook.evaluate("(key) => localStorage.getItem(key)", key))["text"])
+    copy = json.loads(notebook.evaluate(READ_COPY, path))
+    assert kept == copy
+    assert {name: entry["outcome"] for name, entry in kept.items()} == {
+        "a/page": "correct", "a/notebook": "correct", "a/both": "correct", "a/tried": "wrong",
+    }  # fmt: skip
+    assert (sorted(kept["a/both"]["answers"]), kept["a/both"]["help"]) == (["2", "5"], "hint")
+    assert (sorted(kept["a/tried"]["answers"]), kept["a/tried"]["help"]) == (["3", "4", "6"], "solution")
+    # The page looks at the notebook's record whenever it is opened.
+    notebook.evaluate(WRITE_COPY, [path, {**kept, "a/later": {"outcome": "correct"}}])
+    tab.reload()
+    tab.page.wait_for_function("(key) => localStorage.getItem(key).includes('a/later')", arg=key)
+
+
+def test_both_changed_the_newer_text_stands(context, site):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "agreed = 1")
+    visit_notebook(tab.page, site, EXERCISE)
+    # JupyterLite has the notebook open while the page goes on.
+    tab.write(ANSWER, "page = 2")
+    tab.page.evaluate(CHANGE_COPY, [f"{EXERCISE}.ipynb", {CRANK: "notebook = 3"}])
+    tab.reload()
+    tab.wait(ANSWER, "notebook = 3")
+    assert "page = 2" in tab.shown()
+    assert visit_notebook(tab.page, site, EXERCISE)[CRANK] == "notebook = 3"
+
+
+def newer_book(notebook):
+    """The notebook of a new edition: one exercise is worded anew, and one comes before all others."""
+    changed = json.loads(json.dumps(notebook).replace(BLANK, "A_C_N = ...  # nine entries"))
+    for name, (cell, _) in changed["metadata"]["book"]["cells"].items():
+        if cell == CRANK:
+            changed["metadata"]["book"]["cells"][name] = [CRANK, fingerprint_of_code("A_C_N = ...  # nine entries")]
+    return changed
+
+
+@pytest.mark.parametrize("choice", ["Open the new version", "Open my copy as it is"])
+def test_old_copy_is_told_from_the_new_edition(context, site, choice):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "crank = 1")
+    tab.write(OTHER, "boom = 2")
+    visit_notebook(tab.page, site, EXERCISE)
+    served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
+    context.route(f"**/lite/files/{EXERCISE}.ipynb", lambda route: route.fulfill(json=newer_book(served)))
+    cells = visit_notebook(tab.page, site, EXERCISE, choose=choice)
+    if choice == "Open my copy as it is":
+        assert (cells[CRANK], cells[BOOM]) == ("crank = 1", "boom = 2")
+    else:
+        assert (cells[CRANK], cells[BOOM]) == ("A_C_N = ...  # nine entries", "boom = 2")
+        old = next(content for path, content in tab.page.evaluate(ALL_COPIES) if "my copy of" in path)
+        assert "crank = 1" in old and "boom = 2" in old
+
+
+def test_copies_of_one_minute_stand_beside_each_other(context, site):
+    """What the name of a copy says, the minute, does not tell it from another one."""
+    tab = Tab(context, site)
+    served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
+    visit_notebook(tab.page, site, EXERCISE, {CRANK: "first = 1"})
+    editions = [newer_book(served), served]
+    context.route(f"**/lite/files/{EXERCISE}.ipynb", lambda route: route.fulfill(json=editions[0]))
+    for mine in ("second = 2", "third = 3"):
+        visit_notebook(tab.page, site, EXERCISE)
+        tab.page.evaluate(CHANGE_COPY, [f"{EXERCISE}.ipynb", {CRANK: mine}])
+        del editions[0]
+    copies = tab.page.evaluate(ALL_COPIES)
+    for mine in ("first = 1", "second = 2", "third = 3"):
+        assert any(mine in content for _, content in copies), [path for path, _ in copies]
+
+
+def test_copy_of_the_first_edition_has_no_stamp(context, site):
+    """It is the same notebook: its answers count. Or it is another one: the reader is asked."""
+    served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
+    del served["metadata"]["book"]
+    tab = Tab(context, site)
+    for wording, expected in ((None, "mine = 1"), ("# Another title", "A_C_N = ...  # your answer")):
+        copy = json.loads(json.dumps(served))
+        for cell in copy["cells"]:
+            if cell["metadata"].get("nbgrader", {}).get("grade_id") == CRANK:
+                cell["source"] = "mine = 1" if wording is None else expected
+        copy["cells"][0]["source"] = wording or copy["cells"][0]["source"]
+        tab.page.evaluate(WRITE_COPY, [f"{EXERCISE}.ipynb", copy])
+        assert visit_notebook(tab.page, site, EXERCISE)[CRANK] == expected
+
+
+def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
+    """Tabs hear of each other late: the other one, played here, changes what it does not know."""
+    tab, other = Tab(context, site).edit(), context.new_page()
+    other.goto(f"{site}search.html")
+    change = "([key, text]) => text === null ? localStorage.removeItem(key) : localStorage.setItem(key, text)"
+
+    def written(code):
+        tab.write(ANSWER, code)
+        [(key, entry)] = [one for one in tab.page.evaluate(KEPT).items() if " answer " in one[0]]
+        return key, json.loads(entry)
+
+    key, entry = written("mine = 1")
+    other.evaluate(change, [f"{key}-of-none", json.dumps(entry)])  # news of something else
+    tab.wait(ANSWER, "mine = 1")
+    other.evaluate(change, [f"{key}-of-none", None])
+    other.evaluate(change, [key, None])  # it took the book's code for that of the page
+    tab.wait(ANSWER, BLANK)
+    assert "mine = 1" in tab.shown()
+    key, entry = written("mine = 2")
+    other.evaluate(change, [key, json.dumps(entry | {"code": "theirs = 1"})])
+    tab.wait(ANSWER, "theirs = 1")
+    assert "mine = 2" in tab.shown()
+    key, entry = written("mine = 3")
+    late = json.dumps(entry | {"code": "theirs = 2"})
+    tab.page.evaluate("([key, newValue]) => dispatchEvent(new StorageEvent('storage', { key, newValue }))", [key, late])
+    assert tab.text(ANSWER) == "mine = 3" and "theirs = 2" in tab.shown()
+    assert tab.errors == []
+
+
+# --- where nothing can be kept ----------------------------------------------------------------------
+
+
+@contextmanager
+def sandboxed(context, site, name, allow):
+    outer = context.new_page()
+    errors = []
+    outer.on("pageerror", lambda error: errors.append(str(error)))
+    outer.goto(f"{site}search.html")
+    outer.evaluate(
+        "([address, allow]) => { const frame = document.createElement('iframe'); frame.sandbox = allow;"
+        " frame.style = 'width: 1280px; height: 800px'; frame.src = address; document.body.replaceChildren(frame); }",
+        [f"{site}{name}.html", allow],
+    )
+    yield outer.frame_locator("iframe"), errors
+    outer.close()
+
+
+def test_page_lives_in_a_frame_that_forbids_storage(context, site):
+    with sandboxed(context, site, EXERCISE, "allow-scripts allow-popups") as (frame, errors):
+        html = frame.locator("html")
+        before = html.get_attribute("data-theme")
+        frame.locator("button.theme-switch-button:visible").first.click()
+        frame.locator("button.theme-switch-button:visible").first.click()
+        assert html.get_attribute("data-mode") in ("light", "dark", "auto") and before
+        frame.locator("button.search-button__button:visible, button.search-button:visible").first.click()
+        frame.locator("dialog[open] input[type=search]").wait_for()
+        assert errors == []
+
+
+def test_reader_is_told_that_nothing_can_be_kept(browser, site):
+    context = browser.new_context()
+    context.add_init_script(
+        "for (const name of ['localStorage', 'sessionStorage']) Object.defineProperty(window, name,"
+        " { configurable: true, get() { throw new DOMException('denied', 'SecurityError'); } });"
+    )
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    assert "forbids this page to keep anything" in tab.words() and "Take away" in tab.words()
+    path = tab.take().path()
+    assert "mine = 1" in path.read_text("utf8")
+    assert tab.errors == []
+    context.close()
+
+
+def fill(tab):
+    """Leave no room in the browser's store."""
+    tab.page.evaluate(
+        "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try {"
+        " localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length / 2); } } }"
+    )
+
+
+AWAKE = "() => document.dispatchEvent(new Event('visibilitychange'))"  # as when the reader comes back to the tab
+EMPTY = """() => Object.keys(localStorage).filter((key) => key.startsWith('filler'))
+  .forEach((key) => localStorage.removeItem(key))"""
+
+
+def test_what_found_no_room_stays_on_the_page_and_can_be_taken_away(context, site):
+    tab, other = Tab(context, site).edit(), Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    other.wait(ANSWER, "mine = 1")
+    fill(tab)
+    long = f"mine = {'2' * 200}"
+    tab.write(ANSWER, long)
+    assert "no room left" in tab.words()
+    # The tab is left and comes back, another one changes what is kept: neither takes the text away.
+    tab.page.evaluate(AWAKE)
+    tab.page.evaluate("addEventListener('storage', () => (window.heard = true))")
+    other.write(ANSWER, "mine = 9")  # as long as before: there is room for that
+    tab.page.wait_for_function("window.heard")
+    assert tab.text(ANSWER) == long
+    assert long in tab.take().path().read_text("utf8"), "as the page says"
+    # There is room again: it is kept with the next letter.
+    tab.page.evaluate(EMPTY)
+    tab.write(ANSWER, f"{long}0")
+    other.wait(ANSWER, f"{long}0")
+    assert "mine = 9" in other.shown()
+    assert tab.errors == other.errors == []
+
+
+def test_text_of_another_tab_is_not_overwritten_where_it_cannot_be_set_aside(context, site):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    (key, entry) = next(iter(tab.page.evaluate(KEPT).items()))
+    theirs = f"theirs = {'3' * 200}"
+    tab.page.evaluate(
+        "([key, text]) => localStorage.setItem(key, text)", [key, json.dumps(json.loads(entry) | {"code": theirs})]
+    )
+    fill(tab)
+    tab.write(ANSWER, "mine = 2")
+    assert "no room left" in tab.words()
+    again = Tab(context, site)
+    again.wait(ANSWER, theirs)
+
+
+def test_books_code_needs_no_room(context, site):
+    tab = Tab(context, site).edit()
+    tab.write(ANSWER, "mine = 1")
+    fill(tab)
+    tab.press("Book’s code")
+    tab.press("Bring it back")
+    tab.reload()
+    tab.page.click(".live-earlier summary")
+    assert "mine = 1" in tab.page.inner_text(".live-earlier") and tab.text(ANSWER) == BLANK
+
+
+def test_stored_number_does_not_stand_under_other_code(context, site):
+    """Where NumPy is absent, the book's result is folded away from below the reader's changed code."""
+    page = "chapters/back-from-a-matrix"
+    tab = Tab(context, site, page)
+    covered = tab.page.evaluate("[...document.querySelectorAll('div.cell')].map((cell) => !!cell.closest('[inert]'))")
+    number = next(
+        place
+        for place, cell in enumerate(kinds_of_cells()[page], 1)
+        if "numpy" in cell["needs"] and not covered[place - 1]
+    )
+    tab.page.click(f"button.run-cell >> nth={number - 1}")
+    cell = tab.page.locator("div.cell").nth(number - 1)
+    cell.locator(".live-note").wait_for(timeout=120_000)
+    tab.page.wait_for_function("document.querySelector('html.live-busy') === null", timeout=120_000)
+    assert cell.locator("details.live-built").count() == 0, "the book's code has the book's result"
+    tab.write(number, "import numpy as np\nnp.fft.fft([1, 2])")
+    tab.page.keyboard.press("Shift+Enter")
+    cell.locator("details.live-built").wait_for(timeout=120_000)
+    assert not cell.locator("details.live-built > .output").is_visible()
+    assert "The result of the book’s code" in cell.inner_text()
+
+
+# --- everything at once -----------------------------------------------------------------------------
+
+
+class Life:
+    """A reader at work: two tabs, crashes, new editions, the notebook. Nothing that was written may be lost."""
+
+    def __init__(self, context, site, seed):
+        self.context, self.site, self.random = context, site, random.Random(seed)
+        self.number, self.edition = 0, 0
+        self.written = set()  # what must still be there: not typed over by the reader where it could be seen
+        context.route(f"**/{EXERCISE}.html", self.serve_page)
+        context.route(f"**/lite/files/{EXERCISE}.ipynb", self.serve_notebook)
+        self.tabs = [Tab(context, site).edit(), Tab(context, site).edit()]
+
+    def serve_page(self, route):
+        text = (HTML / f"{EXERCISE}.html").read_text("utf8")
+        before = "A_C_N = ..."
+        assert text.count(before) == 1
+        route.fulfill(
+            body=text.replace(
+                before, before + f' <span class="c1"># edition {self.edition}</span>' * bool(self.edition)
+            ),
+            content_type="text/html",
+        )
+
+    def serve_notebook(self, route):
+        notebook = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
+        if self.edition:
+            blank = f"A_C_N = ... # edition {self.edition}  # your answer"
+            for cell in notebook["cells"]:
+                if cell["metadata"].get("nbgrader", {}).get("grade_id") == CRANK:
+                    cell["source"] = blank
+                    notebook["metadata"]["book"]["cells"][cell["id"]][1] = fingerprint_of_code(blank)
+        route.fulfill(json=notebook)
+
+    def step(self):
+        action = self.random.choices(
+            [self.write, self.reload, self.crash, self.new_edition, self.undo, self.choose, self.notebook, self.load],
+            [8, 2, 1, 1, 1, 2, 3, 1],
+        )[0]
+        action()
+        return action.__name__
+
+    def tab(self):
+        return self.random.choice(self.tabs)
+
+    def new_text(self):
+        self.number += 1
+        return f"text = {self.number}"
+
+    def write(self):
+        tab, cell, text = self.tab(), self.random.choice((1, ANSWER, OTHER)), self.new_text()
+        self.written.discard(tab.text(cell))  # the reader types over it
+        tab.write(cell, text)
+        self.written.add(text)
+
+    def reload(self):
+        self.tab().reload()
+        self.settle()
+
+    def crash(self):
+        k = self.random.randrange(2)
+        page = self.tabs[k].page
+        with page.expect_event("crash"), suppress(Exception):  # the tab is gone before it can answer
+            page.goto("chrome://crash")
+        page.close()
+        self.tabs[k] = Tab(self.context, self.site)
+        self.settle()
+
+    def new_edition(self):
+        self.edition = self.random.randrange(3)
+        for tab in self.tabs:
+            tab.reload()
+        self.settle()
+
+    def settle(self):
+        for tab in self.tabs:
+            tab.edit()
+
+    def undo(self):
+        tab = self.tab()
+        if tab.page.get_by_role("button", name="Book’s code", exact=True).first.is_visible():
+            tab.press(re.compile("^Book’s code$"))
+            tab.press("Bring it back")
+
+    def choose(self):
+        buttons = self.tab().page.locator(".live-choice:not(.live-earlier, .live-who) button")
+        if count := buttons.count():
+            buttons.nth(self.random.randrange(count)).click()
+
+    def notebook(self):
+        choice = self.random.choice(("Open the new version", "Open my copy as it is"))
+        cells = visit_notebook(self.tabs[0].page, self.site, EXERCISE, choose=choice)
+        if cells is None:
+            visit_notebook(self.tabs[0].page, self.site, EXERCISE, {})
+        cells = self.tabs[0].page.evaluate(CHANGE_COPY, [f"{EXERCISE}.ipynb", None])
+        name, text = self.random.choice((CRANK, BOOM)), self.new_text()
+        before = dict(cells)[name]
+        self.tabs[0].page.evaluate(CHANGE_COPY, [f"{EXERCISE}.ipynb", {name: text}])
+        if not any(before in tab.text(cell) for tab in self.tabs for cell in (1, ANSWER, OTHER)):
+            self.written.discard(before)
+        self.written.add(text)
+
+    def load(self):
+        if self.edition:
+            return  # the notebook to take away is that of the first edition
+        tab = self.tab()
+        path = tab.take().path()
+        tab.bring({"name": "mine.ipynb", "mimeType": "application/json", "buffer": path.read_bytes()})
+
+    def missing(self):
+        """What the reader can find nowhere: not on the page, not in the notebook or a copy of it."""
+        fresh = Tab(self.context, self.site).edit()
+        seen = fresh.shown()
+        fresh.page.close()
+        copies = [content for _, content in self.tabs[0].page.evaluate(ALL_COPIES)]
+        lines = set("\n".join([seen, *copies]).splitlines())
+        return self.written - lines
+
+
+@pytest.mark.parametrize(
+    ("seed", "steps"), [(1, 25), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in (2, 3, 4))]
+)
+def test_nothing_is_ever_lost(context, site, seed, steps):
+    life = Life(context, site, seed)
+    history = []
+    for number in range(steps):
+        history.append(life.step())
+        if number % 20 == 19 or number == steps - 1:
+            assert life.missing() == set(), f"lost after {history}"
+    assert life.number > steps / 4
+    assert [tab.errors for tab in life.tabs] == [[], []]

@@ -1,0 +1,128 @@
+"""The first view of a page stands before the rest is looked at, and nothing is lost by it."""
+
+import re
+
+import pytest
+from places import HTML, html_pages
+
+from notebook_pages.first_view import MARKED, first_part
+
+LONG = "chapters/unit-quaternions.html"
+SIZES = {"wide": {"width": 1300, "height": 900}, "narrow": {"width": 380, "height": 760}}
+SCRIPT = re.compile(r'<script[^>]* src="([^"?]*)')
+#: At most so many scripts: of the page itself, of its figures (what they share, and each kind), of its code.
+SCRIPTS = 1 + 2 + 2 + 1
+# What lies below is left alone until the test lets go.
+HOLD = "window.held = []; window.requestIdleCallback = (action) => held.push(action);"
+# Where each block of the text begins.
+PLACES = """() => [...document.querySelectorAll('.bd-article section > *')].map(
+  (block) => Math.round(block.getBoundingClientRect().top + scrollY))"""
+# Which elements that are not laid out were measured, by whatever a script can ask: that would lay them out.
+MEASURED = """
+window.measured = [];
+const isLeftAlone = (element) => document.documentElement.matches(".settling, .in-parts") && element.closest(".later")
+  && !element.checkVisibility({ contentVisibilityAuto: true });
+const note = (element) => !window.mayMeasure && isLeftAlone(element) && measured.push(element.outerHTML.slice(0, 100));
+for (const name of ["getBoundingClientRect", "getClientRects"]) {
+  const own = Element.prototype[name];
+  Element.prototype[name] = function () { note(this); return own.call(this); };
+}
+for (const [kind, names] of [[Element, ["scrollWidth", "scrollHeight", "clientWidth", "clientHeight"]],
+                             [HTMLElement, ["offsetWidth", "offsetHeight", "offsetTop"]]])
+  for (const name of names) {
+    const { get } = Object.getOwnPropertyDescriptor(kind.prototype, name);
+    Object.defineProperty(kind.prototype, name, { get() { note(this); return get.call(this); } });
+  }
+"""
+IS_SHOWN = "(block) => block.firstElementChild.checkVisibility({ contentVisibilityAuto: true })"
+
+
+@pytest.fixture
+def open_page(browser, site):
+    contexts = []
+
+    def opened(name, size="wide", script="", **options):
+        contexts.append(browser.new_context(viewport=SIZES[size], **options))
+        page = contexts[-1].new_page()
+        page.add_init_script(script)
+        page.goto(site + name)
+        page.wait_for_selector("html:not(.settling)")
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+
+
+def whole(page):
+    page.wait_for_selector("html:not(.in-parts)")
+    page.wait_for_function("document.fonts.status === 'loaded'")
+    return page
+
+
+def test_long_pages_are_marked_and_short_ones_are_not():
+    marked = {name: len(MARKED.findall((HTML / name).read_text("utf8"))) for name in html_pages()}
+    assert all(marked[name] > 15 for name in marked if name.startswith("chapters/")), marked
+    assert marked["appendix/solutions.html"] > 50 and not marked["search.html"]
+    for name in marked:
+        article = (HTML / name).read_text("utf8").partition("<article")[2]
+        before = article[: match.start()] if (match := MARKED.search(article)) else ""
+        words = re.sub(r"<(script|style|svg|math)\b.*?</\1>|<[^>]*>", "", before, flags=re.DOTALL)
+        assert not match or len(words) > 1500, f"{name}: what is seen at first is put off"
+
+
+def test_few_scripts_are_fetched():
+    fetched = {name: SCRIPT.findall((HTML / name).read_text("utf8")) for name in html_pages()}
+    assert {name: found for name, found in fetched.items() if len(found) > SCRIPTS} == {}
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_nothing_below_the_first_view_is_laid_out_or_measured_before_it_stands(open_page, size):
+    page = open_page(LONG, size, HOLD + MEASURED)
+    page.wait_for_function("held.length")
+    assert page.evaluate("measured") == []
+    last = page.locator(".later:has(> *)").last
+    assert not last.evaluate(IS_SHOWN)
+    page.evaluate("window.mayMeasure = true")
+    page.emulate_media(media="print")
+    assert last.evaluate(IS_SHOWN), "paper has the whole page"
+    page.emulate_media(media="screen")
+    last.scroll_into_view_if_needed()
+    page.wait_for_function(f"({IS_SHOWN})([...document.querySelectorAll('.later:has(> *)')].at(-1))")
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_in_the_end_every_block_stands_where_it_stands_on_a_page_laid_out_at_once(open_page, size):
+    places = whole(open_page(LONG, size)).evaluate(PLACES)
+    at_once = open_page(LONG + "#no-such-place", size)
+    assert not at_once.evaluate("document.documentElement.matches('.in-parts')")
+    assert whole(at_once).evaluate(PLACES) == places and len(places) > 50
+
+
+def test_link_within_a_page_leads_to_its_place_at_once(open_page):
+    page = open_page(LONG, script=HOLD)
+    page.wait_for_function("held.length")
+    assert page.evaluate("document.documentElement.matches('.in-parts')")
+    heading = page.locator(".bd-article > section > section").last
+    heading.evaluate("(section) => section.querySelector('a.headerlink').click()")
+    page.wait_for_function("(box) => Math.abs(box.getBoundingClientRect().top) < 120", arg=heading.element_handle())
+    assert not page.evaluate("document.documentElement.matches('.in-parts')")
+
+
+def test_lecture_mode_begins_with_the_whole_page(open_page):
+    page = open_page(LONG, script=HOLD)
+    page.wait_for_function("held.length")
+    page.keyboard.press("l")
+    page.wait_for_selector("html.lecture:not(.in-parts)")
+    page.keyboard.press("End")
+    assert page.locator(".in-step").last.is_visible()
+
+
+def test_without_script_nothing_is_put_off(open_page):
+    page = open_page(LONG, java_script_enabled=False)
+    assert page.locator(".later").last.evaluate("(block) => getComputedStyle(block).contentVisibility") == "visible"
+
+
+def test_the_first_part_ends_at_a_mark_and_not_at_a_word():
+    assert first_part('<p>A moment later it</p><p class="a later">more') == "<p>A moment later it</p><p "
+    assert first_part('<p class="lateral">all') == '<p class="lateral">all'

@@ -1,0 +1,211 @@
+"""The book that a browser keeps is one edition or another, never half of each, whatever the network does."""
+
+import json
+import shutil
+import time
+
+import pytest
+from engines import ENGINES, PATIENCE, Chromium
+from small_book import (
+    IS_CONTROLLED,
+    KEEP,
+    NEWEST,
+    PAGES,
+    RESTS,
+    SHOWN,
+    TOLD,
+    listed,
+    network,
+    scripts_of,
+    write_edition,
+)
+
+from notebook_pages import carry_over, install
+
+KINDS = [
+    "Chromium",
+    pytest.param("Firefox", marks=pytest.mark.long),
+    pytest.param("WebKit", marks=pytest.mark.long),
+]
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def engine(request):
+    made = Chromium(request.getfixturevalue("browser")) if request.param == "Chromium" else ENGINES[request.param]()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    """What all editions have in common, made once."""
+    folder = tmp_path_factory.mktemp("parts")
+    write_edition(folder, 0)
+    for path in folder.rglob("*.html"):
+        path.unlink()
+    shutil.rmtree(folder / "runtime" / "wheels")
+    return folder
+
+
+@pytest.fixture
+def editions(tmp_path, parts):
+    """Gives the folder of an edition by its number."""
+
+    def folder(number):
+        place = tmp_path / str(number)
+        if not place.exists():
+            write_edition(place, number, parts)
+        return place
+
+    return folder
+
+
+def keep(engine, address, folder, choice="The pages"):
+    engine.go(f"{address}index.html")
+    words = engine.run(KEEP, scripts_of(folder), choice)
+    engine.wait(IS_CONTROLLED)
+    return words
+
+
+def shown(engine, address):
+    """What each page shows; one that is half of one edition and half of another fails."""
+    found = {}
+    for name in PAGES:
+        engine.go(f"{address}{name}.html")
+        parts = engine.run(SHOWN)
+        assert len(set(parts)) == 1, f"{name} shows the parts of several editions: {parts}"
+        found[name] = int(parts[0])
+    assert found.pop("appendix/three") == 0
+    assert len(set(found.values())) == 1, f"pages of several editions: {found}"
+    return set(found.values()).pop()
+
+
+def renew(engine, address, folder):
+    """Open a page until the newest edition is that of ``folder``: while one look at the network lasts, none begins."""
+    wanted, end = listed(folder)["edition"], time.monotonic() + PATIENCE
+    while engine.run(NEWEST) != wanted:
+        assert time.monotonic() < end, f"the edition of {folder} does not become the newest"
+        engine.go(f"{address}index.html")
+        engine.wait(RESTS)
+
+
+def test_renewal_that_breaks_off_anywhere_leaves_the_edition_before_it(engine, editions):
+    """The network is cut after each request in turn, and comes back: the next edition is there whole."""
+    with network(editions(1)) as (net, address):
+        assert "is kept" in keep(engine, address, editions(1))
+        newest, cut, whole = 1, 0, False
+        while not whole:
+            net.folder, net.left, net.refused = str(editions(newest + 1)), cut, 0
+            net.broken = ("cut", "half", "busy")[cut % 3]
+            engine.go(f"{address}chapters/one.html")
+            engine.wait(RESTS)
+            whole = not net.refused  # so many requests were enough
+            net.left = 0
+            assert shown(engine, address) == newest + whole, f"cut after {cut} requests"
+            net.left = None
+            renew(engine, address, editions(newest + 1))
+            newest, cut = newest + 1, cut + 1
+            net.left = 0
+            assert shown(engine, address) == newest, f"after a cut after {cut - 1} requests"
+        assert cut > 6, "the list, three pages, a style and a script are fetched one by one"
+
+
+def test_kept_pages_open_on_a_network_that_hangs_or_is_busy(engine, editions):
+    with network(editions(1)) as (net, address):
+        keep(engine, address, editions(1))
+        for broken in ("busy", "hangs"):
+            net.left, net.broken = 0, broken
+            assert shown(engine, address) == 1
+        net.held.set()
+
+
+def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine, editions):
+    with network(editions(1)) as (net, address):
+        keep(engine, address, editions(1))
+        engine.go(f"{address}chapters/two.html")
+        (mine,) = (editions(1) / "runtime" / "wheels").iterdir()
+        net.folder = str(editions(2))
+        engine.run(  # another tab comes to a page: the answer to a frame is one to a navigation, too
+            """() => new Promise((come) => {
+              const frame = Object.assign(document.createElement("iframe"), { src: "/index.html", onload: come });
+              navigator.serviceWorker.addEventListener("message", ({ data }) => (window.told = data.edition));
+              document.body.append(frame);
+            })"""
+        )
+        assert engine.wait("() => window.told") == listed(editions(2))["edition"]
+        words = engine.run(TOLD, scripts_of(editions(1)))
+        assert "“chapters/two”" in words and "What stays" not in words
+        net.left = 0
+        asked = f"() => import('/{mine.relative_to(editions(1))}/lasting.js').then((module) => module.default)"
+        assert engine.run(asked) == 1
+        assert shown(engine, address) == 2
+
+
+def test_copy_of_the_format_before_is_read_until_a_new_edition_is_whole(engine, editions):
+    """Format 1 kept each file under its path alone, and no word of the format in its list."""
+    with network(editions(1)) as (net, address):
+        engine.go(f"{address}index.html")
+        engine.run("""async () => {
+          await caches.delete("book /");
+          const cache = await caches.open("book /"), offer = await (await fetch("/offline.json")).json(), files = {};
+          for (const [path, [print]] of Object.entries(offer.book)) {
+            const answer = await fetch(`/${path}`), headers = { "Content-Type": answer.headers.get("Content-Type") };
+            await cache.put(new URL(`/${path}`, location.href), new Response(await answer.arrayBuffer(), { headers }));
+            files[path] = print;
+          }
+          const list = { edition: offer.edition, parts: ["book"], files };
+          await cache.put(new URL("/kept.json", location.href), new Response(JSON.stringify(list)));
+          await navigator.serviceWorker.register("/service-worker.js");
+          await navigator.serviceWorker.ready;
+        }""")
+        engine.wait(IS_CONTROLLED)
+        net.left = 0
+        assert shown(engine, address) == 1
+        net.folder, net.left = str(editions(2)), None
+        renew(engine, address, editions(2))
+        net.left = 0
+        assert shown(engine, address) == 2
+        keys = engine.run("async () => (await (await caches.open('book /')).keys()).map(({ url }) => url)")
+        assert all("?kept=" in url or url.endswith("/kept.json") for url in keys)
+
+
+def test_neighbours_of_a_book_at_the_root_are_left_alone(engine, editions):
+    with network(editions(1)) as (_, address):
+        keep(engine, address, editions(1))
+        other = editions(1) / "other-course" / "page.html"
+        other.parent.mkdir()
+        other.write_text("<!DOCTYPE html><title>Another course</title>")
+        header = "async (path) => (await fetch(path)).headers.get('Cross-Origin-Embedder-Policy')"
+        assert engine.run(header, "/chapters/one.html") == "require-corp"
+        assert engine.run(header, "/other-course/page.html") is None
+        engine.go(f"{address}other-course/page.html")
+        assert engine.run("() => window.crossOriginIsolated") is False
+
+
+def test_forgotten_book_is_gone(engine, editions):
+    with network(editions(1)) as (net, address):
+        keep(engine, address, editions(1))
+        engine.go(f"{address}index.html")
+        assert "no longer kept" in engine.run(KEEP, scripts_of(editions(1)), "Forget")
+        assert engine.run("() => caches.has('book /')") is False
+
+
+# --- publishing ------------------------------------------------------------------------------------
+
+
+def test_publishing_carries_over_what_the_last_edition_names_by_its_content(editions):
+    (mine,) = (editions(1) / "runtime" / "wheels").iterdir()
+    lasting = mine.relative_to(editions(1)) / "lasting.js"
+    with network(editions(1)) as (_, address):
+        carried = carry_over.carry_over(address, editions(2))
+    assert carried == [str(lasting)] and (editions(2) / lasting).read_bytes() == (mine / "lasting.js").read_bytes()
+    assert carry_over.carry_over(str(editions(2)), editions(3)) != []
+    assert not (editions(3) / lasting).exists(), "of the edition before the last nothing stays"
+    assert carry_over.carry_over(str(editions(1) / "nowhere"), editions(3)) is None
+
+
+def test_publishing_carries_over_nothing_else(editions):
+    for path in ("../outside.js", "index.html", "runtime/wheels/0123456789ab/../../../x.js"):
+        (editions(1) / install.LASTING).write_text(json.dumps([path]))
+        with pytest.raises(ValueError, match="not named by its content"):
+            carry_over.carry_over(str(editions(1)), editions(2))

@@ -1,0 +1,1126 @@
+"""Code in the page: every cell, what a student would type, and what the browser asks for."""
+
+import gzip
+import hashlib
+import json
+import re
+import subprocess
+import sys
+import threading
+import zipfile
+
+import nbformat
+import pytest
+from places import HTML, REPOSITORY, html_pages
+from test_site import Visit, violations
+
+from coursework.checking.questions import notebook_questions
+from coursework.checking.variants import variant_of
+from notebook_pages.browser import FLAGS, find
+from notebook_pages.execution import STORED
+from notebook_pages.live import runtime, scripts
+from notebook_pages.live.cells import kinds_of_cells
+from notebook_pages.live.fetch import fetch
+from notebook_pages.notebooks import all_notebooks
+from notebook_pages.serve import Handler, server
+
+PAGES = [name for name in html_pages() if 'id="live-data"' in (HTML / name).read_text("utf8")]
+ELSEWHERE = "https://cdn.jsdelivr.net/**"
+QUIET = "chapters/successive-orientations.html"  # has cells with and without NumPy, and runs in a moment
+
+# The results of a page, as the reader sees them: each cell's output, without what differs on purpose.
+RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
+  const output = cell.querySelector(':scope > .cell_output');
+  if (!output) return '';
+  const copy = output.cloneNode(true);
+  // The build writes a formula in fewer words than KaTeX; what is set is the same.
+  copy.querySelectorAll('.katex').forEach((formula) =>
+    formula.replaceChildren(formula.dataset.tex ?? formula.querySelector('annotation').textContent));
+  copy.querySelectorAll('.katex').forEach((formula) => formula.removeAttribute('data-tex'));
+  // The figures of a built page share one style, and one set of outlines for their letters.
+  copy.querySelectorAll('use').forEach((use) => use.setAttribute('href',
+    document.getElementById(use.getAttribute('href').slice(1))?.getAttribute('d') ?? 'none'));
+  copy.querySelectorAll('svg defs, figure style').forEach((shared) => shared.remove());
+  // A script stands in the built page, and comes as a file with what Python gives.
+  copy.querySelectorAll('script').forEach((script) => script.remove());
+  copy.querySelectorAll('*').forEach((box) => 
+    ['tabindex', 'role', 'aria-label', 'data-name'].forEach((n) => box.removeAttribute(n)));
+  copy.querySelectorAll('pre > span:empty, button.copybtn').forEach((extra) => extra.remove());
+  copy.querySelectorAll('pre').forEach((pre) => pre.removeAttribute('id'));
+  return copy.innerHTML.replace(/\s+/g, ' ').replace(/> </g, '><').replace(/ <\/pre>/g, '</pre>').trim();
+})"""
+# Drawings that are played have their controls.
+PLAYABLE = "() => !document.querySelector('figure[data-moving]:not([data-ready])')"
+RAN = (
+    "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null && "
+    "document.querySelector('#live-words')?.textContent !== ''"
+)
+
+
+opened = []
+
+
+@pytest.fixture(autouse=True)
+def close_pages():
+    """Close what a test has opened, also where it fails: a forgotten page goes on working."""
+    yield
+    while opened:
+        page = opened.pop()
+        page.evaluate("location.protocol === 'file:' || localStorage.clear()")
+        page.close()
+
+
+class Page:
+    """A page of the book in a browser, driven as a reader drives it."""
+
+    def __init__(self, context, site, name, refuse=True):
+        self.page = context.new_page()
+        opened.append(self.page)
+        self.asked, self.errors = [], []
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        if refuse:
+            self.page.route(ELSEWHERE, lambda route: route.abort())
+        self.page.goto(site + name)
+        self.page.wait_for_selector("button.run-cell", state="attached")
+
+    def wait(self):
+        self.page.wait_for_function(RAN, timeout=120_000)
+
+    def run(self):
+        self.page.click("button.run-page")
+        self.page.wait_for_selector("html.live-busy", state="attached")
+        self.wait()
+        assert "ran." in self.words(), self.words()
+
+    def cell(self, number):
+        return self.page.locator("div.cell").nth(number - 1)
+
+    def write(self, number, code):
+        """Replace the code of a cell, from the keyboard."""
+        self.cell(number).locator(".cm-content").focus()
+        self.page.keyboard.press("Control+a")
+        self.page.keyboard.insert_text(code)
+        self.page.wait_for_function(
+            "([number, code]) => document.querySelectorAll('div.cell')[number - 1].querySelector('.cm-content')"
+            ".innerText.replace(/\\s/g, '') === code.replace(/\\s/g, '')",
+            arg=[number, code],
+        )
+
+    def try_code(self, number, code, wait=True):
+        """Write ``code`` into a cell, run it with the keyboard, and return what stands below it."""
+        self.write(number, code)
+        self.page.keyboard.press("Shift+Enter")
+        if wait:
+            self.wait()
+        return self.below(number)
+
+    def below(self, number):
+        return self.cell(number).locator(".cell_output").inner_text()
+
+    def words(self):
+        return self.page.inner_text("#live-words")
+
+    def outside(self):
+        return [url for url in self.asked if not url.startswith(("http://127.0.0.1", "data:", "blob:"))]
+
+
+@pytest.fixture(scope="module")
+def context(browser):
+    made = browser.new_context(viewport={"width": 1300, "height": 900})
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def page_that_has_run(context, site):
+    page = Page(context, site, QUIET)
+    opened.remove(page.page)
+    page.run()
+    yield page
+
+
+@pytest.fixture
+def shared(page_that_has_run):
+    """A page whose cells have run once; a test that leaves it running spoils no other."""
+    yield page_that_has_run
+    assert page_that_has_run.errors == []
+    page_that_has_run.page.evaluate("localStorage.clear()")  # or the next page would bring the edits back
+    if page_that_has_run.page.locator("html.live-busy").count():
+        page_that_has_run.page.reload()
+
+
+@pytest.fixture(scope="module")
+def not_isolated():
+    """The address of the book on a server that gives no page shared memory, as most servers are."""
+
+    class Plain(Handler):
+        isolated = False
+
+    book = server(folder=HTML, handler=Plain)
+    threading.Thread(target=book.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{book.server_port}/"
+    book.shutdown()
+    book.server_close()
+
+
+def kinds(name):
+    return kinds_of_cells()[name.removesuffix(".html")]
+
+
+# --- every cell of the book ---------------------------------------------------------------------
+
+
+def test_every_notebook_is_a_page_with_code():
+    notebooks = {str(path.relative_to(REPOSITORY).with_suffix(".html")) for path in all_notebooks(REPOSITORY)}
+    assert notebooks <= set(PAGES) == {f"{name}.html" for name in kinds_of_cells()}
+
+
+# The build has run all cells with the same Python code; pages of exercises are alike in a browser.
+@pytest.mark.sampled(1)
+@pytest.mark.parametrize("name", [name for name in PAGES if not name.startswith(STORED)])
+def test_results_equal_the_stored_ones(context, site, name):
+    """Every cell that needs SymPy only gives what is printed; the others say why they did not run."""
+    page = Page(context, site, name)
+    before = page.page.evaluate(RESULTS)
+    if all(kind.get("skip") for kind in kinds(name)):
+        page.page.click("button.run-page")
+        page.page.wait_for_function("document.querySelector('#live-words').textContent.includes('there already')")
+        assert not [url for url in page.asked if url.endswith(".wasm")]
+        return
+    page.run()
+    page.page.wait_for_function(PLAYABLE)
+    after = page.page.evaluate(RESULTS)
+    for number, kind in enumerate(kinds(name), start=1):
+        note = page.cell(number).locator(".live-note, .live-error")
+        if not kind["needs"]:
+            assert after[number - 1] == before[number - 1], f"cell {number}"
+            assert note.count() == 0, f"cell {number}: {note.inner_text()}"
+        elif kind["skip"]:
+            assert note.count() == 0
+        elif kind["needs"] == ["anywidget"]:  # a figure, or what asks one: all that it needs comes with the site
+            assert note.count() == 0, f"cell {number}: {note.inner_text()}"
+        else:
+            assert "Not run here" in note.inner_text(), f"cell {number}"
+            built = before[number - 1].partition("<figcaption>")[0]
+            assert after[number - 1].startswith(built), f"cell {number} has lost its printed result"
+    assert page.errors == []
+    needed = any(set(kind["needs"]) - {"anywidget"} and not kind["skip"] for kind in kinds(name))
+    assert needed or page.outside() == []
+
+
+def test_the_list_of_cells_is_that_of_the_build(site):
+    text = (HTML / "appendix" / "code-in-the-page.html").read_text("utf8")
+    every = [kind for page in kinds_of_cells().values() for kind in page]
+    alone = sum(set(kind["needs"]) <= {"anywidget"} for kind in every)
+    assert f"Of {len(every)} cells, {alone} run in the page with what comes with this site" in text
+    assert alone >= 0.9 * len(every), "nine cells of ten ask no other server"
+
+
+# --- what is loaded, and when -------------------------------------------------------------------
+
+
+def test_nothing_is_loaded_before_the_reader_asks(context, site):
+    page = Page(context, site, QUIET)
+    assert not [url for url in page.asked if "/runtime/" in url]
+    assert not page.page.is_visible(".live-bar")
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_pages_hardly_grow(name):
+    data = re.search(r'<script type="application/json" id="live-data">.*?</script>', (HTML / name).read_text("utf8"))
+    button = '<button class="run-page">Run this page</button>' * 3
+    added = [(HTML / "_static" / file).read_bytes() for file in ("live.js", "live.css")]
+    added.append((data[0] + button).encode())
+    assert sum(len(gzip.compress(part)) for part in added) < 5000
+
+
+@pytest.mark.long
+def test_browser_asks_nobody_else(site, browser, tmp_path):
+    """By the browser's own log of the network, from its start to its end."""
+    log = tmp_path / "network.json"
+    name = "chapters/orientation-with-sympy.html"
+    logged = browser.browser_type.launch(
+        executable_path=find(), args=[*FLAGS, f"--log-net-log={log}", "--net-log-capture-mode=Everything"]
+    )
+    page = Page(logged.new_context(), site, name, refuse=False)
+    page.run()
+    opened.remove(page.page)
+    logged.close()
+    events = [event.get("params", {}) for event in json.loads(log.read_text("utf8"))["events"]]
+    # The browser asks its maker for things of its own: those have no page as their origin.
+    asked = {params["url"] for params in events if params.get("initiator", "").startswith("http") and "url" in params}
+    assert any(url.endswith(".whl") for url in asked), "the log tells what the worker asks for"
+    assert {url for url in asked if not url.startswith((site, "data:", "blob:"))} == set()
+
+
+def test_download_is_small_enough():
+    lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
+    first = runtime.with_dependencies([runtime.DISTRIBUTION], lock["packages"])
+    files = [HTML / runtime.FOLDER / runtime.pyodide_folder() / name for name in runtime.PYODIDE_FILES]
+    files += [HTML / runtime.FOLDER / lock["packages"][name]["file_name"] for name in first]
+    assert lock["bytes"] == sum(path.stat().st_size for path in files)
+    files += (HTML / scripts.folder_name()).iterdir()
+    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_000_000
+
+
+def test_lock_names_what_is_there():
+    lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
+    official = runtime.official_lock()["packages"]
+    for name, package in lock["packages"].items():
+        if "://" in package["file_name"]:
+            assert package["file_name"].startswith(runtime.official_address())
+            assert package["sha256"] == official[name]["sha256"]
+        else:
+            wheel = HTML / runtime.FOLDER / package["file_name"]
+            assert hashlib.sha256(wheel.read_bytes()).hexdigest() == package["sha256"]
+            assert not [member for member in zipfile.ZipFile(wheel).namelist() if "/tests/" in member]
+        assert all(needed in lock["packages"] for needed in package["depends"])
+
+
+def test_versions_are_those_of_the_book():
+    constraints = (REPOSITORY / "constraints.txt").read_text("utf8").splitlines()
+    lines = (REPOSITORY / "notebook-pages/src/notebook_pages/live/wheels.txt").read_text("utf8").splitlines()
+    pins = [line.split()[0] for line in lines if not line.startswith("#")]
+    assert {pin.split("==")[0] for pin in pins} == {"sympy", "mpmath"}
+    assert set(pins) <= set(constraints)
+
+
+# --- NumPy and Matplotlib: official, a folder, off ------------------------------------------------
+
+
+@pytest.fixture
+def made_wheels(tmp_path):
+    """Wheels that stand for the official ones, and a list of packages that names them."""
+    packages = {}
+    for name in runtime.with_dependencies(runtime.NUMERICAL, runtime.official_lock()["packages"]):
+        package = dict(runtime.official_lock()["packages"][name])
+        wheel = tmp_path / package["file_name"]
+        with zipfile.ZipFile(wheel, "w") as file:
+            file.writestr(f"{package['imports'][0]}.py", f"__version__ = 'made {name}'\npi = 3\n")
+            info = f"{name.replace('-', '_')}-{package['version']}.dist-info"
+            file.writestr(f"{info}/METADATA", f"Metadata-Version: 2.1\nName: {name}\nVersion: {package['version']}\n")
+            file.writestr(f"{info}/RECORD", "")
+        packages[name] = package | {"sha256": hashlib.sha256(wheel.read_bytes()).hexdigest()}
+    return tmp_path, {"packages": packages}
+
+
+def test_numpy_from_a_folder(made_wheels, tmp_path_factory):
+    folder, official = made_wheels
+    target = tmp_path_factory.mktemp("runtime")
+    packages = runtime.numerical_packages(str(folder), target, official, "unused")
+    assert set(packages) == set(official["packages"])
+    for package in packages.values():
+        content = (target / package["file_name"]).read_bytes()
+        assert hashlib.sha256(content).hexdigest() == package["sha256"]
+    numpy = folder / official["packages"]["numpy"]["file_name"]
+    numpy.write_bytes(numpy.read_bytes() + b"more")
+    with pytest.raises(Exception, match="numpy-.* is not the official file"):
+        runtime.numerical_packages(str(folder), target, official, "unused")
+    numpy.unlink()
+    with pytest.raises(Exception, match="there is no numpy-"):
+        runtime.numerical_packages(str(folder), target, official, "unused")
+
+
+def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_path_factory):
+    folder, official = made_wheels
+    target = tmp_path_factory.mktemp("fetched")
+    address = folder.as_uri() + "/"
+    names = {package["file_name"] for package in official["packages"].values()}
+    assert set(fetch(target, official["packages"], address)) == names
+    assert fetch(target, official["packages"], address) == []
+    numpy = official["packages"]["numpy"]["file_name"]
+    (target / numpy).write_bytes(b"half of it")
+    assert fetch(target, official["packages"], address) == [numpy]
+    (target / numpy).unlink()
+    (folder / numpy).write_bytes(b"another file")
+    with pytest.raises(RuntimeError, match="is not the file that Pyodide's list names"):
+        fetch(target, official["packages"], address)
+    assert not (target / numpy).exists()
+
+
+def test_one_setting_puts_them_beside_the_pages(monkeypatch):
+    """As the workflow that publishes sets it: the makefile's command and its folder are the same."""
+    monkeypatch.setenv("BOOK_NUMPY", "_build/numpy")
+    assert runtime.numpy_setting("official") == "_build/numpy"
+    monkeypatch.setenv("BOOK_NUMPY", "")
+    assert runtime.numpy_setting("official") == "official"
+    assert "notebook_pages.live.fetch _build/numpy" in (REPOSITORY / "Makefile").read_text("utf8")
+    steps = (REPOSITORY / ".github" / "workflows" / "publish.yml").read_text("utf8")
+    assert steps.index("run: make numpy") < steps.index("run: make take-away") < steps.index("BOOK_NUMPY: _build/numpy")
+
+
+@pytest.mark.parametrize("setting", ["off", False])
+def test_numpy_off(setting, tmp_path):
+    assert runtime.numerical_packages(setting, tmp_path, runtime.official_lock(), "unused") == {}
+
+
+def numpy_page(context, site, lock, wheel):
+    """A page whose list of packages is ``lock``; the official address gives ``wheel``."""
+    page = Page(context, site, QUIET, refuse=False)
+    page.page.route("**/pyodide-lock.json", lambda route: route.fulfill(json=lock))
+    headers = {"Access-Control-Allow-Origin": "*", "Content-Type": "application/octet-stream"}
+    page.page.route(ELSEWHERE, lambda route: route.fulfill(body=wheel, headers=headers))
+    return page
+
+
+@pytest.mark.long
+def test_numpy_is_fetched_and_checked(context, site, made_wheels):
+    folder, made = made_wheels
+    lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
+    lock["packages"]["numpy"]["sha256"] = made["packages"]["numpy"]["sha256"]
+    wheel = (folder / made["packages"]["numpy"]["file_name"]).read_bytes()
+    page = numpy_page(context, site, lock, wheel)
+    page.page.click("button.run-cell >> nth=2")  # a cell of SymPy: nothing is asked for
+    page.wait()
+    assert page.outside() == []
+    assert "made numpy" in page.try_code(3, "import numpy as np\nprint(np.__version__)")
+    assert page.outside() == [lock["packages"]["numpy"]["file_name"]]
+    assert page.outside()[0].startswith("https://cdn.jsdelivr.net/pyodide/v")
+
+    page = numpy_page(context, site, lock, wheel + b"one byte too many")
+    page.page.click("button.run-cell >> nth=4")
+    page.wait()
+    page.try_code(3, "import numpy as np\nnp.fft.fft([1, 2])")
+    assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
+
+
+@pytest.mark.sampled(1, of="pages that start otherwise")
+def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
+    page = Page(context, site, QUIET)
+    page.page.click("button.run-cell >> nth=2")  # with it comes the editor
+    page.wait()
+    text = page.try_code(3, "import numpy as np\na = np.array([[2.0, 1], [0, 4]])\nnp.linalg.inv(a)")
+    assert "array([[ 0.5  , -0.125]," in text
+    assert "its numbers by plain Python in NumPy’s place" in page.words()
+    assert page.outside() == []
+    page.try_code(3, "a = np.array([1.0, 2])\nnp.fft.fft(a)")
+    assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
+    assert page.try_code(3, "print(repr(a[1]))").strip() == "np.float64(2.0)"
+
+
+@pytest.mark.sampled(1, of="pages that start otherwise")
+def test_hidden_code_runs_before_the_cell_below_it(context, site):
+    """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the next one."""
+
+    def with_hidden_code(route):
+        page = route.fetch()
+        text, count = re.subn(r'"cells":\s*\{', r'"cells":{"2":{"before":"hidden = 6 * 7"},', page.text(), count=1)
+        assert count == 1
+        text = re.sub(r'"hidden = 6 \* 7"\},\s*\}', '"hidden = 6 * 7"}}', text)
+        route.fulfill(response=page, body=text)
+
+    context.route(f"**/{QUIET}", with_hidden_code)
+    try:
+        page = Page(context, site, QUIET)
+    finally:
+        context.unroute(f"**/{QUIET}")
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    assert "42" in page.try_code(3, "hidden")
+    assert page.errors == []
+
+
+# --- what a student would type ------------------------------------------------------------------
+
+
+def test_edit_and_run(shared):
+    assert "42" in shared.try_code(3, "print(6 * 7)")
+    assert "cell 3 ran. Result: 42" in shared.words().replace("Cell", "cell")
+    assert shared.try_code(3, "a = 1; a;").strip() == ""
+    assert shared.try_code(3, "a, b = 'é', '数'\nprint(a + b)\nnäme = '\\N{GREEK SMALL LETTER PSI}'\nnäme").split() == [
+        "é数",
+        "'ψ'",
+    ]
+    assert "made anew" in shared.try_code(3, "a = 'made anew'\na")
+    assert "made anew" in shared.try_code(5, "a")
+
+
+def test_typo(shared):
+    text = shared.try_code(3, "import sympy as sm\nsm.Matrx([1])")
+    assert "AttributeError" in text and 'File "cell 3", line 2' in text
+    assert "sm.Matrx([1])" in text and "session" not in text and "pyodide" not in text
+    text = shared.try_code(3, "for i in range(3)\n    print(i)")
+    assert "SyntaxError: expected ':'" in text and "ast.py" not in text
+    text = shared.try_code(3, "thta + 1")
+    assert "NameError" in text and "theta" in text, "Python suggests the name"
+    assert "error" in shared.words()
+
+
+@pytest.mark.long
+def test_failing_cell_keeps_its_printed_result(context, site):
+    """Beside an error stands what the book has printed; it comes back alone with the book's code."""
+    page = Page(context, site, QUIET)
+    before = page.page.evaluate(RESULTS)[2]
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    page.try_code(3, "1 / 0")
+    assert "ZeroDivisionError" in page.below(3)
+    page.cell(3).locator("details.live-built summary").click()
+    assert page.cell(3).locator(".katex").first.is_visible()
+    page.cell(3).get_by_role("button", name="Bring back").click()
+    page.page.keyboard.press("Shift+Enter")
+    page.wait()
+    assert page.page.evaluate(RESULTS)[2] == before
+
+
+def test_questions_and_exits(shared):
+    assert "input() cannot ask" in shared.try_code(3, "input('Your name? ')")
+    assert "SystemExit" in shared.try_code(3, "import sys; sys.exit('enough')")
+    assert "still here" in shared.try_code(3, "print('still here')")
+
+
+def test_endless_printing_is_cut(shared):
+    text = shared.try_code(3, "for i in range(1_000_000):\n    print('line', i)")
+    assert "more characters, which are not shown" in text and "line 100" in text
+    assert len(text) < 100_000
+
+
+def test_infinite_recursion(shared):
+    text = shared.try_code(3, "def f(n):\n    return f(n + 1)\nf(0)")
+    assert "RecursionError" in text or "Python broke off" in text
+    assert len(text) < 5000
+    assert "and on" in shared.try_code(3, "print('and on')")
+
+
+def test_sleep(shared):
+    assert "awake" in shared.try_code(3, "import time\ntime.sleep(0.3)\nprint('awake')")
+
+
+def test_forms_of_values(shared):
+    shared.try_code(
+        3, "class Reply:\n    def _repr_html_(self):\n        return '<p class=\"reply\">Right.</p>'\nReply()"
+    )
+    assert shared.cell(3).locator("p.reply").inner_text() == "Right."
+    shared.try_code(3, "import sympy as sm\nx = sm.Symbol('x')\ndisplay(x**2)\ndisplay(x/3, 'text')")
+    assert shared.cell(3).locator(".katex").count() == 2
+    assert "'text'" in shared.below(3)
+    shared.try_code(3, "from IPython.display import HTML, Math\ndisplay(HTML('<b>bold</b>'))\nMath(r'\\hat{a}_x')")
+    assert shared.cell(3).locator("b").count() == 1 and shared.cell(3).locator(".katex").count() == 1
+    figure = "<figure class=orientation-figure><svg role=img><title>A line of four words</title></svg></figure>"
+    shared.try_code(3, f"HTML({figure!r})")
+    assert shared.cell(3).locator("figure svg").count() == 1
+
+
+def test_orientation_and_coursework(shared):
+    code = "from orientation import dcm_from_body_fixed\nimport coursework, sympy as sm\n"
+    code += "dcm_from_body_fixed(sm.symbols('psi, theta, phi'), 'zxy').shape"
+    assert "(3, 3)" in shared.try_code(3, code).replace("\n", "") or shared.cell(3).locator(".katex").count()
+
+
+def solution(name):
+    """The instructors' code of one answer: the cell above its check."""
+    path = REPOSITORY / "tests" / "solutions" / f"{name.partition('/')[0]}.ipynb"
+    codes = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    (place,) = (number for number, code in enumerate(codes) if code.startswith(f"check('{name}'"))
+    return codes[place - 1]
+
+
+def test_exercise_is_checked_in_the_page(context, site):
+    name = "exercises/simple-orientations.html"
+    page = Page(context, site, name)
+    places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
+    blank, check = places["simple-orientations-crank"], places["check-simple-orientations-crank"]
+    page.page.click(f"button.run-cell >> nth={check - 1}")
+    page.wait()
+    outcome = page.cell(check).locator("[data-outcome]")
+    assert outcome.get_attribute("data-outcome") == "not attempted"
+    right = solution("simple-orientations/crank")
+    for code, expected in (
+        (right, "correct"),
+        (f"{right}\nA_C_N = A_C_N.T", "wrong"),
+        (right, "correct"),
+    ):
+        page.write(blank, code)
+        page.page.click(f"button.run-cell >> nth={check - 1}")  # the edited cell above runs first
+        page.wait()
+        assert outcome.get_attribute("data-outcome") == expected, page.below(check)
+        if expected == "wrong":
+            assert "transpose" in page.below(check) and "$" not in page.below(check)
+            assert page.cell(check).locator("[data-outcome] .katex").count() > 0
+            assert "transpose" in page.words()
+    assert page.outside() == [] and page.errors == []
+
+
+@pytest.mark.sampled(1, of="what a page keeps")
+def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
+    name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
+    count = notebook_questions("simple-orientations")[question]["variants"]
+    students = {variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)}
+    page = Page(context, site, name)
+    sealed = []
+    page.page.on("response", lambda one: "/sealed-" in one.url and sealed.append((one.url, len(one.body()))))
+    codes = [
+        page.cell(k).locator("pre").first.inner_text() for k in range(1, page.page.locator("div.cell").count() + 1)
+    ]
+    shown = next(k for k, code in enumerate(codes, 1) if question in code)
+
+    def run(page):
+        page.page.click(f"button.run-cell >> nth={shown - 1}")
+        page.wait()
+        return page.below(shown)
+
+    everybodys = run(page)
+    assert sealed == [] and "that everybody sees" in page.cell(1).inner_text()
+    own = max(students)
+    page.page.fill(".live-who input", f" {students[own].upper()} ")
+    page.page.click(".live-who button")
+    assert f"those of {students[own].upper()}" in page.cell(1).inner_text()
+    mine = run(page)
+    assert mine != everybodys and page.errors == []
+    # One small file for each question above with variants, and no more than that.
+    assert any(address.endswith(f"/variants/simple-orientations-{own}.json") for address, _ in sealed)
+    assert len(sealed) <= 3 and sum(size for _, size in sealed) < 30_000, sealed
+    # Another page of the book does not ask any more, and what is said in the code counts as well.
+    opened.remove(page.page)
+    page.page.close()
+    again = Page(context, site, name)
+    assert run(again) == mine
+    assert f"those of {students[own].upper()}" in again.cell(1).locator(".live-who").inner_text()
+    again.write(1, codes[0].replace("me('')", f"me('{students[0]}')"))
+    assert run(again) == everybodys
+    again.page.wait_for_selector(f".live-who:has-text('those of {students[0]}')")
+
+
+@pytest.mark.sampled(1, of="what a page keeps")
+def test_tries_and_hints_of_a_page_outlive_it(context, site):
+    name = "exercises/simple-orientations.html"
+    places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
+    blank, check = places["simple-orientations-crank"], places["check-simple-orientations-crank"]
+    for code in ("A_C_N = sm.eye(3)", "A_C_N = sm.diag(1, -1, -1)"):
+        page = Page(context, site, name)
+        page.page.click(f"button.run-cell >> nth={check - 1}")
+        page.wait()
+        page.write(blank, code)
+        page.page.click(f"button.run-cell >> nth={check - 1}")
+        page.wait()
+        said = page.below(check)
+        opened.remove(page.page)
+        page.page.close()
+    assert "2 answers so far" in said and "Hint:" in said
+
+
+OFFERED = """from IPython.display import HTML
+HTML('<div class="coursework-reply" data-sibling="simple-orientations/compass/sibling">Right, with help</div>')"""
+
+
+@pytest.mark.sampled(1, of="what a page keeps")
+def test_a_sibling_question_is_one_button_away(context, site):
+    name = "exercises/simple-orientations.html"
+    page = Page(context, site, name)
+    place = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}[
+        "check-simple-orientations-compass"
+    ]
+    page.page.click(f"button.run-cell >> nth={place - 1}")
+    page.wait()
+    assert page.cell(place).locator("button.sibling").count() == 0
+    page.write(place, OFFERED)
+    page.page.click(f"button.run-cell >> nth={place - 1}")
+    page.wait()
+    page.cell(place).locator("button.sibling").click()
+    page.cell(place).locator("[data-outcome='not attempted']").wait_for()
+    page.wait()
+    code = page.cell(place).locator(".cm-content").inner_text()
+    assert code.startswith(OFFERED.partition("\n")[0])
+    assert "sibling = variant('simple-orientations/compass/sibling')" in code
+    assert "check('simple-orientations/compass/sibling', other_compass)" in code
+    # That of nobody is the next. The page writes a minus where Python has a hyphen, and sets numbers one by one.
+    own = notebook_questions("simple-orientations", 1)["simple-orientations/compass"]["shown"]
+    shown = "".join(page.below(place).replace("\N{MINUS SIGN}", "-").split())
+    assert all(number in shown for text in own.values() for number in re.findall(r"-?\d+", text)), own
+    assert page.errors == []
+    # It is the reader's own text now, and outlives the page; the book's code can be brought back.
+    opened.remove(page.page)
+    page.page.close()
+    again = Page(context, site, name)
+    again.cell(place).locator(".cm-content", has_text="compass/sibling").wait_for()
+
+
+# --- stopping and starting afresh -----------------------------------------------------------------
+
+ENDLESS = "kept = 'kept'\nprint('begun')\nwhile True:\n    pass"
+HUGE = (
+    "print('begun')\nimport sympy as sm\nM = sm.Matrix(60, 60, lambda i, j: "
+    "sm.Symbol(f'a{i}{j}'))\nM.det(method='berkowitz')"
+)
+ONE_STEP = "print('begun')\nmax(range(10 ** 15))"  # one operation, in which Python does not listen
+
+
+def stop(page, number, code):
+    """Run endless code, press Stop once it has begun, and return what stands below the cell then."""
+    page.try_code(number, code, wait=False)
+    page.page.wait_for_function(
+        "number => document.querySelectorAll('div.cell')[number - "
+        "1].querySelector('.cell_output').innerText.includes('begun')",
+        arg=number,
+    )
+    page.page.click(".live-bar button:has-text('Stop')")
+    page.wait()
+    return page.below(number)
+
+
+@pytest.mark.sampled(1)
+@pytest.mark.parametrize("code", [ENDLESS, HUGE])
+def test_stop_keeps_the_names_in_an_isolated_page(shared, code):
+    assert shared.page.evaluate("crossOriginIsolated")
+    shared.try_code(3, "kept = 'kept'")
+    text = stop(shared, 3, code)
+    assert "Stopped." in text and "still there" in text
+    assert "kept" in shared.try_code(3, "kept")
+
+
+def test_stop_ends_what_does_not_listen(shared):
+    assert "Stopped." in stop(shared, 3, ONE_STEP)
+    assert "here again" in shared.try_code(3, "print('here again')")
+
+
+@pytest.mark.long
+def test_stop_in_a_page_without_shared_memory(browser, not_isolated):
+    context = browser.new_context(service_workers="block")  # or one would isolate the pages
+    page = Page(context, not_isolated, QUIET)
+    assert not page.page.evaluate("crossOriginIsolated")
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    text = stop(page, 4, ENDLESS)
+    assert "Stopped." in text and "starts anew" in text
+    # The cells above run again first, so that their names are there.
+    text = page.try_code(4, "theta, kept if 'kept' in globals() else 'new'")
+    assert "new" in text and page.errors == []
+    opened.remove(page.page)
+    context.close()
+
+
+@pytest.mark.long
+def test_start_afresh(context, site):
+    page = Page(context, site, QUIET)
+
+    def results():  # a figure that moves is where the reader has left it, or where its own dice put it
+        return ["moves" if "data-figure=" in html else html for html in page.page.evaluate(RESULTS)]
+
+    before = results()
+    page.run()
+    page.try_code(3, "gone = 1\nprint('something else')")
+    page.page.click(".live-bar button:has-text('Start afresh')")
+    assert results() == before
+    assert "NameError" in page.try_code(3, "gone")
+
+
+# --- failures of the network, named ---------------------------------------------------------------
+
+FAILURES = {
+    "**/*.wasm": [
+        ("404", dict(status=404)),
+        ("broken", dict(body=b"\0asm, but broken", content_type="application/wasm")),
+    ],
+    "**/sympy*.whl": [("not the file that this edition names", dict(body=b"no wheel"))],
+    "**/pyodide-lock.json": [("500", dict(status=500))],
+}
+
+
+@pytest.mark.sampled(1, of="pages that start otherwise")
+@pytest.mark.parametrize(
+    ("pattern", "words", "answer"), [(p, *case) for p, cases in FAILURES.items() for case in cases]
+)
+def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, words, answer):
+    page = Page(context, site, QUIET)
+    page.page.route(pattern, lambda route: route.fulfill(**answer))
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_function(
+        "document.querySelector('#live-words').textContent.includes('could not be started')", timeout=90_000
+    )
+    assert words in page.words()
+    page.page.unroute(pattern)
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    assert "Cell 3 ran" in page.words()
+
+
+def test_tab_that_is_older_than_the_pages_says_so(context, site):
+    """Its scripts are gone from the server, where by now the same page asks for others."""
+    page = Page(context, site, QUIET)
+    page.page.route("**/runtime/scripts-*/*.js*", lambda route: route.fulfill(status=404))
+    text = re.sub(r"runtime/scripts-\w+", "runtime/scripts-0123456789ab", (HTML / QUIET).read_text("utf8"))
+    page.page.route(f"**/{QUIET}", lambda route: route.fulfill(body=text, content_type="text/html"))
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('published anew')")
+    page.page.unroute_all()
+    with page.page.expect_navigation():
+        page.page.click(".live-choices button:has-text('Reload')")
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
+
+
+def test_script_that_did_not_come_is_asked_for_again(context, site):
+    """Browsers remember a script that failed for as long as the page is open."""
+    page = Page(context, site, QUIET)
+    page.page.route("**/*", lambda route: route.abort())
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('does not answer')")
+    page.page.unroute_all()
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
+
+
+def test_python_starts_where_the_storage_is_full(context, site):
+    """All sites of one address share it: it may be full before the book is opened."""
+    page = Page(context, site, QUIET)
+    page.page.evaluate("""() => {
+      for (let size = 1 << 22; size; size >>= 1) try {
+        for (;;) localStorage.setItem(`neighbour ${localStorage.length}`, "x".repeat(size));
+      } catch {}
+      for (let size = 1 << 22; size; size >>= 1) try {
+        for (;;) sessionStorage.setItem(`neighbour ${sessionStorage.length}`, "x".repeat(size));
+      } catch {}
+    }""")
+    page.page.click("button.run-cell >> nth=2")
+    page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
+    page.page.evaluate("() => { localStorage.clear(); sessionStorage.clear(); }")
+
+
+def test_jupyters_commands_get_a_hint(shared):
+    for code, words in (
+        ("%matplotlib inline", "Python alone"),
+        ("!pip install x", "nothing can be installed"),
+        ("len?", "help(len)"),
+    ):
+        text = shared.try_code(3, code)
+        assert words in text and "SyntaxError" in text and "session" not in text
+
+
+def test_run_after_a_stopped_cell_leaves_that_out(shared):
+    assert "Stopped." in stop(shared, 3, ENDLESS)
+    assert "after it" in shared.try_code(4, "print('after it')")
+    assert "Stopped." in shared.below(3)
+
+
+# --- a hurried hand -------------------------------------------------------------------------------
+
+BEGUN = (
+    "number => document.querySelectorAll('div.cell')[number - 1].querySelector('.cell_output')"
+    ".innerText.includes('begun')"
+)
+SLOW = "print('begun')\nimport time\nuntil = time.time() + 4\nwhile time.time() < until: pass\n"
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_page_asked_for_twice_runs_once_and_in_order(context, site):
+    """While Python loads, and in the midst of the run: cells above would else run again after those below."""
+    page = Page(context, site, QUIET)
+    page.page.evaluate("""() => {
+      window.order = [];
+      const seen = new MutationObserver((changes) => changes.forEach(({ target }) => {
+        const number = [...document.querySelectorAll('div.cell')].indexOf(target) + 1;
+        if (target.classList.contains('running') && order.at(-1) !== number) order.push(number);
+      }));
+      document.querySelectorAll('div.cell').forEach((cell) => seen.observe(cell, { attributeFilter: ['class'] }));
+    }""")
+    page.page.dblclick("button.run-page")
+    page.page.wait_for_function("order.length >= 3")
+    page.page.click("button.run-page")
+    page.wait()
+    order = page.page.evaluate("order")
+    assert order == sorted(set(order)) and len(order) > 5 and page.errors == []
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_cell_changed_while_it_runs_has_to_run_again(shared):
+    shared.try_code(3, f"{SLOW}word = 'old'", wait=False)
+    shared.page.wait_for_function(BEGUN, arg=3)
+    shared.write(3, "word = 'new'")
+    shared.wait()
+    assert "new" in shared.try_code(4, "word")
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_cell_that_runs_is_not_run_again_by_a_second_press(shared):
+    shared.try_code(3, "count = 0")
+    shared.try_code(3, f"{SLOW}count += 1", wait=False)
+    shared.page.wait_for_function(BEGUN, arg=3)
+    shared.page.click("button.run-cell >> nth=2")  # once more, and then a cell that needs it
+    assert "= 1" in shared.try_code(4, "print('count =', count)")
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_what_is_asked_for_right_after_stop_runs(shared):
+    """Here Python does not listen: it ends, and what stands above the cell runs again before it."""
+    shared.try_code(3, "above = 'there'")
+    shared.try_code(4, ONE_STEP, wait=False)
+    shared.page.wait_for_function(BEGUN, arg=4)
+    shared.page.click(".live-bar button:has-text('Stop')")
+    assert "there" in shared.try_code(4, "above")
+    assert "Cell 4 ran" in shared.words()
+
+
+@pytest.mark.sampled(2, of="a hurried hand")
+def test_stop_while_python_loads_and_run_again(context, site):
+    page = Page(context, site, QUIET)
+    page.page.click("button.run-cell >> nth=2")
+    page.page.click(".live-bar button:has-text('Stop')")
+    page.page.wait_for_selector("#live-words:has-text('Python was not loaded')")
+    assert page.page.locator("div.cell:is(.running, .waiting)").count() == 0
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    assert "Cell 3 ran" in page.words() and page.errors == []
+
+
+# --- the reader's edits ---------------------------------------------------------------------------
+
+
+@pytest.mark.long
+def test_edits_survive_a_reload_and_can_be_undone(browser, site):
+    context = browser.new_context()
+    page = Page(context, site, QUIET)
+    page.page.click("button.run-cell >> nth=2")
+    page.wait()
+    original = page.cell(3).locator(".cm-content").inner_text()
+    page.try_code(3, "print('mine')")
+    page.page.reload()
+    page.page.wait_for_selector(".cm-content", state="attached")
+    assert "print('mine')" in page.cell(3).locator(".cm-content").inner_text()
+    assert "Your edits are here again" in page.words()
+    assert not [url for url in page.asked[-20:] if url.endswith(".wasm")], "only the editor is loaded"
+    page.page.click(".live-bar button:has-text('Book’s code')")
+    page.page.click(".live-bar button:has-text('Bring it back')")
+    assert page.cell(3).locator(".cm-content").inner_text() == original
+    page.page.reload()
+    page.page.locator(".live-earlier summary").click()
+    assert "print('mine')" in page.page.inner_text(".live-earlier")
+    opened.remove(page.page)
+    context.close()
+
+
+def test_edit_of_code_that_has_changed_is_offered(browser, site):
+    context = browser.new_context()
+    page = Page(context, site, QUIET)
+    edits = [{"number": 3, "original": "of another edition", "code": "print('old edit')"}]
+    key = f"code of {QUIET.removesuffix('.html')}"
+    page.page.evaluate("([key, edits]) => localStorage.setItem(key, JSON.stringify(edits))", [key, edits])
+    page.page.reload()
+    choice = page.page.locator(".live-choice")
+    choice.wait_for()
+    assert "has changed since you edited it" in choice.inner_text()
+    assert "old edit" not in page.cell(3).locator(".cm-content").inner_text()
+    choice.get_by_role("button", name="Use mine").click()
+    assert "old edit" in page.cell(3).locator(".cm-content").inner_text()
+    page.page.reload()
+    page.page.wait_for_selector(".cm-content", state="attached")
+    assert "old edit" in page.cell(3).locator(".cm-content").inner_text()
+    assert choice.count() == 0
+    opened.remove(page.page)
+    context.close()
+
+
+# --- keyboard, screen readers, small screens ------------------------------------------------------
+
+
+def test_keyboard(shared):
+    shared.page.locator(".cm-content").first.wait_for(state="attached")
+    shared.write(3, "if True:")
+    shared.page.keyboard.press("Enter")
+    shared.page.keyboard.type("print('by keyboard')")
+    shared.page.keyboard.press("Control+Enter")
+    shared.wait()
+    assert "by keyboard" in shared.below(3)
+    shared.page.keyboard.press("Escape")
+    focused = "document.activeElement.getAttribute('aria-label')"
+    assert shared.page.evaluate(focused) == "Run cell 3"
+    shared.page.keyboard.press("Tab")
+    assert shared.page.evaluate(focused) != "Code of cell 3"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("theme", "width"), [("light", 1300), ("dark", 380)])
+def test_accessible_in_use(browser, site, theme, width):
+    with Visit(browser, site, QUIET, theme, {"width": width, "height": 800}) as visit:
+        page = visit.page
+        page.route(ELSEWHERE, lambda route: route.abort())
+        page.click("button.run-page")
+        page.wait_for_selector("html.live-busy", state="attached")
+        assert violations(page) == []
+        page.wait_for_selector("html:not(.live-busy)", timeout=120_000)
+        page.locator(".cm-content").nth(2).focus()
+        page.keyboard.press("Control+a")
+        page.keyboard.insert_text("print('a' * 500)\nthis_is_not_a_name")
+        page.keyboard.press("Shift+Enter")
+        page.wait_for_selector(".live-error")
+        page.wait_for_selector("html:not(.live-busy)")
+        assert violations(page) == []
+        sideways = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+        assert page.evaluate(sideways) <= 0
+
+
+def test_page_from_disk_says_what_to_do(browser):
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto((HTML / QUIET).as_uri())
+    page.click("button.run-page")
+    assert "python serve.py" in page.inner_text("#live-words")
+    context.close()
+
+
+# --- without NumPy, and the same forms as IPython's -----------------------------------------------
+
+WITHOUT_NUMPY = """
+import sys
+for name in ("numpy", "matplotlib", "scipy", "anywidget", "IPython"):
+    sys.modules[name] = None
+import coursework
+import orientation
+import sympy as sm
+psi, theta, phi = sm.symbols("psi, theta, phi", real=True)
+dcm = orientation.dcm_from_body_fixed((psi, theta, phi), "zxy")
+assert orientation.same_orientation(dcm.T.T, dcm)
+assert orientation.simple_dcm("z", psi) * orientation.simple_dcm("z", psi).T != 0
+try:
+    orientation.dcm_from_body_fixed([(0.1, 0.2, 0.3)], "zxy")
+except ImportError as error:
+    print("batches need", error.name)
+"""
+
+
+def test_batches_alone_need_numpy():
+    done = subprocess.run([sys.executable, "-c", WITHOUT_NUMPY], capture_output=True, text=True)
+    assert (done.returncode, done.stdout.strip()) == (0, "batches need numpy"), done.stderr
+
+
+def test_pages_that_need_numpy_do_not_import_it_in_vain():
+    """A cell that only imports NumPy for later ones runs without it."""
+    cells = nbformat.read(REPOSITORY / "appendix" / "solutions.ipynb", as_version=4).cells
+    first = next(cell for cell in cells if cell.cell_type == "code")
+    assert "import numpy as np" in first.source
+    assert kinds("appendix/solutions.html")[0]["needs"] == []
+
+
+# --- figures that move --------------------------------------------------------------------------
+
+FIGURES = "chapters/simple-orientations.html"
+
+
+class FigurePage(Page):
+    """The page whose code calls its figure by a name."""
+
+    def __init__(self, context, site):
+        super().__init__(context, site, FIGURES)
+        self.page.wait_for_selector(".moving[data-ready]", state="attached")
+        find = (
+            "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
+        )
+        self.figure = self.page.evaluate(find, "SimpleFigure(") + 1
+        self.asking = self.page.evaluate(find, "figure.angle") + 1
+
+    def turn(self, degrees):
+        """Type an angle into the figure."""
+        self.page.get_by_label("theta in degrees").fill(str(degrees))
+
+    def angle(self):
+        return float(self.page.get_by_label("theta in degrees").input_value())
+
+    def run_below(self, number):
+        self.cell(number).locator("button.run-cell").click()
+        self.page.wait_for_selector("html.live-busy", state="attached")
+        self.wait()
+
+    def says(self, number, text):
+        self.page.wait_for_function(
+            "([number, text]) => document.querySelectorAll('div.cell')[number - 1].querySelector('.cell_output')"
+            ".textContent.includes(text)",
+            arg=[number, text],
+        )
+
+
+@pytest.mark.sampled(1, of="figures and code")
+def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context, site):
+    page = FigurePage(context, site)
+    page.turn(90)
+    page.run_below(page.asking)  # and, before it, the figure's own cell
+    assert page.angle() == 90
+    assert page.try_code(page.asking, "print(figure.angle)").startswith("1.5707963")
+    page.turn(-30)
+    assert page.try_code(page.asking, "print(figure.angle)").startswith("-0.5235987")
+    # The other way round, a matrix as well, and no word that is wrong.
+    page.try_code(page.asking, "figure.angle = 0.5")
+    page.page.wait_for_function("() => document.querySelector('.moving .field input').value === '28.65'")
+    assert "0.479" in page.try_code(page.asking, "figure.dcm")
+    assert "did you mean angle" in page.try_code(page.asking, "figure.angel = 0.5")
+    assert "Angles are in radians" in page.try_code(page.asking, "figure.angle = 30")
+    # Observers, and their errors, are heard below the figure.
+    page.try_code(page.asking, "figure.observe(lambda change: print(f'now {change.new:.3f}'), 'angle')")
+    page.turn(45)
+    page.says(page.figure, "now 0.785")
+    page.try_code(page.asking, "figure.unobserve_all(); figure.observe(lambda change: 1 / 0, 'angle')")
+    page.turn(60)
+    page.says(page.figure, "ZeroDivisionError")
+    # Run below the figure itself makes it anew, as its code says, and a cell further down asks the new one.
+    page.cell(page.figure).locator("summary").first.click()
+    page.cell(page.figure).locator("button.run-cell").click()
+    page.page.wait_for_function("() => document.querySelector('.moving .field input').value === '34.38'")
+    page.wait()
+    assert page.page.locator(".moving").count() == 1
+    assert page.try_code(page.asking, "print(figure.angle)").startswith("0.6")
+    assert page.outside() == [] and page.errors == []
+
+
+@pytest.mark.sampled(1, of="figures and code")
+def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
+    """Where the server gives no shared memory, the first run loads the page again, by a service worker."""
+    context = browser.new_context()
+    page = FigurePage(context, not_isolated)
+    page.turn(90)
+    page.cell(page.asking).locator("button.run-cell").click()
+    page.page.wait_for_function("() => crossOriginIsolated")
+    page.page.wait_for_selector("html.live-busy", state="attached")
+    page.wait()
+    assert page.angle() == 90
+    opened.remove(page.page)
+    context.close()
+
+
+@pytest.mark.sampled(1, of="figures and code")
+def test_a_figure_is_set_from_a_matrix_of_the_readers_own(context, site):
+    page = Page(context, site, "chapters/direction-cosine-matrices.html")
+    text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
+    number = page.page.evaluate(text, "TriadFigure(") + 1
+    cell = page.cell(number)
+    cell.locator("summary").first.click()
+    cell.locator("button.run-cell").click()
+    page.wait()
+    turned = "from orientation_figures.moving import TriadFigure\nfigure = TriadFigure(axis=(0, 0, 1), angle=1.0)\n"
+    for matrix, angle, entry in (
+        ("[[0, 1, 0], [0, 0, 1], [1, 0, 0]]", "120", "a x dot n y: \u20071.000"),
+        ("sm.Matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]])", "-90", "a z dot n y: \u20071.000"),
+        ("simple_dcm('y', 0.5)", "28.65", "a z dot n x: \u20070.479"),
+    ):
+        page.try_code(
+            number, f"import sympy as sm\nfrom orientation import simple_dcm\n{turned}figure.dcm = {matrix}\nfigure"
+        )
+        cell.get_by_role("button", name=entry, exact=True).wait_for()
+        shown = abs(float(cell.get_by_label("theta in degrees").input_value()))
+        assert shown == abs(float(angle)), matrix  # about the opposite axis it is the opposite angle
+    # A reflection is refused, and the figure says why.
+    assert "left-handed" in page.try_code(number, f"{turned}figure.dcm = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\nfigure")
+    assert page.errors == []
+
+
+@pytest.mark.sampled(1, of="figures and code")
+def test_the_explorer_of_sequences_works_in_the_page(context, site):
+    page = Page(context, site, "chapters/euler-angles.html")
+    text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
+    cell = page.cell(page.page.evaluate(text, "SequenceExplorer(") + 1)
+    cell.locator("button.run-cell").click()
+    cell.get_by_label("Sequence", exact=True).select_option("zyz")
+    cell.get_by_text("z-y-z locks at θ = 0 and θ = π").first.wait_for()
+    assert cell.locator("math").count() == 5
+    cell.get_by_label("theta: a symbol or radians").fill("pi/6")
+    cell.get_by_text("Here it is 0.524 rad away from that.").first.wait_for()
+    cell.get_by_label("Turns are").select_option("space")
+    cell.locator("msqrt").first.wait_for()
+    assert page.outside() == [] and page.errors == []
+
+
+@pytest.mark.sampled(1, of="figures and code")
+def test_controls_that_only_a_notebook_can_show_say_so(context, site):
+    page = FigurePage(context, site)
+    page.page.click("button.run-page")
+    page.page.wait_for_selector("html.live-busy", state="attached")
+    page.wait()
+    assert "In the notebook it works" in page.try_code(page.asking, "import ipywidgets\nipywidgets.IntSlider()")

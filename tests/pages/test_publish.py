@@ -1,0 +1,151 @@
+"""What the built pages say of themselves to others, and what a published book adds when it knows its address."""
+
+import io
+import re
+from collections import Counter
+from functools import cache
+from html import unescape
+from types import SimpleNamespace
+from urllib.parse import parse_qs, urlsplit
+
+import pytest
+import yaml
+from bs4 import BeautifulSoup
+from PIL import Image, ImageChops
+from places import HTML, REPOSITORY
+from test_website import build, chapter
+
+import orientation
+from notebook_pages import pictures
+from notebook_pages.finish import pages_of
+from notebook_pages.paths import pages
+from notebook_pages.publish import LICENCE, LONGEST, keep_index_entries
+from orientation_figures.style import LIGHT
+
+SETTINGS = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
+
+
+@cache
+def head(path):
+    return path.read_text("utf8").partition("<body")[0]
+
+
+def meta(text, name):
+    (found,) = re.findall(rf'<meta (?:name|property)="{name}" content="([^"]*)"', text)
+    return unescape(found)
+
+
+def test_each_page_describes_itself():
+    described = [path for path in pages_of(HTML) if path.name not in ("404.html", "search.html", "genindex.html")]
+    descriptions = Counter()
+    for path in described:
+        words = meta(head(path), "description")
+        assert 20 < len(words) <= LONGEST and "\\" not in words and "<" not in words, f"{path}: {words}"
+        assert meta(head(path), "og:description") == words
+        assert SETTINGS["title"] in meta(head(path), "og:title")
+        assert head(path).count('name="viewport"') == 1, path
+        assert LICENCE in path.read_text("utf8").partition("<footer")[2], f"{path} does not name its licence"
+        descriptions[words] += 1
+    assert [words for words, count in descriptions.items() if count > 1] == []
+
+
+def test_files_for_machines():
+    assert (HTML / ".nojekyll").is_file()
+    assert "Allow: /" in (HTML / "robots.txt").read_text("utf8")
+    outline = (HTML / "llms.txt").read_text("utf8")
+    for page in pages()[1:]:
+        assert f"{page}.html): " in outline, f"llms.txt lacks {page}"
+    assert all((HTML / address).is_file() for address in re.findall(r"\]\(([^)]*)\)", outline))
+    missing = (HTML / "404.html").read_text("utf8")
+    assert 'href="/index.html"' in missing and "_static" not in missing, "it stands in for an address in any folder"
+
+
+def test_index_names_every_term_symbol_and_function():
+    """And leads from each of them to where it is explained, and to pages that speak of it."""
+    page = BeautifulSoup((HTML / "appendix" / "subject-index.html").read_text("utf8"), "lxml").article
+    terms, symbols, functions = (page.select(f"#{name} li") for name in ("terms", "symbols", "functions-and-classes"))
+    first = [item.a.get_text() for item in terms]
+    glossary = BeautifulSoup((HTML / "appendix" / "glossary.html").read_text("utf8"), "lxml").article
+    assert set(first) == {entry.find(string=True).strip() for entry in glossary.select("dl.glossary > dt")}
+    assert first == sorted(first, key=str.casefold) and len(first) > 30
+    assert all(item.a["href"].startswith("glossary.html#") for item in terms)
+    assert sum(len(item.select("a")) > 1 for item in terms) > 0.8 * len(terms), "most terms are in a chapter"
+    assert len(symbols) >= 8 and all(item.select_one(".katex") for item in symbols)
+    names = {item.a.get_text() for item in functions}
+    assert names >= set(orientation.__all__), "each is in the reference"
+    (slerp,) = [item for item in functions if item.a.get_text() == "interpolate_quaternions"]
+    assert any("quaternions-in-full.html" in link["href"] for link in slerp.select("a"))
+
+
+def test_title_is_said_once():
+    """In the settings; what else names the book reads it there."""
+    title = SETTINGS["title"]
+    sources = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
+    programs = [path for kind in ("*.py", "*.js", "*.html") for path in sources.rglob(kind)]
+    programs += [*(REPOSITORY / "tests").rglob("test_*.py")]
+    assert [path.name for path in programs if title in path.read_text("utf8")] == []
+
+
+@pytest.mark.long
+def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
+    monkeypatch.setenv("BOOK_ADDRESS", "https://example.org/books/tiny")
+    monkeypatch.setenv("BOOK_REPOSITORY", "https://github.com/example/tiny-book")
+    (tmp_path / "CITATION.cff").write_text("version: 3.0\ndate-released: 2026-11-22\ndoi: 10.5281/zenodo.1\n")
+    cells = chapter()
+    cells[0].source += "\n\n```{cite-this-book}\n```\n"
+    code, words = build(tmp_path, {"chapter": cells})
+    assert code == 0, words
+    site = tmp_path / "_build" / "html"
+    text = (site / "chapter.html").read_text("utf8")
+    assert '<link rel="canonical" href="https://example.org/books/tiny/chapter.html" />' in text
+    assert meta(text, "og:url") == "https://example.org/books/tiny/chapter.html"
+    assert "<loc>https://example.org/books/tiny/chapter.html</loc>" in (site / "sitemap.xml").read_text("utf8")
+    assert "Sitemap: https://example.org/books/tiny/sitemap.xml" in (site / "robots.txt").read_text("utf8")
+    assert 'href="/books/tiny/index.html"' in (site / "404.html").read_text("utf8")
+    assert "Edition 3.0, 22 November 2026" in text.partition("<footer")[2]
+    assert meta(text, "citation_doi") == "10.5281/zenodo.1" and meta(text, "citation_publication_date") == "2026-11-22"
+    cited = " ".join(BeautifulSoup(text, "lxml").article.get_text().split())
+    assert f"{SETTINGS['title']}. Edition 3.0, 22 November 2026. https://doi.org/10.5281/zenodo.1." in cited
+    assert "doi = {10.5281/zenodo.1}, url = {https://example.org/books/tiny/}, }" in cited
+    (report,) = re.findall(r'class="report-mistake" href="([^"]*)"', text)
+    asked = parse_qs(urlsplit(unescape(report)).query)
+    assert "(chapter)" in asked["body"][0] and "Edition 3.0, 22" in asked["body"][0]
+    assert 'href="https://github.com/example/tiny-book/edit/main/chapter.ipynb"' in text
+    picture = meta(text, "og:image").removeprefix("https://example.org/books/tiny/")
+    assert Image.open(io.BytesIO((site / picture).read_bytes())).size == (1200, 630)
+    assert meta(text, "og:image:alt") and meta(text, "twitter:card") == "summary_large_image"
+
+
+def test_picture_of_a_page_is_its_first_figure():
+    """In the colours of the light page, as large as it fits, and small enough for those who show it."""
+    for name in ("index", "chapters/euler-angles", "chapters/orientation-from-sensors"):
+        figure, box, words = pictures.first_figure((HTML / f"{name}.html").read_text("utf8"))
+        content = pictures.drawn(figure, box)
+        picture = Image.open(io.BytesIO(content)).convert("RGB")
+        assert picture.size == (1200, 630) and len(content) < pictures.LARGEST and len(words) > 40
+        colours = {colour for _, colour in picture.getcolors(10**6)}
+        known = [tuple(bytes.fromhex(LIGHT[name][1:])) for name in "ABD"]
+        assert (255, 255, 255) in colours and len(colours.intersection(known)) >= 2
+        ink = ImageChops.difference(picture, Image.new("RGB", picture.size, "white")).getbbox()
+        assert ink[0] >= 20 and ink[1] >= 20 and ink[2] <= 1180 and ink[3] <= 610
+        assert ink[2] - ink[0] > 600 or ink[3] - ink[1] > 400
+    assert pictures.first_figure("<p>no figure</p>") is None
+
+
+def test_labels_are_drawn_in_the_picture():
+    page = (HTML / "index.html").read_text("utf8")
+    figure, box, _ = pictures.first_figure(page)
+    assert pictures.drawn(figure, box) != pictures.drawn(re.sub("<use [^>]*>", "", figure), box)
+
+
+def test_the_search_knows_the_index_of_pages_that_were_not_written():
+    """Sphinx forgot it with each build that wrote some of the pages only."""
+    entries = {name: [("single", f"{name}; turned", f"at-{name}", "", None)] for name in ("old", "new")}
+    indexer = SimpleNamespace(_titles={"old": "", "new": ""}, _index_entries={"new": [("kept", "there", "")]})
+    builder = SimpleNamespace(indexer=indexer)
+    env = SimpleNamespace(domaindata={"index": {"entries": entries}})
+    keep_index_entries(SimpleNamespace(builder=builder, env=env))
+    assert indexer._index_entries == {
+        "new": [("kept", "there", "")],
+        "old": [("old", "at-old", ""), ("turned", "at-old", "")],
+    }

@@ -1,0 +1,271 @@
+"""Predictions, recaps and the page of progress, in a real browser."""
+
+import json
+
+import pytest
+from places import HTML
+from test_site import violations
+
+from coursework.checking.reply import Reply
+
+CHAPTER = "chapters/reference-frames"
+COVERING = '.question[data-covers]:not([data-covers="0"])'
+KEPT = "() => JSON.parse(Object.entries(localStorage).find(([key]) => key.startsWith('progress of'))?.[1] ?? '{}')"
+
+SHOWN = """() => [...document.querySelectorAll("article section > :not(section)")].flatMap(
+  (block, place) => block.checkVisibility() ? [place] : [])"""
+pytestmark = pytest.mark.sampled(4)
+
+
+@pytest.fixture
+def context(browser):
+    context = browser.new_context(viewport={"width": 1300, "height": 900})
+    context.set_default_timeout(60_000)
+    yield context
+    context.close()
+
+
+def opened(context, site, name=CHAPTER):
+    page = context.new_page()
+    page.goto(f"{site}{name}.html")
+    page.wait_for_function("!document.documentElement.matches('.settling, .in-parts')")
+    return page
+
+
+def pages_with_questions():
+    return [path for path in sorted((HTML / "chapters").glob("*.html")) if 'class="question' in path.read_text("utf8")]
+
+
+def test_every_reply_says_something():
+    from bs4 import BeautifulSoup
+
+    assert pages_with_questions()
+    for path in pages_with_questions():
+        for box in BeautifulSoup(path.read_text("utf8"), "html.parser").select(".question"):
+            replies = box.select(".replies li > div")
+            assert len(replies) >= 2, box["id"]
+            assert all(len(reply.get_text().split()) >= 2 for reply in replies), (path.name, box["id"])
+            assert len(box.select(".replies li.right")) == 1
+
+
+def test_prediction_covers_what_follows_until_it_is_made(context, site):
+    page = opened(context, site)
+    box = page.locator(COVERING).first
+    label, right = box.get_attribute("id"), box.get_attribute("data-answer")
+    covered = page.locator(f"#{label} + .covered")
+    assert covered.evaluate("element => element.inert && getComputedStyle(element.firstElementChild).opacity") == "0"
+    box.get_by_role("button", name="That is my prediction").click()
+    assert box.get_by_role("status").inner_text() == "Choose one first."
+    wrong = box.locator(f'input:not([value="{right}"])').first
+    wrong.check()
+    box.get_by_role("button", name="That is my prediction").click()
+    assert box.get_by_role("status").inner_text().startswith("Not quite.")
+    assert covered.count() == 0 and page.evaluate("document.querySelectorAll('.uncovered[inert]').length") == 0
+    box.locator(f'input[value="{right}"]').check()
+    box.get_by_role("button", name="That is my prediction").click()
+    assert box.get_by_role("status").inner_text().startswith("Right.")
+    kept = page.evaluate(KEPT)["pages"][CHAPTER]["answers"][label]
+    assert kept["last"] == right and kept["right"] and not kept["rightAtFirst"]
+    page.reload()
+    assert page.locator(f"#{label} .result.right").is_visible()
+    assert page.locator(f'#{label} input[value="{right}"]').is_checked()
+    assert page.locator(f"#{label} + .covered").count() == 0
+    assert violations(page, "'.question'") == []
+
+
+def test_by_keyboard(context, site):
+    page = opened(context, site)
+    box = page.locator(".recap .question").first
+    box.locator("input").first.focus()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    assert box.locator(".result .verdict").is_visible()
+    assert page.locator(".recap .score").inner_text().startswith("1 of ")
+
+
+def test_answer_can_be_seen_without_committing(context, site):
+    page = opened(context, site)
+    box = page.locator(COVERING).first
+    box.get_by_role("button", name="Show the answer").click()
+    assert box.locator(".replies li.right").is_visible()
+    assert page.evaluate(KEPT).get("pages", {}).get(CHAPTER, {}).get("answers", {}) == {}
+
+
+def test_link_to_what_is_covered_uncovers_it(context, site):
+    page = opened(context, site)
+    name = page.evaluate("document.querySelector('.covered [id]:not([id^=codecell])').id")
+    page.goto(f"{site}{CHAPTER}.html#{name}")
+    page.reload()
+    assert page.evaluate(f"document.getElementById('{name}').closest('.covered')") is None
+
+
+def test_reads_as_question_and_answer_without_script(browser, site):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(f"{site}{CHAPTER}.html")
+    box = page.locator(".question").first
+    assert box.locator("ol.choices li").count() == box.locator(".replies li").count() >= 2
+    assert box.locator("details.replies").is_visible() and page.locator(".covered").count() == 0
+    context.close()
+
+
+def test_works_where_storage_is_forbidden(context, site):
+    context.add_init_script(
+        "Object.defineProperty(window, 'localStorage', {get() { throw new DOMException('no', 'SecurityError'); }})"
+    )
+    page = context.new_page()
+    faults = []
+    page.on("pageerror", lambda error: faults.append(error.stack))
+    page.goto(f"{site}{CHAPTER}.html")
+    page.locator(".recap .question input").first.check()
+    page.locator(".recap .question").first.get_by_role("button", name="Check").click()
+    assert page.locator(".recap .question .result .verdict").first.is_visible()
+    page.goto(f"{site}appendix/my-progress.html")
+    assert "does not let the page store" in page.locator(".said").inner_text()
+    assert [fault for fault in faults if "progress.js" in fault or "questions.js" in fault] == []
+
+
+def test_newcomer_has_done_nothing_yet_and_sees_all_columns_on_a_telephone(context, site):
+    page = opened(context, site, "appendix/my-progress")
+    numbers = page.locator("table.my-progress td").all_inner_texts()
+    assert len(numbers) > 50 and {text.split("of")[0].strip() for text in numbers} <= {"0", "–"}
+    page.set_viewport_size({"width": 380, "height": 760})
+    box = page.locator(".pst-scrollable-table-container:has(table.my-progress)")
+    assert box.evaluate("(box) => box.scrollWidth - box.clientWidth") <= 0
+    row = page.locator("table.my-progress tbody tr").first
+    label = "(cells) => cells.map((cell) => getComputedStyle(cell, '::before').content)"
+    headings = row.locator("td").evaluate_all(label)
+    assert len(set(headings)) == 5 and "none" not in headings
+
+
+def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_path):
+    page = opened(context, site)
+    page.locator(".exercise label.done input").first.check()
+    page.locator(".recap .question input").first.check()
+    page.locator(".recap .question").first.get_by_role("button", name="Check").click()
+    page.locator("article > section > section").first.locator(":scope > :last-child").scroll_into_view_if_needed()
+    page.wait_for_function(f"({KEPT})().pages?.['{CHAPTER}']?.read.length > 0")
+    page = opened(context, site, "appendix/my-progress")
+    row = page.locator(f'tr[data-page="{CHAPTER}"]')
+
+    def cell(kind):
+        return row.locator(f'td[data-kind="{kind}"]').inner_text()
+
+    assert cell("done").startswith("1 of ") and cell("recap").startswith("1 of ") and " of " in cell("read")
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Export").click()
+    record = json.loads(download.value.path().read_text("utf8"))
+    assert record["pages"][CHAPTER]["done"]
+    page.get_by_role("button", name="Clear").click()
+    assert " of " in cell("done"), "the first press only asks"
+    page.get_by_role("button", name="Yes, clear everything").click()
+    assert cell("done").startswith("0 of ") and page.evaluate(KEPT) == {}
+    for text in ("[1", '{"other": 1}'):
+        (tmp_path / "wrong.json").write_text(text)
+        page.locator("input[type=file]").set_input_files(tmp_path / "wrong.json")
+        page.wait_for_function("document.querySelector('.said').textContent.includes('nothing has changed')")
+        page.evaluate("document.querySelector('.said').textContent = ''")
+    (tmp_path / "kept.json").write_text(json.dumps(record))
+    page.locator("input[type=file]").set_input_files(tmp_path / "kept.json")
+    page.wait_for_function("document.querySelector('.said').textContent === 'Imported: your record is back.'")
+    assert cell("done").startswith("1 of ")
+
+
+def test_right_answer_of_the_checker_counts(context, site):
+    """The page's Python puts its reply into the article; here the reply is put there by hand. It was the third try."""
+    page = opened(context, site)
+    reply = Reply("chapters/right-handed", "correct")
+    reply.tries = 3  # with the record beside it, it is never 0
+    page.evaluate(
+        "(reply) => document.querySelector('article').insertAdjacentHTML('beforeend', reply)", reply._repr_html_()
+    )
+    page.wait_for_function(f"({KEPT})().pages?.['{CHAPTER}']?.checked.includes('chapters/right-handed')")
+
+
+def test_paper_shows_the_answers(context, site):
+    page = opened(context, site)
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.locator("details.replies:not([open])").count() == 0 and page.locator(".covered").count() == 0
+
+
+# Goes through the lecture by arrow keys; returns the blocks that no step showed, and the steps that showed nothing.
+LECTURE = """() => {
+  const all = ".bd-article section > *, .recap > .question, .recap > p, .covered > *";
+  const blocks = [...document.querySelectorAll(all)].filter((block) =>
+    block.tagName !== "SECTION" && block.textContent.trim());
+  const unseen = new Set(blocks), empty = [];
+  const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  press("Home");
+  const count = Number(document.querySelector(".lecture-bar").textContent.split(" ").at(-1));
+  for (let step = 1; step <= count; step += 1) {
+    const shown = blocks.filter((block) => block.getBoundingClientRect().height);
+    if (!shown.some((block) => !/^H\\d$/.test(block.tagName))) empty.push(step);
+    for (const block of shown) unseen.delete(block);
+    press("ArrowRight");
+  }
+  return [[...unseen].map((block) => block.textContent.trim().slice(0, 60)), empty];
+}"""
+
+
+@pytest.mark.sampled(1)
+@pytest.mark.parametrize("name", [path.stem for path in sorted((HTML / "chapters").glob("*.html"))])
+def test_every_block_of_a_page_is_in_a_step_of_its_lecture_and_on_its_handout(context, site, name):
+    page = opened(context, site, f"chapters/{name}")
+    page.keyboard.press("l")
+    assert page.evaluate(LECTURE) == [[], []]
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.evaluate(LECTURE)[0] == []
+
+
+# Goes through the lecture; returns the steps that are cut off, and the drawings that no hall could see.
+CUT_OFF = """() => {
+  const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  press("Home");
+  const count = Number(document.querySelector(".lecture-bar").textContent.split(" ").at(-1));
+  const cut = [], small = [], root = document.documentElement;
+  for (let step = 1; step <= count; step += 1) {
+    // Long code and tables are scrolled; a drawing and its controls are seen whole.
+    const figures = [...document.querySelectorAll("figure.orientation-figure")].filter((one) => one.offsetHeight);
+    if (figures.length && root.scrollHeight > innerHeight) cut.push(step);
+    for (const figure of figures) {
+      const drawings = [...figure.querySelectorAll("svg[viewBox]:not(.formula)")];
+      if (Math.max(...drawings.map((one) => one.getBoundingClientRect().height)) < 0.2 * innerHeight) small.push(step);
+    }
+    press("ArrowRight");
+  }
+  return [cut, small];
+}"""
+
+
+@pytest.mark.sampled(1, of="lectures on a screen")
+@pytest.mark.parametrize("name", ["simple-orientations", "successive-orientations", "euler-angles", "unit-quaternions"])
+def test_the_figures_of_a_lecture_are_large_and_whole(browser, site, name):
+    context = browser.new_context(viewport={"width": 1920, "height": 1080})
+    page = opened(context, site, f"chapters/{name}")
+    page.keyboard.press("l")
+    cut, small = page.evaluate(CUT_OFF)
+    context.close()
+    assert cut == [], "steps of which a part is below the screen"
+    assert small == [], "steps with a drawing as small as in the book"
+
+
+def test_lecture_mode_goes_through_the_page_step_by_step(context, site):
+    page = opened(context, site)
+    page.keyboard.press("l")
+    bar = page.locator(".lecture-bar")
+    assert bar.inner_text().startswith("1 of ")
+    steps = int(bar.inner_text().split()[-1])
+    assert steps >= 10
+    for step in range(steps):
+        assert bar.inner_text() == f"{step + 1} of {steps}"
+        shown = page.evaluate(SHOWN)
+        assert shown
+        page.keyboard.press(["ArrowRight", "PageDown", " "][step % 3])
+    page.keyboard.press("Home")
+    assert bar.inner_text().startswith("1 of ")
+    assert violations(page) == []
+    page.keyboard.press("Escape")
+    assert bar.count() == 0
+    assert page.locator("h1").is_visible()

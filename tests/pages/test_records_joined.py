@@ -1,0 +1,30 @@
+"""What page and notebook keep of a student's tries is joined, and nothing of it is lost."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+from places import REPOSITORY
+
+NAME = "levers/see-saw"
+
+
+def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
+    script = (REPOSITORY / "notebook-pages/src/notebook_pages/live/js/notebooks.js").read_text("utf8")
+    start, stop = script.index("const HELP"), script.index("\n}\n", script.index("export function joinProgress")) + 3
+    (tmp_path / "join.mjs").write_text(
+        script[start:stop] + "\nconsole.log(joinProgress(...process.argv.slice(2)));", "utf8"
+    )
+
+    def joined(*records):
+        texts = [json.dumps({NAME: record}) for record in records]
+        node = Path(sys.executable).with_name("node")
+        said = subprocess.run([node, tmp_path / "join.mjs", *texts], capture_output=True, check=True, text=True)
+        return json.loads(said.stdout)[NAME]
+
+    before = {"outcome": "correct", "help": "hint", "answers": ["a"]}
+    after = {"outcome": "wrong", "variant": 3, "answers": ["b"]}
+    assert joined(before, after) == {**after, "other variants": {"0": before}}
+    kept = {**after, "other variants": {"0": before}}
+    assert joined(kept, {**after, "answers": ["c"]}) == {**kept, "answers": ["b", "c"]}

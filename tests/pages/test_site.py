@@ -1,0 +1,436 @@
+"""The built site in a real browser, page by page."""
+
+import gzip
+import io
+import json
+import os
+import random
+import re
+import zipfile
+from contextlib import suppress
+from functools import cache
+from html import unescape
+from urllib.parse import quote, unquote, urldefrag, urljoin
+
+import numpy as np
+import pytest
+from PIL import Image
+from places import HTML, REPOSITORY, html_pages
+from playwright.sync_api import TimeoutError
+
+import orientation_recordings as recordings
+from notebook_pages import mathematics
+
+PAGES = html_pages()
+WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
+NARROWEST = {"width": 320, "height": 640}  # a wide page at four times its size: WCAG 2.2, 1.4.10
+HEAVIEST = 450_000  # bytes over the wire, compressed
+HEAVIEST_PAGE = 450_000  # bytes of the page itself, as it stands on the disk
+LARGEST_SHIFT = 0.001
+MOST_AWAITED, MOST_AWAITED_PACKED = 175_000, 36_000  # bytes of a page's head and of its style sheets
+
+WATCH_SHIFTS = """
+window.shift = 0;
+new PerformanceObserver((list) => {
+  for (const entry of list.getEntries()) window.shift += entry.value;
+}).observe({type: "layout-shift", buffered: true});
+"""
+# What is wrong with the mathematics of a page: not set, not spoken, or left as TeX.
+MATHEMATICS = r"""() => {
+  const faults = [];
+  for (const formula of document.querySelectorAll(".katex")) {
+    if (!formula.querySelector("math")) faults.push("no MathML: " + formula.textContent);
+    if (!formula.querySelector('.katex-html[aria-hidden="true"]')) faults.push("spoken twice: " + formula.textContent);
+  }
+  for (const bad of document.querySelectorAll(".bad-tex, .katex-error, mjx-container")) faults.push(bad.outerHTML);
+  const words = document.querySelector("article, .bd-search-container").cloneNode(true);
+  words.querySelectorAll(".katex, pre, code, script, style, svg, textarea").forEach((element) => element.remove());
+  const raw = words.textContent.match(/\$\S[^$]*\$|\\(?:begin|frac|hat|mathbf|left|theta|psi)\b/);
+  if (raw) faults.push("raw TeX: " + raw[0]);
+  return faults;
+}"""
+# What lies beyond the edge of a box that scrolls or cuts: as good as not there for who does not look for it.
+HIDDEN = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
+  && getComputedStyle(box).overflowX !== "visible" && box.scrollWidth > box.clientWidth + 1
+  && !box.closest("svg, input, select, textarea, .katex-mathml, .unseen")).map((box) =>
+  `${box.className} hides ${box.scrollWidth - box.clientWidth} px: ${box.textContent.trim().slice(0, 80)}`)"""
+# What scrolls sideways shows that it does, by a shadow at the edge.
+WITHOUT_SHADOW = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
+  && ["auto", "scroll"].includes(getComputedStyle(box).overflowX) && box.scrollWidth > box.clientWidth + 1
+  && !getComputedStyle(box).backgroundImage.includes("gradient") && !box.closest("textarea")).map((box) =>
+  `${box.tagName}.${box.className}: ${box.textContent.trim().slice(0, 80)}`)"""
+# A full stop or comma after a formula that has come to begin a line.
+STRAY = """() => [...document.querySelectorAll(".bd-article span.math")].filter((formula) => {
+  const after = formula.nextSibling, last = [...formula.getClientRects()].at(-1);
+  if (after?.nodeType !== Node.TEXT_NODE || !/^[.,;:!?)]/.test(after.data) || !last?.width) return false;
+  const range = document.createRange();
+  range.setStart(after, 0);
+  range.setEnd(after, 1);
+  return range.getBoundingClientRect().left < last.left;
+}).map((formula) => formula.querySelector(".katex").dataset.tex)"""
+SIDEWAYS = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
+
+
+@cache
+def axe_source():
+    return (REPOSITORY / "node_modules" / "axe-core" / "axe.min.js").read_text("utf8")
+
+
+@cache
+def text(page):
+    return (HTML / page).read_text("utf8")
+
+
+def violations(page, where="document"):
+    """What axe finds wrong, one line for each kind, with the first element."""
+    page.evaluate(axe_source())
+    found = page.evaluate(f"async () => (await axe.run({where}, {{resultTypes: ['violations']}})).violations")
+    return [f"{v['id']}: {v['help']} ({len(v['nodes'])}): {v['nodes'][0]['html'][:200]}" for v in found]
+
+
+class Visit:
+    """A page opened in the browser, with everything it said and asked for."""
+
+    def __init__(self, browser, site, name, theme, viewport):
+        # With the page's own policy: what that forbids is an error on the console.
+        self.context = browser.new_context(color_scheme=theme, viewport=viewport, bypass_csp=False)
+        self.context.add_init_script(WATCH_SHIFTS)
+        self.page = self.context.new_page()
+        self.faults, self.bytes = [], {}
+        self.site = site
+        self.page.on("console", lambda m: m.type == "error" and self.faults.append(m.text))
+        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
+        self.page.on("requestfailed", lambda r: self.faults.append(f"failed: {r.url}"))
+        self.page.on("request", self.note_request)
+        self.page.on("requestfinished", self.note_size)
+        self.page.goto(site + name)
+        # The page is loaded. That nothing more comes is not always told, where many files were asked for at once.
+        with suppress(TimeoutError):
+            self.page.wait_for_load_state("networkidle", timeout=20_000)
+        self.page.wait_for_selector("html:not(.settling, .in-parts)")
+        if self.page.evaluate("document.documentElement.dataset.typefaces === 'late'"):
+            self.page.reload()  # a busy machine: now they are in the browser's cache, as on a reader's second page
+            self.page.wait_for_selector("html:not(.settling, .in-parts)")
+            self.page.evaluate("document.fonts.ready.then(() => true)")
+
+    def shift(self):
+        """How far lines moved; where the typefaces came late once more, their change is no fault."""
+        late = self.page.evaluate("document.documentElement.dataset.typefaces === 'late'")
+        return 0 if late else self.page.evaluate("window.shift")
+
+    def note_request(self, request):
+        if not request.url.startswith((self.site, "data:", "blob:")):
+            self.faults.append(f"leaves the site: {request.url}")
+
+    def note_size(self, request):
+        response = request.response()
+        if request.url.startswith("data:"):
+            return
+        if response.status >= 400:
+            self.faults.append(f"{response.status}: {request.url}")
+        self.bytes[request.url] = len(gzip.compress(response.body(), 6))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.context.close()
+
+
+def test_there_are_pages():
+    assert "index.html" in PAGES and any(name.startswith("chapters/") for name in PAGES)
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", PAGES)
+def test_page_in_light_and_wide(browser, site, name):
+    with Visit(browser, site, name, "light", WIDE) as visit:
+        page = visit.page
+        assert page.evaluate("document.documentElement.dataset.theme") == "light"
+        assert visit.shift() < LARGEST_SHIFT
+        assert page.evaluate(MATHEMATICS) == []
+        assert bool(page.query_selector(".katex")) or not name.startswith("chapters/")
+        assert violations(page) == []
+        assert page.evaluate(SIDEWAYS) <= 0, "the page scrolls sideways"
+        page.evaluate("document.querySelectorAll('article details').forEach((details) => { details.open = true; })")
+        assert page.evaluate(HIDDEN) == []
+        page.set_viewport_size(NARROW)
+        assert page.evaluate(SIDEWAYS) <= 0, "the narrow page scrolls sideways"
+        page.set_viewport_size(NARROWEST)
+        assert page.evaluate(SIDEWAYS) <= 0, "the page of 320 pixels scrolls sideways"
+        assert page.evaluate(STRAY) == [], "lines that begin with a full stop"
+        assert sum(visit.bytes.values()) <= HEAVIEST, visit.bytes
+        assert visit.faults == []
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", PAGES)
+def test_page_in_dark_and_narrow(browser, site, name):
+    with Visit(browser, site, name, "dark", NARROW) as visit:
+        page = visit.page
+        assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+        assert visit.shift() < LARGEST_SHIFT
+        assert page.evaluate(SIDEWAYS) <= 0, "the page scrolls sideways"
+        boxes = page.eval_on_selector_all(
+            ".math-box", "all => all.map(b => [b.scrollWidth > b.clientWidth + 1, b.tabIndex === 0])"
+        )
+        assert all(overflows == stop for overflows, stop in boxes), "only wide boxes are stops of the Tab key"
+        assert page.evaluate(WITHOUT_SHADOW) == []
+        # What is set of the formulas, thousands of elements, takes the colour of the text around it: the wide
+        # pages were looked at with all of them.
+        page.evaluate("document.querySelectorAll('.katex-html > *').forEach((element) => element.remove())")
+        assert violations(page) == []
+        # The wide page has more around the text.
+        page.set_viewport_size(WIDE)
+        assert violations(page, "{exclude: ['article']}") == []
+        assert visit.faults == []
+
+
+def test_little_is_awaited_before_the_first_line_is_seen():
+    """On a slow telephone this is the time until something is seen: styles in the head, and no script."""
+    styles, weights = {}, {}
+    for name in PAGES:
+        head = text(name).partition("<body")[0]
+        assert re.findall(r"<script(?![^>]* defer)[^>]* src=[^>]*>", head) == [], name
+        found = re.findall(r'<link rel="stylesheet" href="([^"?]*)', head)
+        assert found, name
+        for address in found:
+            path = (HTML / name).parent / address
+            styles.setdefault(path, (path.stat().st_size, len(gzip.compress(path.read_bytes(), 6))))
+        sizes = [(len(head), len(gzip.compress(head.encode(), 6))), *(styles[(HTML / name).parent / a] for a in found)]
+        weights[name] = [sum(column) for column in zip(*sizes)]
+    assert max(plain for plain, _ in weights.values()) < MOST_AWAITED, weights
+    assert max(packed for _, packed in weights.values()) < MOST_AWAITED_PACKED, weights
+    assert not any("base64" in path.read_text("utf8") for path in styles), "what is inside a style sheet is awaited"
+
+
+@pytest.mark.parametrize(
+    ("name", "uses_all"), [("chapters/unit-quaternions.html", False), ("chapters/angular-velocity.html", True)]
+)
+def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_it(browser, site, name, uses_all):
+    """What the head names is what the first view uses, so that no typeface comes after the others.
+
+    Looked at twice, without a clock: while the script that lays out the rest does not come, the typefaces in use are
+    those named; when it comes, the others are asked for after these.
+    """
+    named = set(re.findall(r'<link rel="preload" as="font"[^>]* href="\.\./([^"]*)"', text(name)))
+    assert len(named) > 3
+
+    def asked(page):
+        page.wait_for_selector("html:not(.settling)")
+        page.evaluate("document.fonts.ready.then(() => true)")
+        found = page.evaluate("performance.getEntriesByType('resource').map(({ name }) => name)")
+        return [address.removeprefix(site) for address in found if address.endswith(".woff2")]
+
+    page = browser.new_page(viewport=WIDE)
+    page.route("**/_static/page-*.js*", lambda route: route.abort())
+    page.goto(site + name)
+    assert set(asked(page)) == named
+    # What stands until they come is a typeface of the machine, if it has such a one: it is not counted.
+    loaded = "[...document.fonts].filter((face) => face.status === 'loaded' && !face.family.includes(' for now'))"
+    assert page.evaluate(f"{loaded}.length") == len(named)
+    page.close()
+    with Visit(browser, site, name, "light", WIDE) as visit:
+        fetched = asked(visit.page)
+    assert set(fetched[: len(named)]) == named, fetched
+    assert (len(fetched) == len(named)) == uses_all, fetched
+    assert not any("KaTeX" in address for address in re.findall(r'<link rel="preload"[^>]*', text("search.html")))
+
+
+def test_no_page_is_heavy():
+    weights = {name: (HTML / name).stat().st_size for name in PAGES}
+    assert {name: weight for name, weight in weights.items() if weight > HEAVIEST_PAGE} == {}
+
+
+def test_letters_of_drawings_stand_once_on_a_page():
+    for name in PAGES:
+        outlines = re.findall(r' d="(m[^"]{60,}z)"', text(name))
+        assert len(outlines) == len(set(outlines)), name
+        names = re.findall(r'<path id="(o\d+)"', text(name))
+        used = set(re.findall(r'<use [^>]*href="#([^"]*)"', text(name)))
+        assert len(names) == len(set(names)) and used <= set(re.findall(r'\bid="([^"]*)"', text(name))), name
+
+
+# Where each letter of a formula stands, from the corner of its box.
+LETTERS = """() => [...document.querySelectorAll("p")].map((box) => {
+  const from = box.getBoundingClientRect(), found = [["box", from.height, 0]];
+  const walker = document.createTreeWalker(box.querySelector(".katex-html"), NodeFilter.SHOW_TEXT);
+  for (let node; (node = walker.nextNode());)
+    for (let place = 0; place < node.length; place++) {
+      if (node.data[place] === "\u200b") continue;
+      const range = document.createRange();
+      range.setStart(node, place);
+      range.setEnd(node, place + 1);
+      const at = range.getBoundingClientRect();
+      found.push([node.data[place], at.left - from.left, at.top - from.top]);
+    }
+  return found;
+})"""
+
+
+def test_light_formulas_stand_as_katex_sets_them(browser, site):
+    """Our shorter HTML, letter by letter, against KaTeX's own."""
+    formulas = sorted({unescape(tex) for name in PAGES for tex in re.findall(r' data-tex="([^"]*)"', text(name))})
+    chosen = random.Random(os.environ.get("BOOK_TEST_SEED", "0")).sample(formulas, 60)
+    own = [mathematics.katex(os.getpid())(tex, False, "1.15")["html"] for tex in chosen]
+    page = browser.new_page(viewport={"width": 2400, "height": 900})
+    page.goto(f"{site}/index.html")
+    places = []
+    for formulas in (own, [mathematics.lighten(html, tex) for html, tex in zip(own, chosen, strict=True)]):
+        page.evaluate("html => { document.body.innerHTML = html; }", "".join(f"<p>{html}</p>" for html in formulas))
+        page.evaluate("document.fonts.ready")
+        page.wait_for_function("[...document.fonts].every((font) => font.status !== 'loading')")
+        places.append(page.evaluate(LETTERS))
+    page.close()
+    for tex, before, after in zip(chosen, *places, strict=True):
+        assert [letter for letter, *_ in before] == [letter for letter, *_ in after], tex
+        apart = max(
+            abs(a - b) for one, two in zip(before, after, strict=True) for a, b in zip(one[1:], two[1:], strict=True)
+        )
+        assert apart < 1, (tex, apart)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_links_lead_somewhere(name):
+    for address in set(re.findall(r'\s(?:href|src)="([^"]*)"', text(name))):
+        if re.match(r"(https?|mailto|data|javascript):", address):
+            continue
+        path, fragment = urldefrag(unquote(urljoin(f"/{name}", unescape(address))))
+        target = HTML / path.split("?")[0].lstrip("/")
+        assert target.is_file(), address
+        if fragment and target.suffix == ".html":
+            page = str(target.relative_to(HTML))
+            assert f'id="{fragment}"' in text(page), f"no place called {fragment} on {page}"
+
+
+def test_theme_switch(browser, site):
+    with Visit(browser, site, "index.html", "light", WIDE) as visit:
+        page = visit.page
+        seen = []
+        for _ in range(3):
+            page.click(".theme-switch-button")
+            seen.append(
+                page.evaluate(
+                    "[document.documentElement.dataset.mode, getComputedStyle(document.body).backgroundColor]"
+                )
+            )
+        assert {mode for mode, _ in seen} == {"auto", "light", "dark"}
+        colours = dict(seen)
+        assert colours["dark"] != colours["light"] == colours["auto"]
+
+
+def test_icons_are_seen_in_colours_that_the_system_sets(browser, site):
+    context = browser.new_context(viewport=WIDE, forced_colors="active")
+    page = context.new_page()
+    page.goto(f"{site}chapters/gimbal-lock.html")
+    page.wait_for_selector("html:not(.settling, .in-parts)")
+    colours = page.evaluate("""() => {
+      const icons = [...document.querySelectorAll('[class*="fa-"]')].filter((icon) => icon.checkVisibility());
+      return [document.body, ...icons].map((element) => getComputedStyle(element).backgroundColor);
+    }""")
+    assert len(colours) > 6 and colours[0] not in colours[1:]
+    context.close()
+
+
+def test_theme_stays_on_the_next_page(browser, site):
+    with Visit(browser, site, "index.html", "light", WIDE) as visit:
+        visit.page.click(".theme-switch-button")
+        visit.page.goto(site + "search.html")
+        assert visit.page.evaluate("document.documentElement.dataset.theme") == "dark"
+
+
+def test_search(browser, site):
+    chapter = next(name for name in PAGES if name.startswith("chapters/"))
+    title = re.search(r"<title>\W*(?:\d+\. )?(.*?) &#8212;", text(chapter))[1]
+    word = max(title.split(), key=len)
+    with Visit(browser, site, "index.html", "light", WIDE) as visit:
+        page = visit.page
+        page.keyboard.press("Control+k")
+        page.keyboard.type(word)
+        page.keyboard.press("Enter")
+        page.wait_for_selector("#search-results .search li a")
+        found = page.eval_on_selector_all("#search-results li a", "links => links.map(a => a.href)")
+        assert any(chapter in address for address in found)
+        page.wait_for_selector("#search-results p.context")
+        assert "\\" not in page.inner_text("#search-results")
+        assert visit.faults == []
+        assert violations(page) == []
+
+
+def test_the_search_finds_what_engineers_call_it(browser, site):
+    names = (
+        "attitude",
+        "SO(3)",
+        "rotation matrix",
+        "DCM",
+        "roll pitch yaw",
+        "intrinsic",
+        "extrinsic",
+        "Cardan",
+        "versor",
+        "slerp",
+    )
+    with Visit(browser, site, "search.html", "light", WIDE) as visit:
+        for name in names:
+            visit.page.goto(f"{site}search.html?q={quote(name)}")
+            # What is found comes one by one.
+            visit.page.wait_for_selector("#search-results .search-summary:has-text('Search finished')")
+            first = visit.page.eval_on_selector_all(
+                "#search-results li a", "links => links.slice(0, 4).map((a) => a.href)"
+            )
+            assert any("glossary" in address or "chapters/" in address for address in first), (name, first)
+            assert any(
+                "glossary" in address
+                for address in visit.page.eval_on_selector_all(
+                    "#search-results li a", "links => links.map((a) => a.href)"
+                )
+            ), name
+
+
+WITH_RECORDINGS = ("chapters/orientation-from-sensors.html", "chapters/cases-from-practice.html")
+
+
+def test_take_away_menu(browser, site):
+    chapters = [name for name in PAGES if name.startswith("chapters/")]
+    with Visit(browser, site, chapters[0], "light", WIDE) as visit:
+        page = visit.page
+        page.click("details.take-away summary")
+        with page.expect_download() as download:
+            page.click("details.take-away a >> nth=0")
+        notebook = json.loads(download.value.path().read_text("utf8"))
+        assert any(cell["cell_type"] == "markdown" for cell in notebook["cells"])
+        page.keyboard.press("Escape")
+        assert not page.is_visible("details.take-away ul")
+    for name in chapters:
+        menu = text(name).partition('<details class="take-away">')[2].partition("</details>")[0]
+        data = ["zip"] if name in WITH_RECORDINGS else []
+        assert re.findall(r'href="[^"]*\.(\w+)"', menu) == ["ipynb", "py", "zip", *data]
+    with zipfile.ZipFile(HTML / "take-away" / "recordings.zip") as archive:
+        names = archive.namelist()
+        assert "recordings/LICENSE.txt" in names and len(names) == len(set(names))
+        leg = np.loadtxt(archive.open("recordings/lower_leg.csv"), delimiter=",", skiprows=1)
+    assert np.array_equal(leg, recordings.table("lower_leg"))
+    questions = text("exercises/orientation-from-sensors.html")
+    assert "recordings.zip" in questions and "recordings.zip" not in text("exercises/euler-angles.html")
+
+
+def test_nothing_in_the_site_is_idle():
+    """Every file of _static is named by a page, a style sheet or a script."""
+    kinds = (".html", ".css", ".js", ".webmanifest")
+    everything = "\n".join(path.read_text("utf8") for path in HTML.rglob("*") if path.suffix in kinds)
+    idle = [p.name for p in (HTML / "_static").rglob("*") if p.is_file() and p.name not in everything]
+    assert idle == []
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_drawings_of_exercises_stand_on_the_papers_colour(browser, site, theme):
+    """They are pictures, black on white, and would be white boxes in a dark page."""
+    with Visit(browser, site, "exercises/simple-orientations.html", theme, WIDE) as visit:
+        picture = visit.page.locator(".bd-article img").first
+        picture.scroll_into_view_if_needed()
+        seen = Image.open(io.BytesIO(picture.screenshot())).convert("RGB")
+        paper = visit.page.evaluate("getComputedStyle(document.body).backgroundColor")
+        assert seen.getpixel((4, 4)) == tuple(map(int, re.findall(r"\d+", paper)))
+        # What is drawn can be seen on it.
+        dark, light = seen.convert("L").getextrema()
+        assert light - dark > 150

@@ -1,0 +1,526 @@
+"""The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk without a network."""
+
+import io
+import math
+import re
+import shutil
+import subprocess
+import sys
+import unicodedata
+import urllib.request
+import zipfile
+from collections import Counter
+from functools import cache
+
+import numpy as np
+import pytest
+import yaml
+from accessible_pdf import faults
+from bs4 import BeautifulSoup
+from places import BROWSER_REQUIRED, HTML, REPOSITORY
+from test_site import SIDEWAYS
+
+from notebook_pages import browser as browser_module
+from notebook_pages import install, offline, pdf, whole_book
+from notebook_pages.paths import edition, pages, parts
+from notebook_pages.spoken import spoken
+
+pikepdf = pytest.importorskip("pikepdf")
+pdfium = pytest.importorskip("pypdfium2")
+
+PDF, EPUB, ZIP = (REPOSITORY / path for path in (whole_book.PDF, whole_book.EPUB, whole_book.ZIP))
+TITLE = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))["title"]
+CHAPTERS = [page for page in pages() if page.startswith("chapters/")]
+MARGIN = 20  # millimetres at either side that nothing may enter
+MILLIMETRE = 72 / 25.4
+
+
+@pytest.fixture(autouse=True)
+def made(request):
+    """All files, made by `make take-away` from the site as it stands; `make test` does not look at them."""
+    if request.node.get_closest_marker("long") and not all(path.exists() for path in (PDF, EPUB, ZIP)):
+        reason = "the whole book was not made: run `make take-away`"
+        pytest.fail(reason) if browser_module.find() or BROWSER_REQUIRED else pytest.skip(reason)
+
+
+@cache
+def article(page):
+    """The text of a page of the site, without what stays on the screen."""
+    soup = BeautifulSoup((HTML / f"{page}.html").read_text("utf8"), "lxml").select_one("article")
+    for element in soup.select(pdf.ONLY_ON_SCREEN):
+        element.decompose()
+    return soup
+
+
+def plain(text):
+    """Text on one line, without what typesetting does to it: lines, joined letters."""
+    text = re.sub("\ufffe\\s*", "-", text)  # how PDFium gives a hyphen at the end of a line
+    return re.sub(r"\s+", " ", unicodedata.normalize("NFKC", text))
+
+
+@pytest.fixture(scope="module")
+def book():
+    with pikepdf.open(PDF) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def texts():
+    """The text of each page of the PDF, as a viewer's search finds it."""
+    document = pdfium.PdfDocument(PDF)
+    found = []
+    for page in document:
+        text = page.get_textpage()
+        found.append(plain(text.get_text_range()))
+        text.close()
+        page.close()
+    document.close()
+    return found
+
+
+@pytest.fixture(scope="module")
+def places(book):
+    """The page, counted from 0, of every named place."""
+    numbers = {page.objgen: number for number, page in enumerate(book.pages)}
+    return {name.removeprefix("/"): numbers[place[0].objgen] for name, place in book.Root.Dests.items()}
+
+
+@pytest.fixture(scope="module")
+def chapter_texts(places, texts):
+    """The texts of the pages that each page of the site has in the PDF, without what stands above and below."""
+    starts = [(name, places[pdf.place(name)]) for name in pages() if name != "index"]
+    ends = [start for _, start in starts[1:]] + [len(texts)]
+    found = {}
+    for (name, start), end in zip(starts, ends):
+        head = plain(pdf.heading(article(name).h1))
+        found[name] = [texts[number].removeprefix(f"{head} {number + 1} ").rstrip() for number in range(start, end)]
+    return found
+
+
+def is_there(words, texts):
+    """Whether a page has ``words``, or a page has their beginning and the next one begins with the rest."""
+
+    def goes_on(here, there):
+        ends = [found.start() for found in re.finditer(" ", words)]
+        return any(words[:end] in here and there.startswith(words[end + 1 :]) for end in ends)
+
+    return any(words in text for text in texts) or any(goes_on(*pair) for pair in zip(texts, texts[1:]))
+
+
+def test_words_may_go_on_over_the_edge_of_a_page():
+    texts = ["It begins here, where the page", "ends, and goes on. Predict"]
+    assert is_there("where the page ends, and goes on.", texts) and is_there("It begins", texts)
+    assert not is_there("where the page comes to an end", texts) and not is_there("begins here, goes on.", texts)
+
+
+@pytest.mark.long
+def test_it_says_what_it_is(book):
+    assert str(book.docinfo.Title) == TITLE
+    assert str(book.docinfo.Subject) == edition().words != ""
+    with book.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as said:
+        assert (said["dc:title"], said["dc:description"]) == (TITLE, edition().words)
+        assert said["dc:date"] == [edition().date]
+    assert str(book.Root.Lang).startswith("en")
+    assert book.Root.MarkInfo.Marked
+    assert book.Root.PageMode == pikepdf.Name.UseOutlines
+
+
+@pytest.mark.long
+def test_bookmarks_are_the_parts_chapters_and_sections(book):
+    with book.open_outline() as outline:
+        found = {item.title: item.children for item in outline.root}
+    headings = {page: [pdf.heading(h) for h in article(page).find_all(["h1", "h2"])] for page in pages()}
+    for caption, names in parts():
+        children = found.pop(caption)
+        assert [child.title for child in children] == [headings[name][0] for name in names]
+        for child, name in zip(children, names):
+            # Replies to questions, which a fold hides on the page, stand at the end of what is printed.
+            hidden = 'class="replies' in (HTML / f"{name}.html").read_text("utf8")
+            assert [section.title for section in child.children] == headings[name][1:] + ["Answers"] * hidden
+    assert list(found) == [TITLE, "Contents", "About this book"]
+
+
+@pytest.mark.long
+def test_links_lead_somewhere(book, places):
+    """Each link of the pages is a link of the PDF, and each of those has a place to go."""
+    inside, outside = set(), set()
+    for page in book.pages:
+        for note in page.get("/Annots", []):
+            if "/Dest" in note:
+                inside.add(str(note.Dest).removeprefix("/"))
+            elif "/A" in note:
+                outside.add(str(note.A.URI))
+    assert inside <= set(places)
+    for name in pages():
+        links = [link["href"] for link in article(name).select("a[href]") if link.get_text(strip=True)]
+        for link in links:
+            if re.match(r"\w+:", link):
+                assert link in outside
+            elif (target := pdf.target(name, link)) is not None:
+                assert target in inside, f"{name}: {link}"
+
+
+@pytest.mark.long
+def test_contents_list_has_the_right_page_numbers(places, texts):
+    listed = " ".join(texts[1 : places[pdf.place(pages()[1])]])
+    for name in pages()[1:]:
+        title = plain(pdf.heading(article(name).h1))
+        number = places[pdf.place(name)] + 1
+        assert re.search(rf"{re.escape(title)}[ .]* {number}\b", listed), title
+        assert title in texts[number - 1]
+        assert re.search(rf"(^|\D){number}(\D|$)", texts[number - 1]), "the page bears another number"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", pages()[1:])
+def test_chapter_is_whole(name, chapter_texts):
+    """Its sentences can be searched for; its equations, figures and exercises have their numbers."""
+    text = " ".join(chapter_texts[name])
+    for number in article(name).select(".eqno"):
+        assert number.get_text(strip=True) in text
+    for caption in article(name).select("figcaption .caption-number, table caption .caption-number"):
+        assert plain(caption.get_text(strip=True)) in text
+    simple = [p for p in article(name).find_all("p") if not p.find(["code", "span", "a", "math"])]
+    assert simple or name.startswith("appendix/reference") or name.startswith("exercises/")
+    for paragraph in simple:
+        assert is_there(plain(paragraph.get_text()).strip(), chapter_texts[name])
+
+
+def structure(node):
+    """All elements of the PDF's structure, which screen readers follow."""
+    if isinstance(node, pikepdf.Array):
+        for child in node:
+            yield from structure(child)
+    elif isinstance(node, pikepdf.Dictionary) and "/S" in node:
+        yield node
+        if "/K" in node:
+            yield from structure(node.K)
+
+
+@pytest.mark.long
+def test_every_figure_is_there_and_says_what_it_shows(book):
+    said = [str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node]
+    shown = [svg["aria-label"] for name in pages() for svg in article(name).select("svg[aria-label]")]
+    assert len(shown) > 40
+    assert sorted(set(shown) - set(said)) == []
+    assert sum(text in set(shown) for text in said) == len(shown)
+
+
+@pytest.mark.long
+def test_formulas_are_there_and_are_read_in_words(book):
+    said = Counter(str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if node.S == "/Formula")
+    wanted = Counter(spoken(math) for name in pages() for math in article(name).select(".katex math"))
+    assert wanted - said == Counter()
+    assert not [words for words in said if re.search(r"[\\^_{}$]", words)]
+
+
+@pytest.mark.long
+def test_it_is_told_to_screen_readers_as_the_standard_says(book):
+    """The list of how a file can fail PDF/UA-1 finds nothing; that it finds faults, test_tagged.py tries."""
+    assert faults(book) == []
+
+
+@pytest.mark.long
+def test_pictures_and_notes_are_not_of_what_was_never_tried(texts):
+    """A check that nobody has answered is no result."""
+    assert not [number for number, text in enumerate(texts, 1) if "Not attempted" in text]
+
+
+@pytest.mark.long
+def test_no_page_is_nearly_empty_without_reason(places):
+    """At most one in forty is less than half full, other than the last of a chapter: what follows is in one piece."""
+    document = pdfium.PdfDocument(PDF)
+    last = {places[pdf.place(name)] for name in pages()} | {len(document)}
+    scale, empty = 0.35, []
+    for number, page in enumerate(document, start=1):
+        picture = page.render(scale=scale, grayscale=True).to_numpy()
+        body = picture[int(23 * MILLIMETRE * scale) : -int(22 * MILLIMETRE * scale)]
+        ink = np.flatnonzero(body.min(axis=1) < 225)
+        if number not in last and (ink.max(initial=0) < 0.5 * len(body)):
+            empty.append(number)
+        page.close()
+    assert len(empty) <= len(document) / 40, empty
+    document.close()
+
+
+@pytest.mark.long
+def test_no_glyph_comes_from_elsewhere(book):
+    """Where our typefaces have no glyph, the browser would take one from the machine, or draw a box."""
+    fonts = {}
+    for page in book.pages:
+        for font in page.get("/Resources", {}).get("/Font", {}).values():
+            fonts[str(font.BaseFont) if "/BaseFont" in font else "drawn"] = font
+    names = {re.sub(r"^/[A-Z]{6}\+", "", name) for name in fonts}
+    assert all(re.match(r"SourceSerif4|SourceSans3|SourceCodePro|KaTeX_", name) for name in names), names
+    for font in fonts.values():
+        assert "/FontFile2" in font.DescendantFonts[0].FontDescriptor
+
+
+@pytest.mark.long
+def test_nothing_reaches_into_the_margins():
+    document = pdfium.PdfDocument(PDF)
+    scale = 0.4
+    edge = int(MARGIN * MILLIMETRE * scale)
+    for number, page in enumerate(document, start=1):
+        picture = page.render(scale=scale, grayscale=True).to_numpy()
+        assert picture.min() < 200, f"page {number} is empty"
+        assert picture[:, :edge].min() > 200 and picture[:, -edge:].min() > 200, f"page {number} is too wide"
+        page.close()
+    document.close()
+
+
+def test_too_wide_a_line_stops_the_printing(browser):
+    katex = '<div class="math-box"><span class="katex" style="white-space: nowrap">{}</span></div>'
+    style = "<style>.katex { display: inline-block; font-size: 16px }</style>"
+    page = browser.new_context(viewport={"width": pdf.WIDTH, "height": 900}).new_page()
+
+    def faults(inside):
+        page.set_content(f'{style}<body style="margin: 0"><article id="a">{inside}</article>')
+        return page.evaluate(pdf.FIT, pdf.SMALLEST)
+
+    assert faults("<p>Some words.</p>") == []
+    wide = katex.format("m" * 55)
+    assert faults(wide) == []
+    assert page.evaluate("parseFloat(getComputedStyle(document.querySelector('.katex')).fontSize)") < 15
+    (fault,) = faults(katex.format("m" * 200))
+    assert "px too wide: mmm" in fault
+    (fault,) = faults('<table><tr><td style="min-width: 900px">cell</td></tr></table>')[:1]
+    assert "too wide" in fault
+    page.context.close()
+
+
+def test_a_still_tells_its_numbers():
+    """What stands beside a figure on the screen, for the figures whose numbers one would read off."""
+    third = math.pi / 3
+    assert pdf.as_drawn({"angles": [third, 0, -third / 2], "sequence": "zxy"}) == (
+        r"\psi = 60^\circ,\ \theta = 0^\circ,\ \varphi = -30^\circ"
+    )
+    assert pdf.as_drawn({"angle": 1, "axis": "z"}) == r"57.3^\circ\text{ about }z"
+    assert pdf.as_drawn({"angle": third, "axis": [0.6, -0.0, -0.8]}) == r"60^\circ\text{ about }(0.6,\ 0,\ -0.8)"
+    assert pdf.as_drawn({"turns": [["z", third], ["x", -third]]}) == (
+        r"60^\circ\text{ about }z\text{, then }-60^\circ\text{ about }x"
+    )
+    assert pdf.as_drawn({"matrix": [[1, 0], [0.5, -1]]}) == r"\begin{bmatrix}1 & 0\\0.5 & -1\end{bmatrix}"
+    # What a puzzle asks for is not given away, and a run has no number of its own.
+    assert pdf.as_drawn({"given": [["z", 1.0]], "turns": []}) == pdf.as_drawn({"time": 6.0}) == ""
+    figure = BeautifulSoup('<figure data-figure="simple" data-state=\'{"angle": 1, "axis": "z"}\'></figure>', "lxml")
+    pdf.tell_numbers(figure)
+    assert spoken(figure.select_one(".as-drawn math")) == "57.3 degrees about z"
+
+
+def test_without_a_browser_it_says_so(monkeypatch):
+    monkeypatch.setattr(browser_module.shutil, "which", lambda name: None)
+    with pytest.raises(SystemExit, match="Neither Chromium nor Chrome is on this machine"):
+        with browser_module.open_browser():
+            pass
+
+
+@pytest.mark.long
+def test_front_page_offers_all():
+    front = (HTML / "index.html").read_text("utf8")
+    (place,) = whole_book.PLACE.findall(front)
+    for path in (PDF, EPUB, ZIP):
+        assert f'href="take-away/{path.name}"' in place
+        assert f"{path.stat().st_size / 1e6:.1f} MB" in place
+
+
+def test_offer_is_written_and_withdrawn():
+    front = "<h1>Book</h1><!-- whole-book --><p>Text</p>"
+    offered = whole_book.with_offer(front, ['<a href="x.pdf">PDF</a>'])
+    assert '<a href="x.pdf">' in offered and offered.endswith("<p>Text</p>")
+    assert whole_book.with_offer(offered, ["other"]).count("<p class") == 1
+    assert whole_book.with_offer(offered, []) == front
+    with pytest.raises(RuntimeError, match="one place"):
+        whole_book.with_offer("<h1>Book</h1>", [])
+
+
+# ---- the EPUB -------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def chapters_of_epub():
+    with zipfile.ZipFile(EPUB) as archive:
+        return {name.removeprefix("book/"): archive.read(name).decode() for name in archive.namelist()}  # all is text
+
+
+@pytest.mark.long
+def test_epub_is_valid():
+    """By the checker of those who write the standard."""
+    checker = shutil.which("epubcheck")
+    if not checker:
+        pytest.fail("epubcheck is not installed") if BROWSER_REQUIRED else pytest.skip("epubcheck is not installed")
+    # Debian's command is the archive of Java itself.
+    done = subprocess.run(["java", "-jar", checker, "--failonwarnings", EPUB], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+
+
+@pytest.mark.long
+def test_epub_holds_every_formula_and_every_figure(chapters_of_epub):
+    for page in pages():
+        site = BeautifulSoup((HTML / f"{page}.html").read_text("utf8"), "lxml").article
+        text = BeautifulSoup(chapters_of_epub[f"{page.replace('/', '-')}.xhtml"], "xml")
+        for fold in site.select("details.hide, button, script, .whole-book, .sd-container-fluid"):
+            fold.decompose()
+        assert len(text.find_all("math")) - len(text.select("p.as-drawn math")) == len(site.select(".katex")), page
+        assert all(math["alttext"] for math in text.find_all("math"))
+        assert not text.select("script, button, input, .katex, details.hide")
+        for drawing in text.select("figure > svg[role=img]"):
+            assert drawing.get("aria-label") or drawing.get("aria-labelledby"), page
+        names = {element["id"] for element in text.find_all(id=True)}
+        assert {use["href"][1:] for use in text.find_all("use")} <= names, page
+
+
+# ---- the zip -------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def unpacked(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("a stick with spaces")
+    with zipfile.ZipFile(ZIP) as archive:
+        archive.extractall(folder)
+    (inside,) = folder.iterdir()
+    return inside
+
+
+@pytest.mark.long
+def test_zip_holds_the_site_once():
+    with zipfile.ZipFile(ZIP) as archive:
+        entries = archive.infolist()
+    names = [entry.filename.partition("/")[2] for entry in entries]
+    assert names == sorted(set(names))
+    site = {str(path.relative_to(HTML)) for path in HTML.rglob("*") if path.is_file()}
+    # What there is to keep for reading offline is whole already.
+    assert set(names) == site - {f"take-away/{ZIP.name}", install.LIST} | {"README.txt", "serve.py"}
+    assert [name for name in names if name.endswith((".pdf", ".zip"))].count(f"take-away/{PDF.name}") == 1
+    assert len({entry.date_time for entry in entries}) == 1
+
+
+def test_same_files_give_the_same_zip(monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    one = offline.pack({"b/page.html": b"words", "a.txt": b"more"}, "book", "A Book")
+    other = offline.pack({"a.txt": b"more", "b/page.html": b"words"}, "book", "A Book")
+    assert one == other
+
+
+def test_pages_in_the_zip_ask_for_nothing_ahead():
+    """Of a typeface that is to be fetched ahead, Chromium says on every page from a disk that it cannot use it."""
+    page = '<head>\n  <link rel="preload" as="font" crossorigin href="a.woff2">\n  <style></style></head>'
+    packed = offline.pack({"page.html": page.encode(), "kept.js": b'<link rel="preload">'}, "book", "A Book")
+    with zipfile.ZipFile(io.BytesIO(packed)) as archive:
+        assert archive.read("book/page.html") == b"<head>\n  <style></style></head>"
+        assert archive.read("book/kept.js") == b'<link rel="preload">'
+
+
+@pytest.mark.long
+def test_front_page_in_the_zip_offers_what_is_not_the_zip(unpacked):
+    front = (unpacked / "index.html").read_text("utf8")
+    (place,) = whole_book.PLACE.findall(front)
+    assert re.findall(r'href="([^"]*)"', place) == [f"take-away/{path.name}" for path in (PDF, EPUB)]
+    assert (unpacked / "take-away" / PDF.name).read_bytes() == PDF.read_bytes()
+    assert "python serve.py" in (unpacked / "README.txt").read_text("utf8")
+
+
+@pytest.fixture
+def from_disk(browser, unpacked):
+    """A page without a network; all it says and asks for is noted, and none of it may fail."""
+    context = browser.new_context(viewport={"width": 1300, "height": 900}, offline=True)
+    page, faults = context.new_page(), []
+
+    def note_failure(request):
+        if request.failure != "net::ERR_ABORTED":  # what a page still asked for when the reader left it
+            faults.append(f"{request.failure}: {request.url}")
+
+    page.on("console", lambda message: message.type in ("error", "warning") and faults.append(message.text))
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("requestfailed", note_failure)
+    page.on("request", lambda r: r.url.startswith(("file:", "data:", "blob:")) or faults.append(f"asks: {r.url}"))
+    page.goto((unpacked / "index.html").as_uri())
+    yield page
+    assert faults == []
+    context.close()
+
+
+def settled(page):
+    page.wait_for_function("!document.documentElement.matches('.settling, .in-parts')")
+    return page
+
+
+@pytest.mark.long
+def test_pages_open_from_disk(from_disk, unpacked):
+    for name in pages()[::4]:
+        from_disk.goto((unpacked / f"{name}.html").as_uri())
+        settled(from_disk)
+        assert from_disk.evaluate("document.fonts.check('1em \"Source Serif 4\"') && document.fonts.status") == "loaded"
+        assert from_disk.evaluate("getComputedStyle(document.querySelector('article')).fontFamily").startswith(
+            '"Source Serif'
+        )
+        assert from_disk.evaluate(SIDEWAYS) <= 0
+
+
+@pytest.mark.long
+def test_reader_goes_through_the_book_from_disk(from_disk, unpacked):
+    page = settled(from_disk)
+    page.click("article .sd-card a >> nth=0")
+    assert "/chapters/" in page.url
+    page.click(".prev-next-footer a.right-next")
+    here = page.url
+    page.click("article a.reference.internal >> nth=0")
+    assert page.url != here and page.url.startswith(unpacked.as_uri())
+    page.click(".theme-switch-button")
+    assert page.evaluate("document.documentElement.dataset.mode") != "auto"
+
+
+@pytest.mark.long
+def test_moving_figure_moves_from_disk(from_disk, unpacked):
+    name = next(name for name in CHAPTERS if 'data-figure="gimbal"' in (HTML / f"{name}.html").read_text("utf8"))
+    from_disk.goto((unpacked / f"{name}.html").as_uri())
+    figure = from_disk.locator('[data-figure="gimbal"][data-ready]').first
+    drawn = "figure => [...figure.querySelectorAll('.sheet .marks *')].map(m => m.getAttribute('d')).join()"
+    before = figure.evaluate(drawn)
+    slider = figure.locator("input[type=range]").first
+    slider.focus()
+    slider.press("ArrowRight")
+    from_disk.wait_for_function(
+        f"before => ({drawn})(document.querySelector('[data-figure=gimbal]')) !== before", arg=before
+    )
+
+
+@pytest.mark.long
+def test_search_finds_a_word_from_disk(from_disk):
+    page = settled(from_disk)
+    page.keyboard.press("Control+k")
+    page.keyboard.type("gimbal")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#search-results .search li a")
+    found = page.eval_on_selector_all("#search-results li a", "links => links.map(a => a.href)")
+    assert any("gimbal-lock.html" in address for address in found)
+    page.click("#search-results li a >> nth=0")
+    page.wait_for_selector("article h1")
+
+
+@pytest.mark.long
+def test_run_says_what_to_do_from_disk(from_disk, unpacked):
+    from_disk.goto((unpacked / f"{CHAPTERS[1]}.html").as_uri())
+    from_disk.click("button.run-page")
+    from_disk.wait_for_selector("text=python serve.py")
+
+
+@pytest.mark.long
+def test_small_server_of_the_zip(unpacked, tmp_path):
+    """Started from anywhere, it serves its own folder, with the types that modules and WebAssembly need."""
+    process = subprocess.Popen(
+        [sys.executable, "-I", unpacked / "serve.py", "0"], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+    )
+    try:
+        address = re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
+        for kind, expected in ((".html", "text/html"), (".js", "text/javascript"), (".css", "text/css"),
+                               (".mjs", "text/javascript"), (".wasm", "application/wasm")):  # fmt: skip
+            files = sorted(path.relative_to(unpacked) for path in unpacked.rglob(f"*{kind}"))
+            assert files or kind in (".mjs", ".wasm")
+            for file in files[:1]:
+                with urllib.request.urlopen(address + file.as_posix()) as answer:
+                    assert answer.headers["Content-Type"].startswith(expected)
+    finally:
+        process.terminate()
+        process.wait()
+        process.stdout.close()

@@ -1,0 +1,19 @@
+"""Where the book and its built site are, and what its tests wait for."""
+
+import os
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+HTML = REPOSITORY / "_build" / "html"
+# Set where a missing browser must not pass unnoticed (.ci/run sets it).
+BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
+PATIENCE = 180_000  # milliseconds, for a busy machine; nothing waits longer than it must
+
+
+def html_pages():
+    """The addresses of all pages of the built site, relative to its root.
+
+    Notebooks in ``lite`` are none, nor is what a server shows where there is no page.
+    """
+    found = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
+    return sorted(str(path) for path in found if path.parts[0] not in ("lite", "404.html"))
