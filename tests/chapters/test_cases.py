@@ -111,7 +111,7 @@ def test_one_turn_is_quicker_than_three():
     assert one[0] < three[0] and one[1] < three[1]
     lines = printed("the quickest of twelve").splitlines()
     assert all(numbers(line.partition("times (")[2])[0] > 1 for line in lines[1:])
-    assert float(re.search(r"target by (\S+)", printed("off the target"))[1]) < 1e-9
+    assert float(re.search(r"target by less than (\S+)", printed("off the target"))[1]) < 1e-9
 
 
 def test_the_attitude_of_an_aircraft_for_a_robot():
