@@ -15,7 +15,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark anywhere clean
+.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark anywhere mutants clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -31,6 +31,7 @@ help:
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"
 	@echo "make anywhere   compare all numbers with those of other processors, and with WebAssembly"
+	@echo "make mutants    change the mathematics in thousands of places, and see which change no test notices (hours)"
 	@echo "make renew-pins newest versions of all that is installed"
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
@@ -41,10 +42,12 @@ PROJECTS_book := ./src/orientation ./coursework ./notebook-pages .
 PROJECTS_print := ./src/orientation ./coursework ./notebook-pages[print] .
 PROJECTS_release := ./src/orientation ./coursework[tools] ./notebook-pages .
 PROJECTS_test := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test]
+PROJECTS_mutants := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test,mutants]
 # Whose installation has these in it, too.
 COVERS_print := book
 COVERS_release := book
 COVERS_test := book print release
+COVERS_mutants := book print release test
 # Two commands of pip at once would write into one environment; what takes long works side by side by itself.
 .NOTPARALLEL:
 
@@ -125,6 +128,11 @@ release: $(VENV)/ready-release setup
 # Cells, releases and doctests, as other processors have their numbers (ONLY=unit-quaternions: those of one notebook); no browser.
 anywhere: $(VENV)/ready-test setup
 	@$(RUN) -m notebook_pages.anywhere $(ONLY)
+
+# What survives is told at the end: a test that notices it is missing, or it is no change.
+mutants: $(VENV)/ready-mutants setup
+	@$(RUN) -m mutmut run
+	@$(RUN) -m mutmut results
 
 renew-pins: setup
 	@$(RUN) -m notebook_pages.pins

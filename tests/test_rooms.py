@@ -15,7 +15,7 @@ from notebook_pages.paths import PACKAGES
 #: What the modules of a room may import of this repository's packages, the room itself not named.
 MAY_IMPORT = {
     "orientation": (),
-    "orientation_figures": ("orientation",),
+    "orientation_figures": ("orientation", "orientation_workbench"),
     "orientation_recordings": (),
     "orientation_workbench": ("orientation",),
     "coursework.checking": (),
@@ -25,7 +25,7 @@ MAY_IMPORT = {
 }
 #: In grading, what follows a notebook on its way uses only what comes before it, and what stands beside the rooms.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
-BESIDE = ("store", "tables", "versions", "workers")
+BESIDE = ("locks", "store", "tables", "versions", "workers")
 PAGES = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
 OURS = {*PACKAGES, "notebook_pages"}
 

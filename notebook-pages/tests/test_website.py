@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -18,7 +19,7 @@ from places import REPOSITORY
 from notebook_pages import page
 from notebook_pages.alternative_text import says_something
 from notebook_pages.notebooks import all_notebooks, normalise
-from notebook_pages.paths import NODE, NODE_MODULES, WEBSITE, fingerprint
+from notebook_pages.paths import NODE, NODE_MODULES, WEBSITE, fingerprint, let_everybody_read
 from notebook_pages.serve import Handler
 from orientation_figures.plot import Plot
 
@@ -307,3 +308,15 @@ def test_python_for_browsers_finds_itself_in_any_folder(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert (folder / "made").read_text() == "emscripten"
+
+
+def test_whoever_builds_it_a_server_can_read_the_site(tmp_path):
+    mask = os.umask(0o077)
+    try:
+        (tmp_path / "html" / "chapters").mkdir(parents=True)
+        (tmp_path / "html" / "chapters" / "one.html").write_text("one", "utf8")
+    finally:
+        os.umask(mask)
+    let_everybody_read(tmp_path / "html")
+    for path in (tmp_path / "html", *(tmp_path / "html").rglob("*")):
+        assert stat.S_IMODE(path.stat().st_mode) == (0o755 if path.is_dir() else 0o644)

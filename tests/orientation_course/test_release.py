@@ -15,11 +15,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 from seed import SEED
 from trial_course import SETUP, SOLUTION, made_in, write_source
 
-from coursework.authoring import release
+from coursework.authoring import author, release
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
 from coursework.authoring.packing import archive, write_zip
@@ -28,6 +29,7 @@ from coursework.checking.update import MANIFEST, ArchiveRefused, manifest, updat
 from notebook_pages import packing
 
 COURSE = find_course(Path(__file__).parent)
+INSTRUCTORS = (COURSE.root / "appendix" / "instructors.md").read_text("utf8")
 
 
 HIDDEN = (
@@ -90,6 +92,24 @@ def test_a_release_is_the_same_each_time(trial, tmp_path):
     release.release(made_in(tmp_path, sources=trial / "sources"), run=False)
     assert release.differences(trial / "exercises", tmp_path / "exercises", "*") == []
     assert release.differences(trial / "sealed", tmp_path / "sealed", "*") == []
+
+
+@pytest.mark.parametrize(
+    "about", [{}, {"tolerance": 1e-6}, {"tolerance": 1e-6, "relative": 0.01}, {"tolerance": 5, "relative": 0.001}]
+)
+def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
+    """The same on every processor: of numbers of all sizes, of simple fractions, and of what should be zero."""
+    random = np.random.default_rng(7)
+    sizes = 10.0 ** random.uniform(-3, 5, 12)
+    for right in (*random.normal(size=12) * sizes, 0.5, -1 / 3, 1 / 4096, 0.00012345, 1000, np.pi / 4, 12345.678905):
+        sealed = [
+            author.question("trial/one", "vector", [right * (1 + noise), noise, 7], **about)
+            for noise in (0, 3e-16, -3e-16, 2e-15)
+        ]
+        told = [{text: entry.cases for text, entry in one.entries.items()} | one.public for one in sealed]
+        assert len({json.dumps(one, sort_keys=True) for one in told}) == 1, right
+        for case in (case for entry in sealed[0].entries.values() for case in entry.cases if "numbers" in case):
+            assert all(len(number.strip("-")) < 17 for number in case["numbers"])
 
 
 def test_a_planted_secret_is_found(trial, tmp_path):
@@ -270,17 +290,17 @@ def test_a_manifest_of_a_newer_format_is_refused_in_words(tmp_path):
     assert {path: path.read_bytes() for path in work.iterdir()} == before
 
 
-def fake_wheel(folder, version, digest):
+def fake_wheel(folder, version, digest, package="sealed_trial"):
     """A package that holds one file, made without any tool."""
-    name = f"sealed_trial-{version}-py3-none-any.whl"
-    about = f"sealed_trial-{version}.dist-info"
+    name = f"{package}-{version}-py3-none-any.whl"
+    about = f"{package}-{version}.dist-info"
     with zipfile.ZipFile(folder / name, "w") as box:
-        box.writestr("sealed_trial.py", f"DIGEST = {digest!r}\n")
-        box.writestr(f"{about}/METADATA", f"Metadata-Version: 2.1\nName: sealed-trial\nVersion: {version}\n")
+        box.writestr(f"{package}.py", f"DIGEST = {digest!r}\n")
+        box.writestr(f"{about}/METADATA", f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n")
         box.writestr(
             f"{about}/WHEEL", "Wheel-Version: 1.0\nGenerator: a test\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
         )
-        box.writestr(f"{about}/RECORD", f"sealed_trial.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n")
+        box.writestr(f"{about}/RECORD", f"{package}.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n")
     return folder / name
 
 
@@ -328,6 +348,48 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     with pytest.raises(ArchiveRefused, match="post20261122093000.*post20261201080000"):
         update(old, work)
     assert {path: path.read_bytes() for path in work.iterdir()} == before
+
+
+def in_bash(text, prompt):
+    """The commands of a text, each on a line of its own after ``prompt``."""
+    return [line.removeprefix(prompt) for line in text.splitlines() if line.startswith(prompt)]
+
+
+@pytest.mark.long
+def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
+    """To the letter: with a system's Python that takes no packages, and in a room without a network."""
+    work = unpacked(archive(COURSE, tmp_path / "exercises.zip"), tmp_path)
+    index = tmp_path / "index"
+    index.mkdir()
+    for name in ("jupyterlab", "latex2mathml"):
+        fake_wheel(index, "1.0", "", name)
+    said = (work / "README.txt").read_text("utf8")
+    first, second, third, windows, *_, offline, lab, _ = in_bash(said, " " * 7)
+    assert (windows, lab) == ("py -m venv environment", "jupyter lab")
+    environment = {**os.environ, "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
+
+    python = shlex.quote(sys.executable)
+    assert first.startswith("python3 ")
+    first = first.replace("python3", python, 1)
+    check = "python -c 'import importlib.util as u; print(u.find_spec(\"coursework\").origin)'"
+
+    def run(*lines, **more):
+        script = "\n".join(["set -eu", *lines, check])
+        done = subprocess.run(
+            ["bash", "-c", script], cwd=work, env={**environment, **more}, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+        return Path(done.stdout.splitlines()[-1])
+
+    assert run(first, second, third, PIP_FIND_LINKS=str(index)).is_relative_to(work / "environment")
+    shutil.rmtree(work / "environment")
+    (fetch,) = [line for line in in_bash(INSTRUCTORS, "$ ") if "pip download" in line]
+    (same,) = [line for line in in_bash(INSTRUCTORS, "$ ") if "--no-index" in line]
+    assert same.replace("--requirement", "-r") == offline
+    run(first, second, third, fetch, PIP_FIND_LINKS=str(index))
+    shutil.rmtree(work / "environment")
+    shutil.rmtree(index)
+    assert run(first, second, offline).is_relative_to(work / "environment")
 
 
 def test_a_version_follows_from_the_sources(tmp_path):

@@ -16,6 +16,25 @@ FIGURES = {
     if issubclass(figure, moving.MovingFigure) and figure.kind
 }
 KINDS = sorted(FIGURES)
+#: What a test sets in each figure: the attribute, its value, and where the figure then shows it, if it has a field.
+CHANGES = {
+    "belt": ("angle", 0.3, "theta, turn of the plate in degrees", 17.19),
+    "challenge": ("turns", (("z", 0.3),), "Angle of the last turn in degrees", 17.19),
+    "converter": ("quaternion", (1.0, 0.0, 0.0, 0.0), None, None),
+    "gimbal": ("angles", (0.3, 0.2, 0.1), "psi in degrees", 17.19),
+    "graph": ("edges", (("A", "N", "z", 0.5), ("B", "N", "z", 0.4), ("C", "B", "x", 0.3)), None, None),
+    "hands": ("quaternion", (0.6, 0.0, 0.8, 0.0), None, None),
+    "motion": ("time", 3.0, "Time in seconds", 3),
+    "nine_numbers": ("matrix", ((0, 1, 0), (-1, 0, 0), (0, 0, 1)), "row x, column y", 1),
+    "phone": ("angles", (0.3, 0.2, 0.1), "alpha in degrees", 17.19),
+    "quaternion": ("angle", 0.3, "theta in degrees", 17.19),
+    "simple": ("angle", 0.3, "theta in degrees", 17.19),
+    "successive": ("turns", (("z", 0.3),), "Turn 1, to frame A in degrees", 17.19),
+    "triad": ("angle", 0.3, "theta in degrees", 17.19),
+}
+assert set(CHANGES) == set(KINDS), (
+    f"CHANGES says what a test sets in each figure, and not in {set(KINDS) - set(CHANGES)}"
+)
 THEMES = ("light", "dark")
 WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
 # What the pages of the book give to a figure: a background, and nothing else of theirs is needed.

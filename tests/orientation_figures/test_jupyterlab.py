@@ -10,29 +10,13 @@ import urllib.request
 
 import nbformat
 import pytest
-from figure_pages import FIGURES, KINDS
+from figure_pages import CHANGES, FIGURES, KINDS
 
 pytest.importorskip("jupyterlab")
 from jupyter_client import BlockingKernelClient  # noqa: E402
 
 TOKEN = "figures"
 PATIENCE = 120  # seconds, for a busy machine; nothing waits longer than it must
-# What Python sets, and where the figure then shows it, if it has a field for that.
-SET = {
-    "belt": ("angle", 0.3, "theta, turn of the plate in degrees", 17.19),
-    "challenge": ("turns", (("z", 0.3),), "Angle of the last turn in degrees", 17.19),
-    "converter": ("quaternion", (1.0, 0.0, 0.0, 0.0), None, None),
-    "gimbal": ("angles", (0.3, 0.2, 0.1), "psi in degrees", 17.19),
-    "graph": ("edges", (("A", "N", "z", 0.5), ("B", "N", "z", 0.4), ("C", "B", "x", 0.3)), None, None),
-    "hands": ("quaternion", (0.6, 0.0, 0.8, 0.0), None, None),
-    "motion": ("time", 3.0, "Time in seconds", 3),
-    "nine_numbers": ("matrix", ((0, 1, 0), (-1, 0, 0), (0, 0, 1)), "row x, column y", 1),
-    "phone": ("angles", (0.3, 0.2, 0.1), "alpha in degrees", 17.19),
-    "quaternion": ("angle", 0.3, "theta in degrees", 17.19),
-    "simple": ("angle", 0.3, "theta in degrees", 17.19),
-    "successive": ("turns", (("z", 0.3),), "Turn 1, to frame A in degrees", 17.19),
-    "triad": ("angle", 0.3, "theta in degrees", 17.19),
-}
 FIRST_CELL = f"""
 from orientation_figures import moving
 names = { ({kind: FIGURES[kind].__name__ for kind in KINDS})!r}
@@ -162,7 +146,7 @@ def test_python_and_every_figure_move_together(browser, laboratory):
         pytest.fail(f"{change} stays {was}")
 
     for number, kind in enumerate(KINDS, start=1):
-        cell, (name, value, label, shown) = cells.nth(number), SET[kind]
+        cell, (name, value, label, shown) = cells.nth(number), CHANGES[kind]
         element = cell.element_handle()
         cell.locator(".moving").first.scroll_into_view_if_needed()
         before = page.evaluate(SHOWN, element)

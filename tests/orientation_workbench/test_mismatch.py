@@ -10,6 +10,7 @@ import sys
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from threads import THREADS
 
 from orientation import SEQUENCES, body_fixed_from_dcm, quaternion_from_dcm, random_orientations, simple_dcm
 from orientation_workbench import explain
@@ -62,7 +63,7 @@ def both_sides(chain, dcms):
 def same_meaning(chains, first, kind):
     """Which chains do the same to whatever is pasted as the first of them."""
     keys = explanation._predictions(chains, {kind: explanation._samples(kind, read_poses(first, "first", kind))}, 5)
-    return [key == keys[0] for key in keys]
+    return [not keys[0].isdisjoint(key) for key in keys]
 
 
 @FEW_AND_ALL
@@ -111,7 +112,7 @@ def test_the_pose_that_is_asked_for_decides(count, start):
         texts = [printed(numbers) for numbers in both_sides(truth, dcm[None])]
         found = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
         assert found.further_pose, (truth.words(), str(found))
-        turns = next(turns for words, turns in explanation.FURTHER_POSES if words == found.further_pose)
+        turns = next(turns for words, turns in table.FURTHER_POSES if words == found.further_pose)
         for name, degrees in turns:
             dcm = np.array(simple_dcm(name, np.radians(degrees + generator.uniform(-4, 4)))) @ dcm
         more = [printed(numbers) for numbers in both_sides(truth, dcm[None])]
@@ -265,3 +266,31 @@ def test_every_reading_comes_back():
             dcms = random_orientations(3, np.random.default_rng(7))
             for numbers in numbers_from_dcms(reading, dcms):
                 assert np.abs(dcms_from_numbers(reading, numbers) - dcms).max() < 1e-9
+
+
+def choices_of(side):
+    return {"kind": side["kind"], "choices": {name: value for name, value in side.items() if name != "kind"}}
+
+
+def as_pasted(thread, seed):
+    """What both programs of a thread print for two poses, four digits of each number."""
+    relation = {"inverse": thread["inverse"], "body": thread["body"], "world": thread["world"], "hand": False}
+    truth = search.Chain(*(choices_of(thread[side]) for side in ("first", "second")), relation, 0, 0.0, 0.0)
+    return truth, *both_sides(truth, random_orientations(2, np.random.default_rng(seed)))
+
+
+def test_public_threads_are_named():
+    """The sequence of angles is known to whoever asks; what is asked is how it is meant."""
+    not_named = []
+    for seed, thread in enumerate(THREADS):
+        truth, *numbers = as_pasted(thread, seed)
+        texts = [printed(poses, 2 if thread[side].get("unit") == "degrees" else 4)
+                 for side, poses in zip(("first", "second"), numbers)]  # fmt: skip
+        known = [{name: thread[side][name] for name in ("kind", "sequence") if name in thread[side]}
+                 for side in ("first", "second")]  # fmt: skip
+        found = explain(*texts, first_declared=known[0], second_declared=known[1])
+        same = found.chains and same_meaning([truth, *found.chains], texts[0], thread["first"]["kind"])[1]
+        if found.verdict not in ("named", "same") or not same:
+            not_named.append((thread["thread"], str(found)))
+    assert len(THREADS) >= 60 and len({thread["thread"] for thread in THREADS}) >= 60
+    assert len(not_named) <= len(THREADS) // 30, not_named

@@ -270,7 +270,13 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
     assert with_solutions(site, wanted) == {}
     pages = [path for path in pages_of(site) if path.name != "404.html"]
     assert len(pages) > 50
-    for path in [*pages, *(site / name for name in ("llms.txt", "searchindex.js", "offline.json", "objects.inv"))]:
+    for path in [
+        *pages,
+        *(
+            site / name
+            for name in ("llms.txt", "_static/search.js", "_static/search-words.js", "offline.json", "objects.inv")
+        ),
+    ]:
         text = path.read_text("utf8", "replace")
         assert not re.search(r"appendix/solutions|[\"/]solutions(-going-further)?\.(html|ipynb|py)|#solution-", text), (
             path

@@ -5,7 +5,6 @@ import re
 from collections import Counter
 from functools import cache
 from html import unescape
-from types import SimpleNamespace
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
@@ -19,7 +18,7 @@ import orientation
 from notebook_pages import pictures
 from notebook_pages.finish import pages_of
 from notebook_pages.paths import pages
-from notebook_pages.publish import LICENCE, LONGEST, keep_index_entries
+from notebook_pages.publish import LICENCE, LONGEST
 from orientation_figures.style import LIGHT
 
 SETTINGS = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
@@ -136,16 +135,3 @@ def test_labels_are_drawn_in_the_picture():
     page = (HTML / "index.html").read_text("utf8")
     figure, box, _ = pictures.first_figure(page)
     assert pictures.drawn(figure, box) != pictures.drawn(re.sub("<use [^>]*>", "", figure), box)
-
-
-def test_the_search_knows_the_index_of_pages_that_were_not_written():
-    """Sphinx forgot it with each build that wrote some of the pages only."""
-    entries = {name: [("single", f"{name}; turned", f"at-{name}", "", None)] for name in ("old", "new")}
-    indexer = SimpleNamespace(_titles={"old": "", "new": ""}, _index_entries={"new": [("kept", "there", "")]})
-    builder = SimpleNamespace(indexer=indexer)
-    env = SimpleNamespace(domaindata={"index": {"entries": entries}})
-    keep_index_entries(SimpleNamespace(builder=builder, env=env))
-    assert indexer._index_entries == {
-        "new": [("kept", "there", "")],
-        "old": [("old", "at-old", ""), ("turned", "at-old", "")],
-    }

@@ -113,7 +113,7 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
         assert page.locator("h1").first.is_visible()
         assert page.evaluate("getComputedStyle(document.body).fontFamily").startswith('"Source')
     page.goto(f"{address}search.html?q=gimbal")
-    page.wait_for_selector("#search-results .search li a")
+    page.wait_for_selector("#search-results li a")
     assert page.evaluate(f"fetch('{address}lite/index.html').then(() => 'there', () => 'gone')") == "gone"
 
 

@@ -228,6 +228,58 @@ def test_a_mended_package_has_another_version(tmp_path):
     assert said.strip() == version
 
 
+def test_where_nothing_can_be_written_the_selftest_says_so_first(statics, tmp_path, monkeypatch, capsys):
+    """As in a checkout that belongs to somebody else; with another place for its page it runs, and keeps nothing."""
+    course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
+    (course / "build").write_text("in the way")
+    monkeypatch.chdir(course)
+    with pytest.raises(SystemExit, match="selftest.html cannot be written.*--page"):
+        main(["selftest"])
+    with pytest.raises(SystemExit, match="try.html cannot be written.*--page"):
+        main(["try", "first-steps"])
+    main(["selftest", "--page", str(tmp_path / "page.html"), "--budget", "64"])
+    assert "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()
+
+
+def test_a_release_says_what_the_selftest_will_refuse(statics, tmp_path, monkeypatch, capsys):
+    """The deflection of a beam, with numbers of one's own: an ordinary question, and soon guessed."""
+    course = shutil.copytree(statics, tmp_path / "course")
+    answer = (
+        "### BEGIN SOLUTION\ndeflection = 450 * 2**3 / (3 * 2000)\n### END SOLUTION\ncheck('beam/tip', deflection)\n"
+    )
+    hidden = "### BEGIN HIDDEN TESTS\nquestion('beam/tip', kind='expression', worth=3)\n### END HIDDEN TESTS"
+    text = "The load is 450 N, the length 2 m, and EI is 2000 N m2. Give the deflection F l^3 / 3EI as `deflection`."
+    cells = [
+        ("code", "import sympy as sm\nfrom coursework import check"),
+        ("markdown", text),
+        ("code", answer + hidden),
+    ]
+    write_source(course / "solutions", *cells, name="beam")
+    monkeypatch.chdir(course)
+    main(["release", "beam"])
+    said = capsys.readouterr().out
+    assert re.search(r"selftest` will refuse beam/tip: It can be guessed: found after \d+", said), said
+    assert "first-steps" not in said
+    kept = set((course / "build" / "attacks").iterdir())
+    with pytest.raises(SystemExit, match="beam/tip: It can be guessed"):
+        main(["selftest", "beam"])
+    assert set((course / "build" / "attacks").iterdir()) == kept
+
+
+def test_one_notebook_is_tried_alone(statics, tmp_path, monkeypatch, capsys):
+    course = shutil.copytree(statics, tmp_path / "course")
+    shutil.copy(EXAMPLE / "solutions" / "moments.ipynb", course / "solutions")
+    places = (course / "solutions" / "guessable.json", EXAMPLE / "solutions" / "guessable.json")
+    declared = {name: tries for path in places for name, tries in json.loads(path.read_text("utf8")).items()}
+    places[0].write_text(json.dumps(declared), "utf8")
+    monkeypatch.chdir(course)
+    main(["selftest", "first-steps", "--budget", "64"])
+    text = (course / "build" / "selftest.html").read_text("utf8")
+    assert "first-steps/" in text and "moments/" not in text
+    with pytest.raises(SystemExit, match="There is no levers.ipynb"):
+        main(["selftest", "levers"])
+
+
 def test_an_update_brings_new_sealed_questions(statics, tmp_path):
     with zipfile.ZipFile(find_course(statics).archive) as box:
         box.extractall(tmp_path)

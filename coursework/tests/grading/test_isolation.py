@@ -17,6 +17,7 @@ import pytest
 from coursework.grading.execution import isolation, scratch, system_calls
 from coursework.grading.execution.isolation import LANDLOCK, LAYERS, LIMITS, NAMESPACES, SECCOMP
 from coursework.grading.execution.sandbox import Limits, Sandbox, WeakIsolation, run_notebooks
+from coursework.grading.execution.warm_parent import WarmParent
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
 
@@ -367,3 +368,10 @@ def test_the_room_that_files_take_is_measured(tmp_path):
     assert scratch.used_bytes(tmp_path, 1000) > 1000
     with contextlib.suppress(FileNotFoundError):
         assert scratch.used_bytes(tmp_path / "none", 1000) == 0
+
+
+def test_what_root_alone_may_read_is_opened_and_not_given_to_root(monkeypatch):
+    """Root is told to let others read its Python: it owns it already."""
+    monkeypatch.setattr("sympy.__file__", "/nobody/may/read/this.py")
+    (said,) = [line for line in WarmParent.cannot_work() if "cannot read" in line]
+    assert "chmod -R o+rX" in said and "umask" in said and "user who owns them" not in said

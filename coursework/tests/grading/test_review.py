@@ -443,3 +443,62 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
     assert len(decided) == 100
     assert sorted(one.credit for one in decided.values()) == [0.5] * 50 + [1] * 50
     assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]
+
+
+#: Before the command runs: what Windows has not, and how it locks a file. What others made knows its system already.
+ON_WINDOWS = """
+import os, subprocess, sys, types
+import nbformat, sympy, tornado.httpserver, tornado.ioloop, tornado.web
+for name in ("fcntl", "resource", "pwd", "grp", "termios"):
+    sys.modules[name] = None
+del os.O_DIRECTORY
+really_open = os.open
+def refuses_folders(path, *more, **others):
+    if os.path.isdir(path):
+        raise PermissionError(13, "Permission denied")
+    return really_open(path, *more, **others)
+os.open = refuses_folders
+held = set()
+def locking(number, mode, count):
+    place = (os.fstat(number).st_ino, os.lseek(number, 0, os.SEEK_CUR))
+    assert (mode, count) == (7, 1) and place[1] > 1 << 30, "a place that no file reaches"
+    if place in held:
+        raise OSError(36, "Resource deadlock avoided")
+    held.add(place)
+sys.modules["msvcrt"] = types.SimpleNamespace(LK_NBLCK=7, locking=locking)
+from coursework.__main__ import main
+"""
+
+
+def on_windows(program, *arguments):
+    command = [sys.executable, "-c", ON_WINDOWS + program, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def test_on_windows_what_runs_nobody_s_code_runs(out, tmp_path):
+    """And what does, says where it can be run."""
+    command = "main(sys.argv[1:])"
+    done = on_windows(command, "export", out, "--feedback", tmp_path / "feedback.zip")
+    assert done.returncode == 0 and (tmp_path / "feedback.zip").is_file(), done.stderr
+    (tmp_path / "rules.toml").write_text('time-zone = "Europe/Paris"\n[assignments.turns]\ndue = 2026-10-05T23:59:00\n')
+    done = on_windows(command, "term", out, "--rules", tmp_path / "rules.toml")
+    assert done.returncode == 0 and "course.csv" in done.stdout, done.stderr
+    other = shutil.copytree(out, tmp_path / "other")
+    program = "from pathlib import Path\nfrom coursework.grading.review import Class\nClass(Path(sys.argv[1]), (1, 1))"
+    done = on_windows(program, other)
+    assert done.returncode == 0, done.stderr
+    for arguments in (("grade", out, "--out", tmp_path / "new"), ("regrade", out)):
+        done = on_windows(command, *arguments)
+        assert done.returncode == 1 and "WSL" in done.stderr and "Traceback" not in done.stderr, done.stderr
+        assert len(done.stderr.splitlines()) == 1
+
+
+def test_on_windows_a_file_is_one_process_s_own(tmp_path):
+    program = (
+        "from coursework.grading.store import InUse, Store\n"
+        "with Store(sys.argv[1]).locked():\n"
+        "    try:\n        with Store(sys.argv[1]).locked():\n            print('twice')\n"
+        "    except InUse as error:\n        print(error)\n"
+    )
+    done = on_windows(program, tmp_path)
+    assert "Another run is at work" in done.stdout and "twice" not in done.stdout, done.stderr

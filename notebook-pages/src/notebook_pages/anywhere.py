@@ -16,19 +16,23 @@ import sys
 import tempfile
 from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
-from hashlib import sha256
-from importlib.util import find_spec
 from pathlib import Path
 
 import nbformat
 from nbclient import NotebookClient
 
+from coursework import authoring
+from coursework.authoring.course import find_course
+from coursework.authoring.source import notebooks_in
+
 from .execution import STORED
 from .live.cells import ALONE, kinds_of_cells, outputs_of_messages, stored_outputs, write_python
-from .live.runtime import COMPILER, PYODIDE
+from .live.runtime import COMPILER, FETCHED, PYODIDE, compile_wheels
 from .moves import moves, moves_of_outputs
 from .notebooks import all_notebooks
+from .packing import build_wheels
 from .paths import NODE, PACKAGES, REPOSITORY
+from .released import digests_of
 from .warm_kernels import WarmAsyncKernelManager
 
 #: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a processor has not that is as old as that.
@@ -135,98 +139,96 @@ def failed_doctests():
 
 def digests_of_releases(only):
     """What is released of each notebook and sealed of each variant, before the slow hash that seals it."""
-    from coursework.authoring.course import find_course
-    from coursework.authoring.source import notebooks_in
-
-    paths = [path for path in notebooks_in(find_course(REPOSITORY).sources) if not only or path.stem in only]
     with ProcessPoolExecutor(os.cpu_count()) as pool:
-        return {name: digest for found in pool.map(digests_of, paths) for name, digest in found.items()}
+        return {name: digest for found in pool.map(digests_of, sources(only)) for name, digest in found.items()}
 
 
-def digests_of(path):
-    from coursework.authoring.release import exercise_notebook
-    from coursework.authoring.source import read_source
-
-    with open(os.devnull, "w") as nowhere:
-        sys.stdout = nowhere
-        try:
-            source = read_source(path)
-            found = {path.stem: digest([cell.source for cell in exercise_notebook(source).cells])}
-            count = max((rule.count for rule in source.rules.values()), default=1)
-            for number in range(count):
-                of_variant = source if number == 0 else read_source(path, number)
-                for name, question in of_variant.questions.items():
-                    found[f"{name}, variant {number}"] = digest(contents(question))
-        finally:
-            sys.stdout = sys.__stdout__
-    return found
-
-
-def contents(question):
-    """All that a seal follows from."""
-    cases = {text: entry.cases for text, entry in question.entries.items()}
-    return [question.public, cases, question.near, question.solution, question.after, question.ladder]
-
-
-def digest(content):
-    return sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()[:16]
+def sources(only):
+    paths = notebooks_in(find_course(REPOSITORY).sources)
+    return [path for path in paths if not only or path.stem in only]
 
 
 # --- in the Python of browsers ------------------------------------------------------------------
 
-#: Run as the page runs it, by the program with which the build finds out what each cell needs.
+#: Runs each notebook as the page runs it, with the program with which the build finds out what each cell needs; then
+#: makes what is sealed of those sources that need no NumPy. What reads notebooks is not there: JSON serves.
 IN_A_BROWSER = """
-import io, os, sys
-os.chdir("/wheels")
-sys.path.insert(0, "/wheels/packages")
-sys.argv = ["-c", "python", *{packages!r}]
-sys.stdin = io.StringIO(open("codes.json").read())
-sys.__stdout__ = open("told.json", "w")
-{program}
-sys.__stdout__.close()
+import glob, io, json, shutil, sys, types, zipfile
+for wheel in glob.glob("/wheels/*.whl"):
+    zipfile.ZipFile(wheel).extractall("/packages")
+sys.path.insert(0, "/packages")
+codes = json.load(open("/wheels/codes.json"))
+program = compile(open("/wheels/alone.py").read(), "alone", "exec")
+plain, told = sys.__stdout__, {}
+for name in codes["cells"]:
+    sys.argv = ["-c", "/wheels/python", *codes["packages"]]
+    sys.stdin, sys.__stdout__ = io.StringIO(json.dumps(codes["cells"][name])), io.StringIO()
+    exec(program, {"__name__": "alone"})
+    told[name] = json.loads(sys.__stdout__.getvalue())
+sys.__stdout__ = plain
+sys.meta_path[:] = [finder for finder in sys.meta_path if type(finder).__name__ != "Missing"]
+for name in [name for name in sys.modules if name.partition(".")[0] == "numpy"]:
+    del sys.modules[name]
+
+class Node(dict):
+    __getattr__ = dict.get
+    __setattr__ = dict.__setitem__
+
+sys.modules["nbformat"] = types.ModuleType("nbformat")
+sys.modules["nbformat"].read = lambda path, as_version: json.load(open(path), object_hook=Node)
+shutil.copytree("/wheels/authoring", "/packages/coursework/authoring")
+sys.path.append("/wheels")
+from released import digests_of
+released = {}
+for path in sorted(glob.glob("/wheels/sources/*.ipynb")):
+    try:
+        released |= digests_of(path)
+    except ValueError as error:
+        if "numpy" not in str(error):
+            raise
+json.dump({"cells": told, "released": released}, open("/wheels/told.json", "w"))
 """
 
 
 def numbers_in_a_browser(only):
-    kinds = kinds_of_cells()
-    with tempfile.TemporaryDirectory() as packages:
-        for name in PACKAGES:
-            shutil.copytree(find_spec(name).submodule_search_locations[0], Path(packages, name), ignore=UNUSED)
-        for name in ("sympy", "mpmath"):
-            shutil.copytree(find_spec(name).submodule_search_locations[0], Path(packages, name), ignore=UNUSED)
-        found = []
-        for path in notebooks(only):
-            found += moves_in_a_browser(path, kinds[str(path.relative_to(REPOSITORY).with_suffix(""))], packages)
-    return {"kernel": "", "cells": found, "doctests": [], "released": {}}
-
-
-UNUSED = shutil.ignore_patterns("__pycache__", "tests", "variants")
-
-
-def moves_in_a_browser(path, kinds, packages):
-    """The moves of those cells of a notebook that need SymPy only."""
-    cells = [cell for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
-    if not any(not kind["needs"] for kind in kinds):
-        return []
+    """The moves of those cells that need SymPy only, and the digests of the sources that need no more."""
+    kinds, stored = kinds_of_cells(), {}
+    for path in notebooks(only):
+        name = str(path.relative_to(REPOSITORY).with_suffix(""))
+        if any(not kind["needs"] for kind in kinds[name]):
+            cells = nbformat.read(path, as_version=4).cells
+            stored[name] = [cell for cell in cells if cell.cell_type == "code"]
+    codes = {name: [cell.source for cell in cells] for name, cells in stored.items()}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
+        for wheel in (*build_wheels(folder / "built"), *compile_wheels(sorted(FETCHED.glob("*.whl")))):
+            shutil.copy(wheel, folder)
         write_python(folder / "python")
-        shutil.copytree(packages, folder / "packages")
-        (folder / "codes.json").write_text(json.dumps([cell.source for cell in cells]), "utf8")
-        program = folder / "program.py"
-        program.write_text(IN_A_BROWSER.format(packages=PACKAGES, program=ALONE), "utf8")
-        subprocess.run([NODE, COMPILER[0], PYODIDE / "pyodide.mjs", program, folder], check=True)
+        shutil.copytree(Path(authoring.__file__).parent, folder / "authoring")
+        shutil.copy(Path(__file__).with_name("released.py"), folder)
+        (folder / "sources").mkdir()
+        for path in sources(only):
+            shutil.copy(path, folder / "sources")
+        (folder / "codes.json").write_text(json.dumps({"cells": codes, "packages": list(PACKAGES)}), "utf8")
+        (folder / "alone.py").write_text(ALONE, "utf8")
+        (folder / "program.py").write_text(IN_A_BROWSER, "utf8")
+        subprocess.run([NODE, COMPILER[0], PYODIDE / "pyodide.mjs", folder / "program.py", folder], check=True)
         told = json.loads((folder / "told.json").read_text("utf8"))
-    found = []
-    for number, (cell, kind, one) in enumerate(zip(cells, kinds, told, strict=True)):
-        if kind["needs"] or cell.execution_count is None:
-            continue
-        before, after = stored_outputs(cell), outputs_of_messages(one["messages"])
-        if one["outcome"]["status"] != "ok" or [form for form, _ in before] != [form for form, _ in after]:
-            found.append((place_of(path, number), str(one["outcome"])[:200], math.inf))
-        for (_, text), (_, now) in zip(before, after):
-            found += in_words(place_of(path, number), moves(text, now))
-    return found
+    moved = [
+        found
+        for name, cells in stored.items()
+        for number, (cell, kind, one) in enumerate(zip(cells, kinds[name], told["cells"][name], strict=True))
+        if not kind["needs"] and cell.execution_count is not None
+        for found in moves_in_a_browser(f"{name}, cell {number}", cell, one)
+    ]
+    return {"kernel": "", "cells": moved, "doctests": [], "released": told["released"]}
+
+
+def moves_in_a_browser(place, cell, told):
+    before, after = stored_outputs(cell), outputs_of_messages(told["messages"])
+    if told["outcome"]["status"] != "ok" or [form for form, _ in before] != [form for form, _ in after]:
+        return [(place, str(told["outcome"])[-300:], math.inf)]
+    return [found for (_, text), (_, now) in zip(before, after) for found in in_words(place, moves(text, now))]
 
 
 # --- on all of them -----------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from pathlib import Path
 import yaml
 
 from . import install, lite, whole_book
-from .paths import BUILD, HTML, contents, exam_edition, pages
+from .paths import BUILD, HTML, contents, exam_edition, let_everybody_read, pages
 
 EXAM_CONTENTS = BUILD / "_toc.yml"  # what is in an exam edition
 
@@ -58,6 +58,7 @@ def main():
     lite.write(HTML)
     whole_book.withdraw_outdated()
     install.write_list(HTML)
+    let_everybody_read(HTML)
     print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
 
 

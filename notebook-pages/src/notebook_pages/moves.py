@@ -111,4 +111,4 @@ def moves_of_outputs(stored, now):
 def _texts(output):
     """What of an output is text, by its kind."""
     data = {kind: content for kind, content in output.get("data", {}).items() if isinstance(content, str)}
-    return data | ({output["name"]: output["text"]} if "text" in output else {})
+    return dict(sorted((data | ({output["name"]: output["text"]} if "text" in output else {})).items()))

@@ -27,12 +27,11 @@ THEME_STYLES = (
 )
 STYLES = ("theme.css", "book.css")
 # Scripts that some extension would put on every page although no page uses them.
-UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS")
+UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight")
 #: The scripts of the page itself, in their order, which a page fetches as one file; and those that not all pages have.
 PAGE_SCRIPTS = (
     "documentation_options.js",
     "doctools.js",
-    "sphinx_highlight.js",
     "progress.js",
     "clipboard.min.js",
     "copybutton.js",
@@ -48,6 +47,9 @@ JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
 #: again for each in turn. book.js watches them instead.
 MEASURES = re.compile(r"\.forEach\(e=>\{e\.tabIndex=e\.scrollWidth>e\.clientWidth\|\|[^{}]*\}\)")
 UNUSED_FILES = (
+    "searchtools.js",
+    "language_data.js",
+    "sphinx_highlight.js",
     "**/*.map",
     "**/fontawesome*",
     "**/bootstrap*",

@@ -26,6 +26,15 @@ BUILD = Path("_build")
 HTML = BUILD / "html"
 
 
+def let_everybody_read(folder):
+    """Let a server read the pages that runs as nobody, whatever the umask of who builds them."""
+    for path in (folder, *folder.rglob("*")):
+        mode = path.stat().st_mode
+        wanted = mode | (0o555 if path.is_dir() else 0o444)
+        if wanted != mode:
+            path.chmod(wanted)
+
+
 def exam_edition(book=Path()):
     """Whether the book is built without worked solutions: BOOK_EXAM=1, or ``exam_edition`` in ``_config.yml``."""
     if chosen := os.environ.get("BOOK_EXAM"):

@@ -14,7 +14,6 @@ from urllib.parse import quote, urlencode, urlsplit
 
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
-from sphinx.util.index_entries import split_index_msg
 
 from .execution import STORED
 from .paths import edition
@@ -101,17 +100,6 @@ def forget(app, env, docname):
 def begin(app, env, docnames):
     if not hasattr(env, "book_descriptions"):
         env.book_descriptions = {}
-
-
-def keep_index_entries(app):
-    """Give the search what is in the index of pages that this build did not write: Sphinx forgets it."""
-    indexer, known = getattr(app.builder, "indexer", None), app.env.domaindata["index"]["entries"]
-    for page in set(indexer._titles) - set(indexer._index_entries) if indexer else ():
-        found = set()
-        for kind, value, target, main, _ in known.get(page, ()):
-            found |= {(name, target or "", main) for name in split_index_msg(kind, value)}
-        indexer._index_entries[page] = sorted(found)
-    return ()
 
 
 def outline(app):
@@ -225,5 +213,4 @@ def setup(app):
     app.connect("env-before-read-docs", begin)
     app.connect("env-purge-doc", forget)
     app.connect("html-page-context", write_head)
-    app.connect("html-collect-pages", keep_index_entries)
     app.connect("build-finished", write_files)

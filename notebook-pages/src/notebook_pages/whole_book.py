@@ -15,7 +15,7 @@ from pathlib import Path
 import yaml
 
 from . import install, offline
-from .paths import BUILD, HTML, REGISTERED, WEBSITE, fingerprint, pages
+from .paths import BUILD, HTML, REGISTERED, WEBSITE, fingerprint, let_everybody_read, pages
 
 NAME = REGISTERED["name"]
 FOLDER = HTML / "take-away"
@@ -143,6 +143,7 @@ def main():
             print(f"Made in {time.monotonic() - start:.0f} s: {path}, {path.stat().st_size / 1e6:.1f} MB")
     write_front_page()
     install.write_list(HTML)
+    let_everybody_read(HTML)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from .quaternion import QuaternionFigure
 from .simple import SimpleFigure
 from .successive import SuccessiveFigure
 from .triad import TriadFigure
+from .workbench import WorkbenchFigure
 
 __all__ = [
     "BeltFigure",
@@ -35,4 +36,5 @@ __all__ = [
     "SimpleFigure",
     "SuccessiveFigure",
     "TriadFigure",
+    "WorkbenchFigure",
 ]

@@ -10,7 +10,10 @@ from pathlib import Path
 
 FOLDER = Path(__file__).parent
 SHARED = ("mathematics", "glyphs", "model", "address", "shared")
+#: Modules that one figure alone needs, before its own.
+OWN = {"workbench": ("mismatch",)}
 IMPORT = re.compile(r"^import \{([^}]*)\} from .*;\n", re.MULTILINE)
+IMPORT_FROM = re.compile(r"^import \{([^}]*)\} from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
 COMMENT = re.compile(r"^\s*//.*\n|^ +", re.MULTILINE)
 
@@ -26,10 +29,15 @@ def body(name):
     return EXPORT.sub("", IMPORT.sub("", source(name)))
 
 
+def whole(name):
+    """Return the body of a figure's module, after those of the modules that it alone needs."""
+    return "".join(map(body, (*OWN.get(name, ()), name)))
+
+
 def esm(name):
     """Return the figure ``name`` as one module that imports nothing, as anywidget takes it."""
     # The figure has a scope of its own, where it may use a name that the shared modules have.
-    figure = f"const render = (() => {{\n{body(name)}return render;\n}})();\n"
+    figure = f"const render = (() => {{\n{whole(name)}return render;\n}})();\n"
     return "".join(map(body, SHARED)) + figure + "export default { render };\n"
 
 
@@ -41,8 +49,13 @@ def shared_script():
 
 def script(name):
     """Return the classic script that brings the figures of one kind to life."""
-    names = ", ".join(group.strip().rstrip(",") for group in IMPORT.findall(source(name)))
-    return f"(() => {{\nconst {{ {names} }} = orientation;\n{body(name)}orientation.start('{name}', render);\n}})();\n"
+    own = OWN.get(name, ())
+    texts = [IMPORT_FROM.findall(source(module)) for module in (*own, name)]
+    taken = {
+        one.strip(): 0 for text in texts for names, module in text if module not in own for one in names.split(",")
+    }
+    names = ", ".join(filter(None, taken))
+    return f"(() => {{\nconst {{ {names} }} = orientation;\n{whole(name)}orientation.start('{name}', render);\n}})();\n"
 
 
 def style():

@@ -1,6 +1,7 @@
 """The answer: what two programs mean differently by the numbers that they give for the same poses."""
 
 import functools
+import itertools
 import math
 from typing import NamedTuple
 
@@ -12,19 +13,6 @@ from . import search, table
 from .meaning import dcms_from_numbers, numbers_from_dcms
 from .mounting import mountings
 from .text import Poses, read_poses
-
-#: Turns that a reader can make with a thing in the hand: each the words, and the turns about the body's own axes.
-FURTHER_POSES = (
-    ("turn it by about 40 degrees about its x axis", (("x", 40),)),
-    ("turn it by about 30 degrees about its y axis", (("y", 30),)),
-    ("turn it by about 50 degrees about its z axis", (("z", 50),)),
-    ("turn it by about 40 degrees about its x axis, then by about 25 about its own y axis", (("x", 40), ("y", 25))),
-    (
-        "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, "
-        "then by about 20 about its own x axis",
-        (("z", 50), ("y", 30), ("x", 20)),
-    ),
-)
 
 #: Of so many readings it is seen whether a further pose tells them apart; more are told apart by a pose of three turns.
 LOOKED_AT = 300
@@ -127,18 +115,21 @@ def _verdict(classes, one, other, sides, tried, noise):
 
 def _classes(chains, sides):
     """Of chains that do the same to whatever is pasted, the simplest; simplest first."""
-    found = {}
+    found, seen = [], set()
     samples = {kind: _samples(kind, sides[0][0]) for kind in {chain.first["kind"] for chain in chains}}
-    for chain, key in zip(chains, _predictions(chains, samples, 5)):
-        found.setdefault(key, chain)
-    return list(found.values())
+    for chain, keys in zip(chains, _predictions(chains, samples, 5)):
+        if seen.isdisjoint(keys):
+            found.append(chain)
+            seen.update(keys)
+    return found
 
 
 def _predictions(chains, samples, decimals):
-    """What each chain predicts that the second side gives where the first gives these numbers, as keys.
+    """What each chain predicts that the second side gives where the first gives these numbers, as sets of keys.
 
-    Two chains with one key are mathematically the same, if the numbers are not special. What the second side would
-    write is read by one plain reading, whichever reading the chain has: that makes the keys comparable.
+    Two chains that share a key are mathematically the same, if the numbers are not special: both may print the same
+    (an orientation has two triples of Euler angles, and either may be printed). What the second side would write is
+    read by one plain reading, whichever reading the chain has: that makes the keys comparable.
     """
     dcms, members = {}, {}
     for which, chain in enumerate(chains):
@@ -149,14 +140,15 @@ def _predictions(chains, samples, decimals):
     for those in members.values():
         second = chains[those[0]].second
         predicted = np.concatenate([_related(chains[which].relation, dcms[id(chains[which].first)]) for which in those])
-        written = numbers_from_dcms(second, predicted)
-        plain = [
-            dcms_from_numbers(_plain_reading(second["kind"]), numbers).reshape(len(those), -1) for numbers in written
+        plain = _plain_reading(second["kind"])
+        rounded = [
+            (np.round(dcms_from_numbers(plain, numbers).reshape(len(those), -1, 9), decimals) + 0.0).tolist()
+            for numbers in numbers_from_dcms(second, predicted)
         ]
-        rounded = [np.round(entries, decimals) + 0.0 for entries in plain]
         for place, which in enumerate(those):
-            key = tuple(sorted(tuple(entries[place].tolist()) for entries in rounded))
-            keys[which] = (chains[which].first["kind"], second["kind"], key)
+            each_sample = zip(*([tuple(entries) for entries in written[place]] for written in rounded))
+            kinds = (chains[which].first["kind"], second["kind"])
+            keys[which] = {(kinds, *combined) for combined in itertools.product(*each_sample)}
     return keys
 
 
@@ -198,10 +190,10 @@ def _further_pose(chains, sides):
     """
     chains = chains[:LOOKED_AT]
     readings = {id(chain.first): chain.first for chain in chains}.values()
-    for words, turns in FURTHER_POSES:
+    for words, turns in table.FURTHER_POSES:
         if all(_tells_apart(chains, _turned(reading, sides[0][0].numbers[-1:], turns)) for reading in readings):
             return words
-    return FURTHER_POSES[-1][0]
+    return table.FURTHER_POSES[-1][0]
 
 
 def _turned(reading, numbers, turns):
@@ -216,7 +208,7 @@ def _turned(reading, numbers, turns):
 
 def _tells_apart(chains, samples):
     keys = _predictions([chain for chain in chains if chain.first["kind"] in samples], samples, 2)
-    return len(set(keys)) == len(keys)
+    return len(set().union(*keys)) == sum(map(len, keys))
 
 
 # --- in words -----------------------------------------------------------------------------------------------

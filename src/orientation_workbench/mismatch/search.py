@@ -138,5 +138,6 @@ def chains(first, second, noise):
                         relation, other = relations[k], second.readings[j]
                         total = [sum(one[what] for one in (reading, other, relation)) for what in ("faults", "rarity")]
                         fits.append(Chain(reading, other, relation, *total, float(gap)))
-    fits.sort(key=lambda chain: (chain.faults, chain.rarity))
+    # Rarities are tenths: what addition in another order leaves of them decides nothing. The words decide the rest.
+    fits.sort(key=lambda chain: (chain.faults, round(chain.rarity, 6), "; ".join(chain.words())))
     return fits, tried

@@ -298,6 +298,35 @@ def readings(kind, declared, degrees_likely=False):
     return [{"kind": kind, "choices": c, "faults": f, "rarity": r, "words": list(w)} for c, f, r, w in partial]
 
 
+#: Turns that a reader can make with a thing in the hand: each the words, and the turns about the body's own axes.
+FURTHER_POSES = (
+    ("turn it by about 40 degrees about its x axis", (("x", 40),)),
+    ("turn it by about 30 degrees about its y axis", (("y", 30),)),
+    ("turn it by about 50 degrees about its z axis", (("z", 50),)),
+    ("turn it by about 40 degrees about its x axis, then by about 25 about its own y axis", (("x", 40), ("y", 25))),
+    (
+        "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, "
+        "then by about 20 about its own x axis",
+        (("z", 50), ("y", 30), ("x", 20)),
+    ),
+)
+
+
+#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation.
+TAUGHT = {
+    "order": ("chapters/convention-card.html", "The convention card"),
+    "sequence": ("chapters/euler-angles.html", "Euler angles"),
+    "axes of the turns": ("chapters/successive-orientations.html", "Successive orientations"),
+    "places": ("chapters/euler-angles.html", "Euler angles"),
+    "signs": ("chapters/simple-orientations.html", "Simple orientations"),
+    "unit": ("chapters/convention-card.html", "The convention card"),
+    "place of the angle": ("chapters/axis-and-angle.html", "Axis and angle"),
+    "inverse": ("chapters/direction-cosine-matrices.html", "Direction cosine matrices"),
+    "axes": ("chapters/cases-from-practice.html", "Cases from practice"),
+    "turn": ("chapters/cases-from-practice.html", "Cases from practice"),
+}
+
+
 def whole_table():
     """The table as plain data, for the page."""
     return {
@@ -306,6 +335,8 @@ def whole_table():
         "kinds": KINDS,
         "book": BOOK,
         "inverse": INVERSE,
+        "taught": TAUGHT,
+        "further poses": [[words, [list(turn) for turn in turns]] for words, turns in FURTHER_POSES],
         "body axes": [[list(names), words] for names, words in BODY_AXES.items()],
         "world axes": [[list(names), words] for names, words in WORLD_AXES.items()],
     }

@@ -30,6 +30,7 @@ from ..checking.kinds import (
     PARTS,
     Blank,
     Fault,
+    Reading,
     Undecidable,
     calls_for,
     canonical,
@@ -38,6 +39,7 @@ from ..checking.kinds import (
     fingerprints,
     read,
     sign_limit,
+    tolerances,
     within,
 )
 from ..checking.mistakes import GENERAL, Mistake, by_short_name, short_name
@@ -52,6 +54,11 @@ from ..checking.units import UnknownUnit
 TOLERANCE = 5e-4
 #: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may cross.
 REACH = 0.5
+#: What is known of an answer is rounded to this share of what it may be off by; no finer than its doubles hold, and
+#: never to more than the last share: a seal must not follow from the last bits, which other processors have otherwise.
+ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-2")
+#: Where rounding tips from one number to the next: no number of few digits or small denominator lies there.
+TIPS = MP.mpf("0.6371")
 #: Edges of cells that an answer may be near: beyond each there is another locker, and one for every combination.
 MOST_EDGES = 6
 
@@ -87,6 +94,23 @@ class _Known(NamedTuple):
     plain: dict
     reading: object
     numbers: list
+
+
+def far_from_last_bits(question, reading):
+    """An answer with a tolerance, rounded so that what is sealed of it is the same on every processor."""
+    if question.get("tolerance") is None or reading.text is not None:
+        return reading
+    absolute, relative = tolerances(question)
+
+    def rounded(number):
+        allowed = absolute + relative * abs(number)
+        share = min(max(ROUNDED * allowed, DOUBLES * abs(number)), ROUNDED_MOST * allowed)
+        if not share:
+            return number
+        step = MP.mpf(10) ** MP.floor(MP.log10(share) + TIPS - 1)
+        return MP.sign(number) * MP.floor(abs(number) / step + 1 - TIPS) * step
+
+    return Reading([[rounded(number) for number in numbers] for numbers in reading.numbers])
 
 
 class Question:
@@ -167,7 +191,11 @@ class Question:
         return to_plain(answer, calls_for(self.public))
 
     def fingerprint_of(self, plain):
-        return fingerprint(self.public, read(self.public, plain))
+        return fingerprint(self.public, self.read(plain))
+
+    def read(self, plain):
+        """An answer that the author knows, as numbers that are the same on every processor."""
+        return far_from_last_bits(self.public, read(self.public, plain))
 
     def find(self, text):
         """What is known of a fingerprint, as a locker holds it; or ``None``."""
@@ -192,7 +220,7 @@ class Question:
         for attempt in range(50):
             self.public["salt"] = hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16]
             try:
-                reading = read(self.public, self.plain)
+                reading = self.read(self.plain)
                 numbers = canonical(self.public, reading) if reading.text is None else []
                 if varying is None:
                     varying = self._varying()
@@ -290,7 +318,7 @@ class Question:
         return known
 
     def _one(self, outcome, notes, plain):
-        reading = read(self.public, plain)
+        reading = self.read(plain)
         numbers = canonical(self.public, reading) if reading.text is None else []
         return _Known(outcome, notes, plain, reading, numbers)
 

@@ -50,12 +50,15 @@ def new(course):
 def release(only, no_archive, **folders):
     from .packing import archive
     from .release import release as make
+    from .selftest import too_easily_guessed
 
     course = _course(**folders)
     names = make(course, only)
     print(f"{len(names)} {'notebook' if len(names) == 1 else 'notebooks'} released.")
     if not no_archive:
         print(f"For students: {archive(course)}")
+    for line in too_easily_guessed(course, names):
+        print(f"`coursework selftest` will refuse {line}")
 
 
 def wheels(folder):
@@ -65,18 +68,30 @@ def wheels(folder):
     print(*(wheel(name, folder) for name in DISTRIBUTIONS), sep="\n")
 
 
+def _writable(page):
+    """The path of a page that is to be written; that it cannot be is said before the work is done."""
+    from .author import AuthorError
+
+    try:
+        Path(page).parent.mkdir(parents=True, exist_ok=True)
+        open(page, "a").close()
+    except OSError as error:
+        raise AuthorError(f"{page} cannot be written ({error.strerror}). Say where the page may go: --page") from None
+    return page
+
+
 def trial(name, page):
     from .trial import trial as show
 
     course = _course()
-    print(f"The page: {show(course, name, page or course.archive.with_name('try.html'))}")
+    print(f"The page: {show(course, name, _writable(page or course.archive.with_name('try.html')))}")
 
 
 def selftest(only, page, budget, **folders):
     from .selftest import selftest as try_all
 
     course = _course(**folders)
-    page = page or course.archive.with_name("selftest.html")
+    page = _writable(page or course.archive.with_name("selftest.html"))
     faults = try_all(course, page, budget, only)
     print(f"The page: {page}")
     if faults:

@@ -49,11 +49,24 @@ DISTRIBUTIONS = {
 }
 README = """Exercises of {title}
 
-1. Install Python 3.11 or newer, then in this folder:
+1. Install Python 3.11 or newer. Then, once, in this folder, on Linux or macOS:
 
+       python3 -m venv environment
+       source environment/bin/activate
        python -m pip install -r requirements.txt
 
-2. Start Jupyter and open a notebook:
+   and on Windows:
+
+       py -m venv environment
+       environment\\Scripts\\activate
+       python -m pip install -r requirements.txt
+
+   The folder "environment" is Python with what the exercises need, apart from that of your system. If somebody gave you
+   a folder "wheels" for a room without a network, the last line is
+
+       python -m pip install --no-index --find-links wheels -r requirements.txt
+
+2. Start Jupyter and open a notebook; another day begin with the second line above:
 
        jupyter lab
 

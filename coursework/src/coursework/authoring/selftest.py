@@ -6,6 +6,7 @@ with it, if anything is.
 
 import base64
 import concurrent.futures
+import contextlib
 import hashlib
 import html
 import io
@@ -143,11 +144,7 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
         found = Found(0, "")  # there is nothing to try a guess on
     else:
         found = attack_kept(question, text, budget, kept) if kept else attack(question, text, budget)
-    if found.way and found.tries < min(declared or BUDGET, budget):
-        faults.append(
-            f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}, with "
-            f'{LIGHT} point at most: "{question.name}": {rounded_down(found.tries)}'
-        )
+    faults += _guessed(question.name, found, declared, budget)
     return Finding(
         question.name,
         question.public["kind"],
@@ -158,6 +155,33 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
         question.worth,
         faults,
     )
+
+
+def _guessed(name, found, declared, budget):
+    """The fault of a question that is guessed sooner than its author declared, if it is."""
+    if not found.way or found.tries >= min(declared or BUDGET, budget):
+        return []
+    return [
+        f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}, with "
+        f'{LIGHT} point at most: "{name}": {rounded_down(found.tries)}'
+    ]
+
+
+def too_easily_guessed(course, only):
+    """What the attack finds of some notebooks, a line for each question; :func:`selftest` need not repeat it."""
+    paths = notebooks_in(course.sources, only)
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+        return [line for lines in pool.map(_guessed_in, paths, [course] * len(paths)) for line in lines]
+
+
+def _guessed_in(path, course):
+    source, declared = read_source(path), declared_strengths(course.sources)
+    found = []
+    for name, question in source.questions.items():
+        if not question.public.get("exam") and not kinds()[question.public["kind"]].by_a_person:
+            tries = attack_kept(question, text_of(source, question), BUDGET, course.archive.parent / "attacks")
+            found += [f"{name}: {fault}" for fault in _guessed(name, tries, declared.get(name), BUDGET)]
+    return found
 
 
 def rounded_down(tries):
@@ -428,8 +452,10 @@ def attack_kept(question, text, budget, folder):
     place = Path(folder, f"{hashlib.sha256(asked.encode()).hexdigest()[:24]}.json")
     if not place.exists():
         found = attack(question, text, budget)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_text(json.dumps(found), "utf8")
+        with contextlib.suppress(OSError):  # where nothing can be written, it is not kept
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(json.dumps(found), "utf8")
+        return found
     return Found(*json.loads(place.read_text("utf8")))
 
 

@@ -1,5 +1,6 @@
 """The commands of instructors, from ``coursework grade`` to ``coursework sample-class``."""
 
+import contextlib
 import re
 import sys
 
@@ -126,10 +127,35 @@ def _named(assignments):
     return {name: (notebooks or name).split(",") for name, _, notebooks in parts} or None
 
 
+class NeedsLinux(RuntimeError):
+    """This system keeps no programs apart in the way that grading does."""
+
+    def __str__(self):
+        return (
+            "this judges what strangers wrote, apart from all else and by means of Linux that this system has not. Run "
+            "it in WSL or in a container; review, merge, term and export run here, too."
+        )
+
+
+@contextlib.contextmanager
+def _on_linux():
+    """Where modules that only Unix has are missing, say what that means."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if error.name in ("fcntl", "resource"):
+            raise NeedsLinux from None
+        raise
+
+
 def grade(assignment, **options):
-    from .execution.sandbox import WeakIsolation, WorkerDied
-    from .grade import grade as grade_class
-    from .store import InUse
+    try:
+        with _on_linux():
+            from .execution.sandbox import WeakIsolation, WorkerDied
+            from .grade import grade as grade_class
+            from .store import InUse
+    except NeedsLinux as error:
+        sys.exit(f"coursework grade: {error}")
 
     try:
         grade_class(assignments=_named(assignment), **options)
@@ -146,12 +172,13 @@ def regrade(out, solutions):
 
     try:
         _regrade(out, solutions)
-    except (InUse, ValueError) as error:  # NothingToGrade is such
+    except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade is such
         sys.exit(f"coursework regrade: {error}")
 
 
 def _regrade(out, solutions):
-    from .grade import regrade as regrade_class
+    with _on_linux():
+        from .grade import regrade as regrade_class
     from .tables import number
 
     moved = regrade_class(out, solutions=solutions)
@@ -185,7 +212,7 @@ def review(out, grader, share, hide_names, solutions, port):
         print("\nThe decisions are brought into the marks and pages.")
         try:
             _regrade(out, solutions)
-        except (InUse, ValueError) as error:
+        except (InUse, NeedsLinux, ValueError) as error:
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 

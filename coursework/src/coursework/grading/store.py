@@ -5,13 +5,14 @@ it; every other file is made from the records and can be made again.
 """
 
 import contextlib
-import fcntl
 import hashlib
 import json
 import os
 import re
 import secrets
 from pathlib import Path
+
+from .locks import lock
 
 FORMAT = 3
 REFUSED = "refused.json"
@@ -39,7 +40,7 @@ class Store:
         self.records.mkdir(parents=True, exist_ok=True)
         with open(self.folder / "lock", "w") as self.lock:
             try:
-                fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                lock(self.lock, wait=False)
             except BlockingIOError:
                 raise InUse(f"Another run is at work in {self.folder}.") from None
             for path in self.folder.rglob(".half-*"):
@@ -161,15 +162,18 @@ def write(path, text, lasting=True, private=False):
     path = Path(path)
     path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
     half = path.with_name(f".half-{secrets.token_hex(8)}")
-    with open(os.open(half, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600 if private else 0o666), "wb") as file:
+    with open(
+        os.open(half, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600 if private else 0o666),
+        "wb",
+    ) as file:
         for piece in (text,) if isinstance(text, (str, bytes)) else text:
             file.write(piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece)
         if lasting:
             file.flush()
             os.fsync(file.fileno())
     os.replace(half, path)
-    if lasting:
-        folder = os.open(path.parent, os.O_RDONLY)
+    if lasting and hasattr(os, "O_DIRECTORY"):  # Windows opens no folder
+        folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
         try:
             os.fsync(folder)
         finally:

@@ -101,3 +101,21 @@ if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined
   };
   if (entry) addEventListener("load", show);
 }
+
+// The search is loaded when somebody goes to a field of it; the key / leads to one.
+{
+  const typing = "input, textarea, select, [contenteditable], .cm-content";
+  const script = document.querySelector("link[rel='search-script']")?.href;
+  let loaded = false;
+  const load = () => {
+    if (!loaded && script) document.head.append(Object.assign(document.createElement("script"), { src: script }));
+    loaded = true;
+  };
+  document.addEventListener("focusin", ({ target }) => target.closest("form.bd-search") && load());
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "/" || event.ctrlKey || event.metaKey || event.altKey || event.target.closest(typing)) return;
+    event.preventDefault();
+    document.querySelector(".search-button__button")?.click();
+  });
+  if (document.querySelector("form.bd-search:not(dialog form)")) load();
+}

@@ -250,8 +250,9 @@ class WarmParent:
                 Path(module.__file__).read_bytes()
         except OSError as error:
             problems.append(
-                f"the isolated process cannot read Python's own libraries ({error}); "
-                "start grading as the user who owns them"
+                f"the isolated process cannot read Python's own libraries ({error}). Root runs it as another user, and "
+                "a umask such as 077 has kept them from all others: let them be read, with `chmod -R o+rX` on their "
+                "folder and `chmod o+x` on those above it, or grade as an ordinary user whose own they are"
             )
         try:
             Path("trial").write_bytes(b"x" * 100)

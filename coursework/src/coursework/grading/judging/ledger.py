@@ -9,7 +9,6 @@ decides names what was decided when they looked: if it is another by then, nothi
 import contextlib
 import csv
 import datetime
-import fcntl
 import getpass
 import hashlib
 import json
@@ -17,6 +16,7 @@ import os
 import secrets
 from typing import NamedTuple
 
+from ..locks import lock
 from ..submissions.identity import decoded
 from ..tables import as_written
 
@@ -255,7 +255,7 @@ class Ledger:
     def _alone(self):
         """Keep other writers away, and know what they have written."""
         with open(self.path, "ab+") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
+            lock(file)
             file.seek(0)
             whole = file.read()
             cut = whole[whole.rfind(b"\n") + 1 :]

@@ -1,0 +1,43 @@
+"""Changes of the checking that no other test had noticed: each is noticed here."""
+
+import pytest
+import sympy as sm
+
+from coursework.authoring.author import question
+from coursework.checking import evaluate
+from coursework.checking.plain import to_plain
+
+# ---- about three digits ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [1, 2, 4, 9])
+def test_what_agrees_to_three_digits_is_told_so_and_nothing_else(count):
+    right = [sm.log(prime) for prime in (2, 3, 5, 7, 11, 13, 17, 19, 23)[:count]]
+    one = question("trial/logarithms", "vector", right, length=count, symbols={"x": None})
+
+    def reply(share):
+        return one.reply_to(to_plain([float(entry) * (1 + share) for entry in right])).note
+
+    assert {reply(share) for share in (1e-3, -1e-3, 5e-4, -3e-4)} == {"rounded too far"}
+    assert "rounded too far" not in {reply(share) for share in (0.1 * count, -0.1 * count)}
+    assert len(one.near) <= 4  # with cells as narrow as what it may be off by, there would be hundreds
+
+
+# ---- work and powers ---------------------------------------------------------------------------
+
+
+def test_nothing_to_the_power_of_nothing_is_one():
+    nodes = [["integer", "0"], ["Pow", 0, 0], ["float", "0.0"], ["Pow", 2, 0], ["Pow", 0, 2]]
+    assert [evaluate.values(nodes, {})[place] for place in (1, 3, 4)] == [1, 1, 1]
+    assert sm.Integer(0) ** 0 == 1
+
+
+@pytest.mark.parametrize(("operation", "count"), [("sin", 1_500), ("Add", 12_000), ("Mul", 12_000)])
+def test_complex_numbers_are_dearer(operation, count):
+    """Many times the time of real ones: what is enough for real numbers is too much for complex ones."""
+
+    def last(first):
+        return evaluate.values([first, *([operation, 0] for _ in range(count))], {})[-1]
+
+    assert not isinstance(last(["rational", "1", "2"]), Exception)
+    assert isinstance(last(["constant", "ImaginaryUnit"]), evaluate.TooLarge)

@@ -1,0 +1,213 @@
+"""The search: an index of places, made from the built pages, and the palette that asks it (``js``).
+
+Nothing is written for it but ``synonyms.yml``, the words of readers for what the book calls otherwise: the places, with
+their numbers, first sentences and characteristic words, are those of the pages.
+"""
+
+import json
+import os
+import re
+import subprocess
+from collections import Counter
+from hashlib import sha256
+from pathlib import Path
+
+import yaml
+from bs4 import BeautifulSoup
+
+from ..finish import pages_of
+from ..paths import NODE, NODE_MODULES, is_solutions, parts
+
+HERE = Path(__file__).parent
+ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
+SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
+WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
+WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
+FIELDS = ("kind", "page", "anchor", "number", "title", "about", "tex", "weight")
+SYNONYMS = Path("synonyms.yml")
+LONGEST_SENTENCE = 100
+LITTLE = 0.5  # what counts no more than this, is found by its title alone
+#: Sections of every chapter: nobody looks for them by their name.
+EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
+REST = "script, style, svg, pre, .eqno, table, .admonition-title"
+
+
+def text_of(element, left_out=()):
+    """The words of an element, without those of the elements ``left_out``."""
+    parts, waiting = [], [element]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, str):
+            parts.append(one)
+        elif id(one) not in left_out:
+            waiting += reversed(one.contents)
+    return re.sub(r" (?=[,.;:)])", "", " ".join(" ".join(parts).split()))
+
+
+def first_sentence(element, left_out=()):
+    """The first words that stand as text in ``element``: a sentence, or as much of it as a line shows."""
+    paragraph = element if element.name in ("dd", "p") else element.find("p", recursive=False)
+    words = text_of(paragraph, left_out) if paragraph else ""
+    sentence = re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0]
+    return sentence if len(sentence) <= LONGEST_SENTENCE else sentence[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
+
+
+def title_of(heading):
+    """The number and the words of a heading."""
+    number = heading.select_one(".section-number")
+    words = number.extract().get_text().strip().rstrip(".") if number else ""
+    return words, text_of(heading)
+
+
+def captions():
+    """The part of the book in which a page stands."""
+    return {page: caption for caption, pages in parts() for page in pages}
+
+
+def entries_of_page(page, article):
+    """The places of one page, with the text of each in ``text``, from which its words are chosen."""
+    tex = {
+        box["id"]: " ".join(one["data-tex"] for one in box.select("[data-tex]"))
+        for box in article.select("div.math[id]")
+    }
+    numbers = {
+        box["id"]: text_of(box.select_one(".eqno")).strip("()# ") for box in article.select("div.math[id]:has(.eqno)")
+    }
+    for rest in article.select(".headerlink, .katex-html, annotation"):
+        rest.extract()
+    rest = {id(one) for one in article.select(REST)}
+    inner = rest | {id(one) for one in article.select("section")}
+    for section in article.select("section[id]"):
+        heading = section.find(["h1", "h2", "h3", "h4"], recursive=False)
+        if heading is None:
+            continue
+        number, title = title_of(BeautifulSoup(str(heading), "lxml").find(heading.name))
+        if title in EVERYWHERE and heading.name != "h1":
+            continue
+        kind = "page" if heading.name == "h1" else "example" if title.startswith("Worked example") else "section"
+        anchor = "" if kind == "page" else section["id"]
+        own = " ".join(
+            text_of(part, inner) for part in section.contents if id(part) not in inner and part is not heading
+        )
+        yield {
+            "kind": kind, "title": title, "number": number, "anchor": anchor, "about": first_sentence(section, rest),
+            "text": own,
+        }  # fmt: skip
+        for box in section.select("div.math[id]"):
+            if box.find_parent("section") is section and box["id"] in numbers:
+                number = numbers[box["id"]]
+                called = {"kind": "equation", "title": f"Equation {number}: {title}", "number": number}
+                yield called | {"anchor": box["id"], "tex": tex[box["id"]]}
+    for exercise in article.select(".admonition.exercise[id]"):
+        number, _, title = text_of(exercise.select_one(".admonition-title")).partition("(")
+        body = exercise.select_one("section, div") or exercise
+        called = {"kind": "exercise", "title": title.rstrip(" )") or number, "number": number.strip()}
+        yield called | {"anchor": exercise["id"], "about": first_sentence(body), "text": text_of(body)}
+    for name in article.select("dl.glossary > dt[id]"):
+        yield {
+            "kind": "term",
+            "title": text_of(name),
+            "anchor": name["id"],
+            "about": first_sentence(name.find_next("dd")),
+        }
+    for name in article.select("dl.py > dt.sig[id]"):
+        words = name["id"].partition(".")[2]
+        if name["id"].count(".") <= 2:  # no methods of classes within modules
+            yield {
+                "kind": "function",
+                "title": words,
+                "anchor": name["id"],
+                "about": first_sentence(name.find_next("dd")),
+            }
+
+
+def words_of(entry):
+    """The words of an entry's text that its title and first sentence do not have; one that comes back counts twice."""
+    count = Counter(word for word in WORD.findall(entry.pop("text", "").lower()) if len(word) > 2)
+    shown = set(WORD.findall(f"{entry['title']} {entry.get('about', '')}".lower()))
+    return " ".join(word for word, number in count.items() if word not in shown for _ in range(1 + (number > 2)))
+
+
+def weight_of(page):
+    """What a page counts beside the others: chapters explain, and others hold what belongs to them."""
+    if is_solutions(page):
+        return 0.3
+    if page.startswith("exercises/"):
+        return LITTLE
+    return 0.8 if page.startswith("appendix/reference") else 1
+
+
+def index(site):
+    """What the palette asks: pages, places and synonyms, as plain data; and the words of each place's text."""
+    caption, pages, entries = captions(), [], []
+    for path in pages_of(site):
+        page = path.relative_to(site).with_suffix("").as_posix()
+        if page in ("search", "404", "appendix/subject-index"):
+            continue
+        # Drawings and programs are most of a page, and say nothing to the search.
+        text = re.sub(r"<(svg|pre|script)\b.*?</\1>", "", path.read_text("utf8"), flags=re.DOTALL)
+        if (article := BeautifulSoup(text, "lxml").article) is None:
+            continue
+        found = list(entries_of_page(page, article))
+        if not found:
+            continue
+        pages.append([page, found[0]["title"], caption.get(page, "")])
+        weight = weight_of(page)
+        for entry in found:
+            entries.append(entry | {"page": len(pages) - 1} | ({"weight": weight} if weight != 1 else {}))
+    words = [words_of(entry) if entry.get("weight", 1) > LITTLE else "" for entry in entries]
+    for entry in entries:
+        if entry.get("weight", 1) <= LITTLE:
+            entry["about"] = ""
+    synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else []
+    found = {"pages": pages, "fields": FIELDS, "entries": [row(one) for one in entries], "synonyms": synonyms}
+    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), words
+
+
+def row(entry):
+    """An entry without the names of its fields, and without what is empty at its end."""
+    values = [entry.get(field, "") for field in FIELDS]
+    while values[-1] == "":
+        values.pop()
+    return values
+
+
+def write(site):
+    """Write the palette with its index as one script: it answers from a disk, too, where pages may fetch nothing.
+
+    The words of the text, which weigh more than all the rest, come after the first answer, as another script.
+    """
+    flags = ["--bundle", "--minify", "--format=iife", "--legal-comments=none", "--log-level=warning"]
+    command = [NODE, ESBUILD, HERE / "js" / "palette.js", *flags]
+    environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
+    done = subprocess.run(command, check=True, env=environment, stdout=subprocess.PIPE)
+    found, words = index(site)
+    text = f"self.searchWords={json.dumps(words, ensure_ascii=False, separators=(',', ':'))};"
+    (site / WORDS).write_text(text, "utf8")
+    found["words"] = f"{WORDS.as_posix()}?v={sha256(text.encode()).hexdigest()[:8]}"
+    data = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
+    (site / SCRIPT).write_text(f"self.searchIndex={data};\n{done.stdout.decode()}", "utf8")
+
+
+def begin(app):
+    app.builder.search = False  # Sphinx's own, which finds the words of a page and leads to its top
+
+
+def add_page(app):
+    yield "search", {"title": "Search"}, "search.html"
+
+
+def add_address(app, pagename, templatename, context, doctree):
+    context["search_script"] = context["pathto"](SCRIPT.as_posix(), 1)
+
+
+def finish(app, exception):
+    if not exception and app.builder.format == "html":
+        write(Path(app.outdir))
+
+
+def setup(app):
+    app.connect("builder-inited", begin)
+    app.connect("html-collect-pages", add_page)
+    app.connect("html-page-context", add_address)
+    app.connect("build-finished", finish, priority=970)  # when all pages are written, before they name its version

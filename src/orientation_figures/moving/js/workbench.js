@@ -1,0 +1,149 @@
+import { IDENTITY, dcmFromQuaternion, quaternionFromDcm, determinant, scale, slerp } from './mathematics.js';
+import { explain, drawnDcms, mendingLine, taughtBy } from './mismatch.js';
+import { fragmentOf } from './address.js';
+import { Sheet, button, calm, change, choice, element, follow, glide, group, liveText, numberField, onceAFrame, open, put, readout, stage,
+  write } from './shared.js';
+
+const REACH = 1.25, APART = 165, SIZE = 100;   // as in stills/workbench.py
+const UNKNOWN = 'not known', SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'xzy', 'yzx', 'zxz', 'zyz', 'xyx', 'xzx', 'yxy', 'yzy'];
+const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector', 'axis and angle'];
+// Of one engine and its prose: what the answer is called.
+const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers cannot decide.',
+  unrelated: 'These are not the same motion.' };
+
+const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN
+  && (name === 'kind' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
+const several = (count, one) => `${count} ${one}${count === 1 ? '' : 's'}`;
+
+export function render({ model, el }) {
+  const table = model.get('table'), examples = model.get('examples');
+  let found = null, fault = '', shown = [IDENTITY, IDENTITY], stop = () => {};
+  const sheet = new Sheet({ bounds: [-330, -172, 330, 172], size: SIZE, changed: () => redraw(),
+    name: 'The frames of both programs, each beside the frame N.' });
+  const redraw = onceAFrame(draw);
+  const words = liveText();
+  const sides = ['first', 'second'].map((side, k) => {
+    const field = element('textarea', { rows: 5, spellcheck: 'false', 'aria-label': `What the ${side} program gives`,
+      input: () => change(model, { [side]: field.value }) });
+    const is = (name) => model.get(`${side}_is`)[name];
+    const set = (values) => change(model, { [`${side}_is`]: { ...model.get(`${side}_is`), ...values } });
+    const kind = choice({ name: `The ${side} numbers are`, options: KINDS, hidden: true, change: (value) => set({ kind: value }) });
+    const sequence = choice({ name: `Sequence of the ${side} angles`, options: [[UNKNOWN, 'sequence not known'], ...SEQUENCES.map((one) => [one, [...one].join('-')])],
+      hidden: true, change: (value) => set({ sequence: value }) });
+    const title = ['The first program gives', 'The second program gives'][k];
+    return { field, box: group(title, 'side', element('div', { class: 'title' }, title),
+      element('div', { class: 'row-of-controls' }, kind.element, sequence.element), field), show() {
+      if (document.activeElement !== field && field.value !== model.get(side)) field.value = model.get(side);
+      kind.show(is('kind'));
+      sequence.show(is('sequence'));
+      sequence.element.hidden = is('kind') !== 'Euler angles' && is('kind') !== UNKNOWN;
+    } };
+  });
+  const example = choice({ name: 'An example', options: [['', 'An example'], ...Object.keys(examples).map((name) => [name, name])], hidden: true,
+    change: (name) => {
+      if (!name) return;
+      const [first, second] = examples[name];
+      for (const side of sides) side.field.blur();
+      change(model, { first, second, noise: 0, first_is: { kind: UNKNOWN, sequence: UNKNOWN }, second_is: { kind: UNKNOWN, sequence: UNKNOWN } });
+    } });
+  const noise = numberField({ name: 'They may differ by, in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
+  const verdict = element('div', { class: 'verdict' });
+  const code = element('output', { class: 'result', 'aria-label': 'The line that mends it' });
+  const mend = group('The line that mends it', 'controls line', element('div', { class: 'title' }, 'The line that mends it, in NumPy and SciPy'), code,
+    button('Copy the line', async () => {
+      await navigator.clipboard.writeText(`${code.textContent}\n`);
+      words.say('The line is copied.');
+    }));
+  const post = button('Copy an address that carries this case', async () => {
+    const place = el.closest('[id]')?.id || 'workbench';
+    try {
+      const content = Object.fromEntries(['first', 'second', 'first_is', 'second_is', 'noise'].map((name) => [name, model.get(name)]));
+      await navigator.clipboard.writeText(location.href.split('#')[0] + fragmentOf(place, content));
+      words.say('The address is copied. Whoever opens it sees these numbers; they are sent to no server.');
+    } catch (error) {
+      words.say(error.message);
+    }
+  });
+  open(el, element('div', { class: 'controls converter' }, sides[0].box, sides[1].box),
+    element('div', { class: 'row-of-controls' }, example.element, noise.element, post),
+    verdict, mend, readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$']),
+    stage(sheet, words));
+
+  // The orientations at the last pose, reached by one turn from where the drawing stands.
+  function glideTo(dcms) {
+    stop();
+    const proper = dcms.every((dcm) => determinant(dcm) > 0) && shown.every((dcm) => determinant(dcm) > 0);
+    if (calm() || !proper) {
+      shown = dcms;
+      redraw();
+      return;
+    }
+    const from = shown.map(quaternionFromDcm), to = dcms.map(quaternionFromDcm);
+    stop = glide((part) => {
+      shown = from.map((start, k) => dcmFromQuaternion(slerp(start, to[k], part)));
+      redraw();
+    });
+  }
+
+  function judge() {
+    for (const side of sides) side.show();
+    noise.show?.(model.get('noise'));
+    fault = '';
+    found = null;
+    try {
+      found = explain(model.get('first'), model.get('second'), table, { firstDeclared: knownOf(model.get('first_is')),
+        secondDeclared: knownOf(model.get('second_is')), noise: model.get('noise') * Math.PI / 180 });
+    } catch (error) {
+      fault = error.message;
+    }
+    sides.forEach((side, k) => put(side.field, 'aria-invalid', String(fault.includes(`the ${['first', 'second'][k]} side`))));
+    verdict.replaceChildren(...(found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'),
+      element('p', {}, `${fault[0].toUpperCase()}${fault.slice(1)}.`)]));
+    const line = found?.verdict === 'named' ? mendingLine(found.chains[0]) : '';
+    mend.hidden = !line;
+    write(code, line);
+    words.say(found ? `${HEADINGS[found.verdict]} ${found.faults.join('; ')}` : fault);
+    if (found) glideTo(drawnDcms(found, table, found.poses - 1));
+  }
+
+  function draw() {
+    sheet.draw(() => {
+      for (const [k, letter] of ['A', 'B'].entries()) {
+        const origin = scale((2 * k - 1) * APART / SIZE, sheet.view[0]);
+        sheet.triad('N', IDENTITY, { origin, reach: REACH });
+        sheet.triad(letter, shown[k], { origin });
+      }
+    });
+  }
+
+  judge();
+  draw();
+  return follow(model, ['first', 'second', 'first_is', 'second_is', 'noise'], judge);
+}
+
+// The answer as the reader sees it; every fault leads to where the book teaches it.
+function answer(found, table) {
+  const best = found.chains[0], parts = [element('p', { class: 'heading' }, HEADINGS[found.verdict])];
+  if (found.verdict === 'unrelated') {
+    const poses = found.poses === 1 ? 'this pose' : `these ${found.poses} poses`;
+    return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.`)];
+  }
+  if (found.verdict === 'undecided') parts.push(element('p', {}, 'The simplest reading is:'));
+  if (found.faults.length) {
+    const links = taughtBy(best, table);
+    parts.push(element('ul', {}, ...found.faults.map((fault, k) => element('li', {}, `${fault[0].toUpperCase()}${fault.slice(1)}. `,
+      ...(links[k] ? [element('a', { href: links[k][0] }, links[k][1])] : [])))));
+  }
+  if (found.verdict !== 'same' || found.residual > 1e-3) parts.push(element('p', {}, `What is left then is ${Number(found.residual.toPrecision(2))} degrees.`));
+  if (found.furtherPose) {
+    parts.push(element('p', { class: 'further' }, `To decide, ${found.furtherPose}, and paste that pose as well, on a line of its own.`));
+  }
+  const others = found.chains.slice(1);
+  if (others.length) {
+    const first = others.slice(0, 60).map((chain) => element('li', {}, chain.words || 'both mean the same'));
+    const rest = others.length > 60 ? [element('li', {}, `and ${several(others.length - 60, 'more reading')}`)] : [];
+    parts.push(element('details', {}, element('summary', {}, `${several(others.length, 'other reading')} ${others.length === 1 ? 'fits' : 'fit'} as well`),
+      element('ul', {}, ...first, ...rest)));
+  }
+  return parts;
+}

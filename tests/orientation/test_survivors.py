@@ -1,0 +1,69 @@
+"""Changes of the mathematics that no other test had noticed: each is noticed here. `make mutants` looks for more."""
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+from orientation import (
+    angle_between,
+    dcm_from_rotation_vector,
+    interpolate_quaternions,
+    mean_orientation,
+    random_orientations,
+)
+
+# ---- between two orientations ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("exponent", [*range(-16, 1), -310])
+def test_slerp_keeps_all_digits_however_near_the_two_are(exponent):
+    for mantissa in (1.0, 3.7, 9.9):
+        half = mantissa * 10.0**exponent / 10
+        found = interpolate_quaternions((1, 0, 0, 0), (float(mpmath.cos(half)), 0, float(mpmath.sin(half)), 0), 0.3)
+        with mpmath.workdps(40):
+            right = float(mpmath.sin(mpmath.mpf("0.3") * half))
+        assert found[2] == pytest.approx(right, rel=2e-15 if exponent > -300 else 1e-12)
+        assert found[0] == pytest.approx(float(mpmath.cos(0.3 * half)), abs=3e-16)
+
+
+@pytest.mark.parametrize("scalar", [0.0, 1e-17, -1e-16, 2e-14])
+def test_no_way_is_shorter_between_orientations_half_a_turn_apart(scalar):
+    with pytest.raises(ValueError, match="half a turn apart"):
+        interpolate_quaternions((1, 0, 0, 0), (scalar, 0.6, 0.8, 0), 0.5)
+
+
+@pytest.mark.parametrize("scalar", [1e-10, -1e-10, 1e-6])
+def test_one_way_is_shorter_as_soon_as_they_are_nearer(scalar):
+    found = interpolate_quaternions((1, 0, 0, 0), (scalar, 0.6, 0.8, 0), 0.5)
+    assert np.allclose(found, np.array([1, *np.sign(scalar) * np.array([0.6, 0.8, 0])]) / np.sqrt(2), atol=1e-5)
+
+
+# ---- very small turns --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("length", [1e-308, 1e-200, 1e-170, 1e-150, 1e-9])
+def test_the_square_of_a_small_rotation_vector_may_be_nothing(length):
+    """Where the square of its length is 0 in doubles, the length itself is not."""
+    found = dcm_from_rotation_vector((0.6 * length, 0, 0.8 * length))
+    assert np.array_equal(np.diag(found), [1, 1, 1])
+    assert np.allclose([found[0, 1], found[1, 2]], [0.8 * length, 0.6 * length], rtol=1e-15, atol=0)
+    assert found[0, 2] == pytest.approx(0.24 * length * length, rel=1e-6)
+
+
+# ---- the mean of far orientations --------------------------------------------------------------
+
+
+def cost(vector, dcms, weights):
+    return weights @ angle_between(dcms, dcm_from_rotation_vector(vector)) ** 2
+
+
+@pytest.mark.parametrize("seed", [16, 21, 29, 41])
+def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
+    """Beyond a quarter turn the place that averaging leads to from the first guess need not be the best."""
+    dcms, weights = random_orientations(4, seed), np.full(4, 0.25)
+    found = mean_orientation(dcms, metric="angle")
+    starts = Rotation.random(12, random_state=seed).as_rotvec()
+    best = min(minimize(cost, start, (dcms, weights), method="Nelder-Mead").fun for start in starts)
+    assert weights @ angle_between(dcms, found) ** 2 <= best + 1e-6

@@ -1,0 +1,94 @@
+"""The search of the page and that of Python say the same of the same text."""
+
+import json
+import random
+import subprocess
+
+import numpy as np
+import pytest
+from places import REPOSITORY
+from test_mismatch import BAD, QUATERNIONS, SPELLINGS, both_sides, known, printed, random_chain
+
+from notebook_pages.paths import NODE
+from orientation import quaternion_from_dcm, random_orientations, simple_dcm
+from orientation_workbench import explain
+from orientation_workbench.mismatch import mend, table
+
+SCRIPTS = REPOSITORY / "src" / "orientation_figures" / "moving" / "js"
+PROGRAM = """
+import { readFileSync } from 'node:fs';
+import { explain, mendingLine } from '%s';
+const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
+console.log(JSON.stringify(cases.map(({ first, second, declared, noise }) => {
+  try {
+    const found = explain(first, second, table, { firstDeclared: declared[0], secondDeclared: declared[1], noise });
+    return { verdict: found.verdict, faults: found.faults, left: found.chains.length, residual: found.residual,
+      further: found.furtherPose, mended: found.verdict === 'named' ? mendingLine(found.chains[0]) : '' };
+  } catch (error) { return { error: error.message }; }
+})));
+"""
+
+
+def in_the_page(cases):
+    program = PROGRAM % (SCRIPTS / "mismatch.js").as_uri()
+    given = json.dumps({"table": table.whole_table(), "cases": cases})
+    done = subprocess.run([NODE, "--input-type=module", "-e", program], input=given, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout)
+
+
+def in_python(case):
+    try:
+        found = explain(case["first"], case["second"], first_declared=case["declared"][0],
+                        second_declared=case["declared"][1], noise=case["noise"])  # fmt: skip
+    except ValueError as error:
+        return {"error": str(error)}
+    return {"verdict": found.verdict, "faults": list(found.faults), "left": len(found.chains),
+            "residual": found.residual, "further": found.further_pose,
+            "mended": mend.python_line(found.chains[0]) if found.verdict == "named" else ""}  # fmt: skip
+
+
+def case(first, second, declared=({}, {}), noise=0.0):
+    return {"first": first, "second": second, "declared": list(declared), "noise": noise}
+
+
+def mixtures(count, seed):
+    generator, orientations = random.Random(seed), np.random.default_rng(seed)
+    for _ in range(count):
+        declared = known(generator), known(generator)
+        chain = random_chain(generator, declared, generator.randint(1, 3))
+        yield case(*map(printed, both_sides(chain, random_orientations(2, orientations))), declared)
+
+
+def special():
+    dcm, poses = (
+        np.array(random_orientations(1, np.random.default_rng(2))[0]),
+        random_orientations(4, np.random.default_rng(3)),
+    )
+    constants = random_orientations(2, np.random.default_rng(4))
+    for spelling in SPELLINGS.values():
+        yield case(spelling.format(*(f"{entry:.6f}" for entry in dcm.ravel())), printed([dcm.T], 6))
+    for spelling in QUATERNIONS.values():
+        parts = dict(zip("wxyz", (f"{entry:.6f}" for entry in quaternion_from_dcm(dcm))))
+        yield case(spelling.format(**parts), printed([dcm], 6))
+    for text, _ in BAD.values():
+        yield case(text, "1 0 0 0")
+    yield case("roll: 0.1\npitch: 0.2\nyaw: 0.3", "0.3 0.2 0.1", ({}, {"sequence": "zyx"}))
+    yield case(printed([simple_dcm("z", 0.5)]), printed([simple_dcm("z", -0.5)]))
+    yield case("1 0 0 0", "1 0 0 0")
+    yield case("0.3 0 0", "0.3 0 0", ({"sequence": "zyx"}, {"sequence": "zyx"}))
+    yield case(printed(poses[:3]), printed(constants[0] @ poses[:3]))
+    yield case(printed(poses), printed(constants[0] @ poses @ constants[1]))
+    yield case(printed(poses[:2]), printed(poses[2:]))
+    yield case(printed(poses), printed(np.array(simple_dcm("x", 0.02)) @ np.swapaxes(poses, 1, 2)), noise=0.03)
+    yield case(printed([dcm]), printed([dcm @ np.diag([1, 1, -1])]))
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(2_000, marks=pytest.mark.long)])
+def test_both_say_the_same(count):
+    cases = [*special(), *mixtures(count, seed=8)]
+    for one, found in zip(cases, in_the_page(cases)):
+        wanted = in_python(one)
+        if "residual" in wanted and wanted["residual"] is not None:
+            assert found.pop("residual") == pytest.approx(wanted.pop("residual"), rel=1e-6, abs=1e-9), one
+        assert found == wanted, one

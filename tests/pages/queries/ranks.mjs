@@ -1,0 +1,9 @@
+// Asks the search of the built book what readers type: node ranks.mjs FOLDER, queries on stdin, places on stdout (JSON).
+import { readFileSync } from "node:fs";
+import { finder } from "../../../notebook-pages/src/notebook_pages/search/js/find.js";
+
+const data = (name) => JSON.parse(/^self\.\w+=(.*);$/m.exec(readFileSync(`${process.argv[2]}/${name}`, "utf8"))[1]);
+const index = data("search.js");
+const find = finder(index, data("search-words.js"));
+const place = ({ page, anchor = "" }) => index.pages[page][0] + (anchor && `#${anchor}`);
+console.log(JSON.stringify(JSON.parse(readFileSync(0)).map((query) => find(query).map(place))));
