@@ -16,7 +16,8 @@ import yaml
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from places import REPOSITORY
 
-from notebook_pages import page
+from notebook_pages import build as book
+from notebook_pages import page, unchanged
 from notebook_pages.alternative_text import says_something
 from notebook_pages.notebooks import all_notebooks, normalise
 from notebook_pages.paths import NODE, NODE_MODULES, WEBSITE, fingerprint, let_everybody_read
@@ -320,3 +321,43 @@ def test_whoever_builds_it_a_server_can_read_the_site(tmp_path):
     let_everybody_read(tmp_path / "html")
     for path in (tmp_path / "html", *(tmp_path / "html").rglob("*")):
         assert stat.S_IMODE(path.stat().st_mode) == (0o755 if path.is_dir() else 0o644)
+
+
+def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(unchanged, "REPOSITORY", tmp_path)
+    for name in (
+        "chapters/one.md",
+        "src/orientation/a.py",
+        ".venv/ready-book",
+        "_build/html/one.html",
+        "tests/test_a.py",
+    ):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("one", "utf8")
+    assert not unchanged.is_unchanged()
+    unchanged.note()
+    assert unchanged.is_unchanged()
+    for name in ("tests/test_a.py", "_build/jupyter_cache/one", ".git/index", "src/orientation/__pycache__/a.pyc"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("another", "utf8")
+        assert unchanged.is_unchanged(), name
+    for name in ("chapters/one.md", "chapters/two.md", "src/orientation/a.py", ".venv/ready-book", "references.bib"):
+        (tmp_path / name).write_text("another", "utf8")
+        assert not unchanged.is_unchanged(), name
+        unchanged.note()
+    (tmp_path / "_build" / "html" / "one.html").unlink()
+    assert not unchanged.is_unchanged(), "a page has gone"
+    unchanged.note()
+    monkeypatch.setenv("BOOK_EXAM", "1")
+    assert not unchanged.is_unchanged(), "another edition is asked for"
+
+
+def test_a_build_with_nothing_to_do_starts_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(unchanged, "REPOSITORY", tmp_path)
+    (tmp_path / "_build").mkdir()
+    unchanged.note()
+    monkeypatch.setattr(book, "subprocess", None)  # whatever it would start fails
+    book.main()
+    assert "Nothing has changed" in capsys.readouterr().out

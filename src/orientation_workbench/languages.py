@@ -10,6 +10,9 @@ from unittest import mock
 
 import numpy as np
 import sympy as sm
+from sympy.logic.boolalg import BooleanFunction
+from sympy.printing.codeprinter import CodePrinter
+from sympy.printing.rust import RustCodePrinter
 
 import orientation
 
@@ -120,6 +123,13 @@ CONVENTIONS = {
     "unit": ("radians", "degrees"),
 }
 
+
+class _RustPrinter(RustCodePrinter):
+    """SymPy's own (1.14) multiplies a sum without its brackets: 0.5 (x - 1) y becomes 0.5 x - 1 y."""
+
+    _print_Mul = CodePrinter._print_Mul
+
+
 #: For each language: its printer, how an entry of an argument is written (from 0 or from 1), a line that holds a part,
 #: a line that gives a result, and the frame around them.
 LANGUAGES = {
@@ -130,7 +140,8 @@ LANGUAGES = {
             "#include <array>\n#include <cmath>\n\nstd::array<double, {count}> {function}({arguments})\n{{\n"
             "    std::array<double, {count}> result;\n{body}\n    return result;\n}}",
             "const std::array<double, {count}>& {name}"),
-    "Rust": (sm.rust_code, "{name}[{index}]", 0, "    let {part}: {rust} = {value};", "    result[{index}] = {value};",
+    "Rust": (_RustPrinter().doprint, "{name}[{index}]", 0, "    let {part}: {rust} = {value};",
+             "    result[{index}] = {value};",
              "fn {function}({arguments}) -> [f64; {count}] {{\n    let mut result = [0.0; {count}];\n{body}\n"
              "    result\n}}",
              "{name}: &[f64; {count}]"),
@@ -207,7 +218,12 @@ def formula_in(
 
     lines = [
         part_line.format(
-            part=part, value=write(value), **{name: types[value.is_Boolean] for name, types in TYPES.items()}
+            part=part,
+            value=write(value),
+            **{
+                name: types[isinstance(value, (sm.core.relational.Relational, BooleanFunction))]
+                for name, types in TYPES.items()
+            },
         )
         for part, value in parts
     ]

@@ -51,21 +51,22 @@ def text_of(name):
     return "\n\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown")
 
 
+BOXES = re.compile(r"^`{3,}\{(predict|exercise|recap)\}.*?^`{3,}$", re.MULTILINE | re.DOTALL)
+
+
 @pytest.mark.parametrize("name", ALL)
-def test_a_chapter_leads_from_reading_to_doing(name):
-    """Predictions, a worked example, a recap with a reply to each choice, and exercises with difficulty and time."""
+def test_a_chapter_is_read_first_and_practised_at_its_end(name):
+    """How many questions stand where is the author's to judge; but what interrupts no argument stands after it."""
     text = text_of(name)
-    assert len(re.findall(r"^`{3,}\{predict\}", text, re.MULTILINE)) >= 3
-    [recap] = re.findall(r"^````\{recap\}\n(.*?)^````$", text, re.MULTILINE | re.DOTALL)
-    questions = re.findall(r"^```\{question\}\n(.*?)^```$", recap, re.MULTILINE | re.DOTALL)
-    assert len(questions) >= 5
-    for question in questions:
-        choices = len(re.findall(r"\n\n(?=[^\n]+\n: )", question))
-        assert choices >= 2, question
-    assert re.search(r"worked[ -]example", text, re.IGNORECASE)
-    exercises = re.findall(r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL)
-    assert len(exercises) >= 2
-    for exercise in exercises:
+    reading, _, practice = text.partition("## Exercises\n")
+    assert practice and "\n## " not in practice
+    assert [box[1] for box in BOXES.finditer(reading) if box[1] != "predict"] == []
+    kinds = [box[1] for box in BOXES.finditer(practice)]
+    assert "predict" not in kinds and "exercise" in kinds and "recap" not in kinds[1:]
+    assert reading.rstrip().endswith(":::") or ":class: summary" in reading
+    for question in re.findall(r"^```\{question\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+        assert len(re.findall(r"\n\n(?=[^\n]+\n: )", question)) >= 2, question
+    for exercise in re.findall(r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL):
         assert re.search(r"^:difficulty: [123]$", exercise, re.MULTILINE), exercise
         assert re.search(r"^:minutes: \d+$", exercise, re.MULTILINE), exercise
 
@@ -93,16 +94,16 @@ def test_a_chapter_says_what_for_shows_something_that_moves_and_sums_up(name):
     text = text_of(name)
     for part in ("objectives", "summary"):
         [points] = re.findall(rf"^:::\{{admonition\}} .*\n:class: {part}\n(.*?)^:::$", text, re.MULTILINE | re.DOTALL)
-        assert len(re.findall(r"^- ", points, re.MULTILINE)) >= 3
+        assert re.search(r"^- ", points, re.MULTILINE)
     code = "\n".join(cell.source for cell in cells(name) if cell.cell_type == "code")
     assert re.search(r"^from orientation_figures\.(moving|animation) import ", code, re.MULTILINE)
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_a_chapter_has_six_sealed_questions(name):
+def test_a_chapter_has_sealed_questions(name):
     notebook = nbformat.read(REPOSITORY / "exercises" / f"{name}.ipynb", as_version=4)
     code = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "code")
-    assert len(set(re.findall(rf"^check\([\"']({name}/[\w-]+)[\"']", code, re.MULTILINE))) >= 6
+    assert re.search(rf"^check\([\"']({name}/[\w-]+)[\"']", code, re.MULTILINE)
 
 
 @pytest.mark.parametrize("name", ALL)

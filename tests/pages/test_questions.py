@@ -53,7 +53,8 @@ def test_prediction_covers_what_follows_until_it_is_made(context, site):
     box = page.locator(COVERING).first
     label, right = box.get_attribute("id"), box.get_attribute("data-answer")
     covered = page.locator(f"#{label} + .covered")
-    assert covered.evaluate("element => element.inert && getComputedStyle(element.firstElementChild).opacity") == "0"
+    assert covered.evaluate("element => element.inert && getComputedStyle(element.firstElementChild).display") == "none"
+    assert 10 < covered.bounding_box()["height"] < 40  # one line with a word on it, never an empty field
     box.get_by_role("button", name="That is my prediction").click()
     assert box.get_by_role("status").inner_text() == "Choose one first."
     wrong = box.locator(f'input:not([value="{right}"])').first
@@ -89,6 +90,19 @@ def test_answer_can_be_seen_without_committing(context, site):
     box = page.locator(COVERING).first
     box.get_by_role("button", name="Show the answer").click()
     assert box.locator(".replies li.right").is_visible()
+    assert page.evaluate(KEPT).get("pages", {}).get(CHAPTER, {}).get("answers", {}) == {}
+
+
+def test_predictions_are_asked_open_or_left_out_as_the_reader_likes(context, site):
+    page = opened(context, site)
+    label = page.locator(COVERING).first.get_attribute("id")
+    for way, asks, folded in (("all open", True, 0), ("left out", False, 0), ("asked as they come", True, None)):
+        page.get_by_label("Predictions").select_option(label=way)
+        page.reload()
+        assert page.locator(f"#{label}").is_visible() == asks
+        assert page.locator(".covered").count() == (page.locator(COVERING).count() if folded is None else folded)
+        if way == "all open":
+            assert page.locator(f"#{label} .replies li.right").is_visible()
     assert page.evaluate(KEPT).get("pages", {}).get(CHAPTER, {}).get("answers", {}) == {}
 
 

@@ -370,8 +370,9 @@ def test_the_room_that_files_take_is_measured(tmp_path):
         assert scratch.used_bytes(tmp_path / "none", 1000) == 0
 
 
-def test_what_root_alone_may_read_is_opened_and_not_given_to_root(monkeypatch):
+def test_what_root_alone_may_read_is_opened_and_not_given_to_root(tmp_path, monkeypatch):
     """Root is told to let others read its Python: it owns it already."""
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sympy.__file__", "/nobody/may/read/this.py")
     (said,) = [line for line in WarmParent.cannot_work() if "cannot read" in line]
     assert "chmod -R o+rX" in said and "umask" in said and "user who owns them" not in said

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from . import install, lite, whole_book
+from . import install, lite, unchanged, whole_book
 from .paths import BUILD, HTML, contents, exam_edition, let_everybody_read, pages
 
 EXAM_CONTENTS = BUILD / "_toc.yml"  # what is in an exam edition
@@ -40,6 +40,9 @@ def contents_of_this_edition():
 
 def main():
     start = time.monotonic()
+    if unchanged.is_unchanged():
+        print(f"Nothing has changed since this was built: {HTML / 'index.html'}")
+        return
     print("Building the book ...", flush=True)
     jupyter_book = Path(sys.executable).with_name("jupyter-book")
     # What was fetched for browsers is byte-compiled while the pages are read one by one.
@@ -59,6 +62,7 @@ def main():
     whole_book.withdraw_outdated()
     install.write_list(HTML)
     let_everybody_read(HTML)
+    unchanged.note()
     print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import yaml
 
-from . import install, offline
+from . import install, offline, unchanged
 from .paths import BUILD, HTML, REGISTERED, WEBSITE, fingerprint, let_everybody_read, pages
 
 NAME = REGISTERED["name"]
@@ -144,6 +144,7 @@ def main():
     write_front_page()
     install.write_list(HTML)
     let_everybody_read(HTML)
+    unchanged.note()
 
 
 if __name__ == "__main__":

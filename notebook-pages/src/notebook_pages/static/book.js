@@ -84,6 +84,11 @@ for (const text of document.querySelectorAll("div.cell_output .output pre")) {
   text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|\S {2,}\S/m.test(text.textContent));
 }
 
+// What a check says where nobody has answered yet is known from the dots in its cell.
+for (const output of document.querySelectorAll("div.cell_output > .output")) {
+  output.hidden = /^\s*…\s*Not attempted/.test(output.textContent);
+}
+
 document.querySelector("button.print-page")?.addEventListener("click", () => print());
 
 // A page opened from disk may not read other pages: the search then shows titles alone.

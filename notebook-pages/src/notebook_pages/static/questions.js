@@ -107,6 +107,7 @@
     return covered;
   };
 
+  const openers = [];   // of the predictions, for those who want them all open or none
   for (const box of document.querySelectorAll(".question")) {
     const way = { answer: choosing, number: typing, angle: drawing }[box.dataset.kind](box);
     const fold = box.querySelector(".replies");
@@ -119,7 +120,7 @@
 
     const before = progress.here().answers[box.id];
     const covered = Number(box.dataset.covers) && !before ? cover(box) : null;
-    if (covered) box.append(make("p", { className: "cover-note", textContent: "What comes next is covered until you have answered." }));
+    if (covered) box.append(make("p", { className: "cover-note", textContent: "What comes next is folded until you have answered." }));
     const uncover = () => {
       box.querySelector(".cover-note")?.remove();
       if (!covered?.inert) return;
@@ -163,14 +164,46 @@
       show(before.last);
     }
     // Whoever comes by a link to a place that is covered sees it.
-    const arrive = () => location.hash && covered?.contains(document.getElementById(location.hash.slice(1))) && uncover();
+    const arrive = () => {
+      const place = location.hash && document.getElementById(location.hash.slice(1));
+      if (!place || !covered?.inert || !covered.contains(place)) return;
+      uncover();
+      place.scrollIntoView();
+    };
     addEventListener("hashchange", arrive);
     arrive();
-    addEventListener("beforeprint", () => {
+    const open = () => {
       uncover();
       fold.hidden = false;
       fold.open = true;
+    };
+    addEventListener("beforeprint", open);
+    if (box.classList.contains("predict")) openers.push({ open, uncover });
+  }
+
+  // Whoever wants the predictions of the book all open, or none of them, says so once.
+  const first = document.querySelector(".question.predict");
+  if (first) {
+    const ways = [["asked", "asked as they come"], ["open", "all open"], ["none", "left out"]];
+    const choice = make("select", {}, ...ways.map(([value, words]) => make("option", { value, textContent: words })));
+    const apply = (chosen) => {
+      document.documentElement.dataset.predictions = chosen;
+      choice.value = chosen;
+      if (chosen === "open") for (const { open } of openers) open();
+      if (chosen === "none") for (const { uncover } of openers) uncover();
+    };
+    choice.addEventListener("change", () => {
+      apply(choice.value);
+      try {
+        localStorage.setItem("book predictions", choice.value);
+      } catch {}  // a frame without storage: it holds for this page
     });
+    first.before(make("p", { className: "said predictions" }, make("label", {}, "Predictions: ", choice)));
+    let chosen;
+    try {
+      chosen = localStorage.getItem("book predictions");
+    } catch {}
+    apply(ways.some(([value]) => value === chosen) ? chosen : "asked");
   }
 
   // How the recap went, in one line.

@@ -143,7 +143,7 @@
   function tellSize() {
     const told = localStorage.getItem(`book ${place} fetched`) === data.pyodide ? "" : `${Math.round(data.bytes / 1e6)} MB`;
     for (const run of [runPage, ...document.querySelectorAll("button.run-cell")]) {
-      if (told) run.dataset.size = told;
+      if (told && run === runPage) run.dataset.size = told;   // once a page
       else delete run.dataset.size;
       run.setAttribute("aria-label", `${run.dataset.label}${told && `, which first fetches ${told}`}`);
     }

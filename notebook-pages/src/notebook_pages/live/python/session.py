@@ -13,7 +13,6 @@ import importlib
 import io
 import json
 import linecache
-import re
 import sys
 import time
 import tokenize
@@ -346,21 +345,14 @@ def ends_in_semicolon(code):
     return [token.string for token in tokens if token.type not in skipped][-1:] == [";"]
 
 
-OWN_PACKAGES = re.compile(r"[\\/](orientation\w*|coursework)[\\/]")
-
-
 def shorten(told):
-    """Keep of a traceback the cells' own lines and, of others', the last one only, unless it is the book's own.
-
-    Where the book's packages raise an error, what they say is all that helps, and not the line that says it.
-    """
+    """Keep of a traceback the cells' own lines: what a package says helps, and not the line of it that says so."""
     while told is not None:
         frames = [frame for frame in told.stack if frame.filename != __file__]
         own = [frame for frame in frames if frame.filename.startswith("cell ")]
-        last = frames[-1:] if frames and frames[-1] not in own and not OWN_PACKAGES.search(frames[-1].filename) else []
         if len(own) > 12:  # infinite recursion
             own = own[:4] + own[-4:]
-        told.stack = traceback.StackSummary.from_list(own + last)
+        told.stack = traceback.StackSummary.from_list(own or frames[-1:])
         told = told.__cause__ or (None if told.__suppress_context__ else told.__context__)
 
 
