@@ -14,6 +14,7 @@ import psutil
 import pytest
 from grading_class import handed_in, put, write_sources
 
+from coursework.grading.execution import cluster_keys
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import grade
 
@@ -26,11 +27,11 @@ LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_w
 
 
 @contextlib.contextmanager
-def cluster(folder, workers=1, preload=None):
+def cluster(folder, workers=1, preload=None, keys=()):
     """The scheduler and workers of a cluster, in processes of their own: its address and its processes."""
     place = folder / "scheduler.json"
     address = ["--scheduler-file", str(place)]
-    local = ["--host", "127.0.0.1", "--no-dashboard"]
+    local = ["--host", "127.0.0.1", "--no-dashboard", *keys]
     commands = [["scheduler", *address, *local, "--port", "0"]]
     loads = ["--preload", str(preload)] if preload else []
     commands += [["worker", *address, *local, "--nthreads", "1", "--local-directory", str(folder), *loads]] * workers
@@ -194,3 +195,44 @@ def test_a_cluster_that_is_not_there_is_said(submissions, solutions, tmp_path, m
     monkeypatch.setattr(cluster, "CONNECT_WITHIN", "0.5s")
     with pytest.raises(ValueError, match="no Dask scheduler to be reached at tcp://127.0.0.1:1"):
         graded(submissions, solutions, tmp_path / "out", "tcp://127.0.0.1:1")
+
+
+def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions):
+    """An open scheduler runs anybody's code, on all of its machines."""
+    keys = tmp_path / "keys"
+    assert cluster_keys.make_keys(keys) and not cluster_keys.make_keys(keys)
+    assert all(path.stat().st_mode & 0o077 == 0 for path in (keys, keys / cluster_keys.KEY))
+    for command in (
+        cluster_keys.scheduler(keys, "192.0.2.7"),
+        cluster_keys.worker(keys, "tls://192.0.2.7:8786", 2),
+    ):
+        assert command[command.index("--protocol") + 1] == "tls" and "--tls-ca-file" in command
+    solutions = write_sources(tmp_path / "solutions")
+    options = {"solutions": solutions, "limits": LIMITS, "show": io.StringIO()}
+    with cluster(tmp_path, keys=[*cluster_keys.options(keys), "--protocol", "tls"]) as (address, _):
+        assert address.startswith("tls://")
+        with pytest.raises(OSError):
+            distributed.Client(address.replace("tls:", "tcp:"), timeout="5s")
+        other = tmp_path / "other"
+        cluster_keys.make_keys(other)
+        with pytest.raises(ValueError, match="no Dask scheduler to be reached"):
+            grade(submissions, tmp_path / "none", scheduler=address, keys=other, **options)
+        grade(submissions, tmp_path / "there", scheduler=address, keys=keys, **options)
+    grade(submissions, tmp_path / "here", **options)
+    one, two = ((tmp_path / place / "grades.csv").read_bytes() for place in ("there", "here"))
+    assert one == two
+
+
+@pytest.mark.parametrize(
+    "address, keys, said",
+    [
+        ("tcp://192.0.2.7:8786", None, "asks for no key"),
+        ("192.0.2.7:8786", None, "asks for no key"),
+        ("tls://192.0.2.7:8786", None, "--keys FOLDER"),
+        ("tls://192.0.2.7:8786", "nowhere", "Copy the folder"),
+    ],
+)
+def test_a_cluster_without_keys_is_refused(tmp_path, address, keys, said):
+    with pytest.raises(cluster_keys.NoKeys, match=said):
+        cluster_keys.demand_keys(address, keys and tmp_path / keys)
+    cluster_keys.demand_keys("tcp://127.0.0.1:8786", None)

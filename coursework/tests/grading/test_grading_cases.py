@@ -12,17 +12,19 @@ import sympy as sm
 from grading_class import notebook, put
 
 from coursework.__main__ import main
+from coursework.authoring.author import AuthorError
 from coursework.checking import evaluate
 from coursework.checking.plain import read_plain, to_plain
-from coursework.checking.variants import siblings_of, variant_of
+from coursework.checking.variants import names_of_variants, numbers_of_variants, siblings_of, variant_of
 from coursework.grading.execution import isolation
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
-from coursework.grading.judging.cases import Case, Contracts, variants_of
+from coursework.grading.judging.cases import Case, Contracts, case_by_rule, variants_of
 from coursework.grading.judging.ledger import CUT, Collision, Ledger
 from coursework.grading.judging.marking import questions_of
+from coursework.grading.reporting.laboratory import BadPolicy, Policies
 from coursework.grading.review import Class
 from coursework.grading.store import Store
 from coursework.grading.submissions import pictures
@@ -53,9 +55,9 @@ def beams(weights, calls="[[1.5], [-2.0], [0.25]]"):
     )
 
 
-def write_beams(folder, *arguments):
+def write_beams(folder, *arguments, **more):
     folder.mkdir(exist_ok=True)
-    nbformat.write(beams(*arguments), folder / "beams.ipynb")
+    nbformat.write(beams(*arguments, **more), folder / "beams.ipynb")
     (folder / secret.FILE).write_text("5eed" * 16)
     return folder
 
@@ -448,3 +450,140 @@ def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
     assert isolation.user_for_students(4242, "0 1000 1\n65534 100000 1\n") == isolation.OUTSIDER
     with pytest.raises(RuntimeError, match="no other user than root"):
         isolation.user_for_students(4242, "         0       1000          1\n")
+
+
+# --- variants by their names --------------------------------------------------------------------
+
+
+def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
+    names = names_of_variants([{"given": {"weight": weight}} for weight in WEIGHTS])
+    whole = {"names": names, "edition": "autumn"}
+    students = [f"student {number}" for number in range(300)]
+    before = {one: [names[k] for k in numbers_of_variants(one, NAME, whole, 8)] for one in students}
+    assert {order[0] for order in before.values()} == set(names)
+    for gone in (0, 3, 7):
+        left = names[:gone] + names[gone + 1 :]
+        for order in (left, left[::-1]):
+            about = {"names": order, "edition": "autumn"}
+            for one in students:
+                after = [order[k] for k in numbers_of_variants(one, NAME, about, 7)]
+                assert after == [name for name in before[one] if name != names[gone]]
+    # Another edition, another question, another student: another order. Capitals and spaces make none.
+    assert numbers_of_variants("ann", NAME, whole, 8) == numbers_of_variants(" Ann", NAME, whole, 8)
+    others = {**whole, "edition": ""}
+    assert (
+        sum(numbers_of_variants(one, NAME, whole, 8) != numbers_of_variants(one, NAME, others, 8) for one in students)
+        > 250
+    )
+    assert numbers_of_variants("", NAME, whole, 8) == list(range(8))
+
+
+def test_without_names_the_rule_is_that_of_before():
+    """Whoever holds sealed files of today keeps the own numbers."""
+    for one in STUDENTS:
+        first = variant_of(one, NAME, 8, "autumn")
+        assert numbers_of_variants(one, NAME, {"edition": "autumn"}, 8) == [(first + k) % 8 for k in range(8)]
+
+
+def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tmp_path):
+    sources = write_beams(tmp_path / "solutions", WEIGHTS)
+    (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by name"\n')
+    question = questions_of(sources / "beams.ipynb", b"any")[NAME]
+    names = question["public"]["names"]
+    assert list(variants_of(question)) == names and len(names) == 8
+    for one in STUDENTS:
+        order = numbers_of_variants(one, NAME, question["public"], 8)
+        case = case_by_rule(NAME, question, one)
+        assert case.own.variant == names[order[0]] and case.rule == "by name, of 8"
+        assert [place.variant for place in case.siblings.values()] == [names[k] for k in order[1:3]]
+    left = write_beams(tmp_path / "solutions", WEIGHTS[1:])
+    fewer = questions_of(left / "beams.ipynb", b"any")[NAME]
+    gone = (set(names) - set(fewer["public"]["names"])).pop()
+    for one in STUDENTS:
+        before, after = case_by_rule(NAME, question, one), case_by_rule(NAME, fewer, one)
+        assert before.own.variant in (gone, after.own.variant)
+    (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by chance"\n')
+    with pytest.raises(AuthorError, match="by name"):
+        questions_of(sources / "beams.ipynb", b"any")
+
+
+# --- the regrade laboratory ---------------------------------------------------------------------
+
+
+def mended(folder, exchanged, weights=WEIGHTS, **more):
+    write_beams(folder, weights, **more)
+    path = folder / "beams.ipynb"
+    text = path.read_text()
+    assert exchanged[0] in text
+    path.write_text(text.replace(*exchanged))
+    return folder
+
+
+def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_path, capsys):
+    solutions = mended(tmp_path / "mended", ("2*beam.weight", "2*beam.weight if beam.weight > 50 else 1"))
+    losing = {student for student in STUDENTS if begun.own[student] < 50}
+    before = list(out.all())
+    found = regrade(out.folder, solutions=solutions, dry_run=True)
+    assert {one.student for one in found.lose} == losing and list(out.all()) == before
+    gaining = {one.student for one in found.gain}
+    assert gaining <= {"wrong"}
+    rows = (out.folder / "regrade.csv").read_text().splitlines()
+    page = (out.folder / "regrade.html").read_text()
+    assert len(rows) == 1 + len(found.changes) and all(f">{student}<" in page for student in losing)
+    # Without a yes nothing moves; with one what was said.
+    with pytest.raises(SystemExit, match="No mark has moved"):
+        main(["regrade", str(out.folder), "--solutions", str(solutions)])
+    assert list(out.all()) == before and f"{len(losing)} student" in capsys.readouterr().out
+    main(["regrade", str(out.folder), "--solutions", str(solutions), "--yes"])
+    assert f"{len(losing) + len(gaining)} moved." in capsys.readouterr().out
+    assert {one["student"] for one in out.all() if one["marks"][NAME]["points"] == 0} == losing | {"wrong"} - gaining
+    assert regrade(out.folder, solutions=solutions, dry_run=True).changes == []
+
+
+@pytest.mark.parametrize("policy", ["never lower", "full credit", "taken out", "void"])
+def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy):
+    gone = begun.own[STUDENTS[0]]
+    had = {student for student in STUDENTS if begun.own[student] == gone}
+    left = [weight for weight in WEIGHTS if weight != gone]
+    solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"), left)
+    policies = {
+        "never lower": Policies(never_lower=(NAME,)),
+        "full credit": Policies(full_credit=(NAME,)),
+        "taken out": Policies(full_credit=(f"{NAME}@taken-out",), never_lower=(NAME,)),
+        "void": Policies(void=(NAME,)),
+    }[policy]
+    before = marks_of(out, NAME)
+    regrade(out.folder, solutions=solutions, policies=policies)
+    after = marks_of(out, NAME)
+    for student, mark in after.items():
+        expected = {
+            "never lower": (before[student]["points"], 2),
+            "full credit": (2, 2),
+            "taken out": (2 if student in had else before[student]["points"], 2),
+            "void": (0, 0),
+        }[policy]
+        if student != "wrong" or policy != "taken out":
+            assert (mark["points"], mark["worth"]) == expected, student
+    # What was chosen holds from then on; and a person's decision stands above it.
+    records = list(out.all())
+    assert regrade(out.folder, solutions=solutions) == [] and list(out.all()) == records
+    Ledger(out.folder).add(out.read(STUDENTS[0], "beams"), NAME, 0.5, who="Ann")
+    regrade(out.folder, solutions=solutions)
+    assert out.read(STUDENTS[0], "beams")["marks"][NAME]["points"] == (0 if policy == "void" else 1)
+    with pytest.raises(BadPolicy, match="no question 'beams/lode'"):
+        regrade(out.folder, solutions=solutions, policies=Policies(void=("beams/lode",)))
+
+
+def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
+    """A mended solution is judged from what is stored; a mended call is run, for those who are asked it."""
+    said = io.StringIO()
+    options = {"limits": LIMITS, "show": said}
+    solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
+    assert grade(begun.place / "in", out.folder, solutions=solutions, **options)["graded"] == 0
+    assert {mark["points"] for mark in marks_of(out, NAME).values()} == {0}
+    calls = mended(tmp_path / "calls", ("2*x", "x + x"), calls="[[7.5], [1.5]]")
+    found = regrade(out.folder, solutions=calls, dry_run=True)
+    assert {one.student for one in found.again} == {*STUDENTS, "wrong"} and "runs just these" in found.lines()[-1]
+    few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
+    assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
+    assert out.read(STUDENTS[0], "beams")["marks"]["beams/twice"]["points"] == 3

@@ -448,3 +448,14 @@ def test_who_handed_in_what_cannot_be_graded_has_not_handed_in_nothing(late, tmp
     said = "\n".join(gradebooks.fill(tmp_path / "book.csv", gradebooks.Marks(late)))
     assert "Dora" in said.partition("cannot be graded")[2]
     assert "Eve" in said.partition("nothing was handed in")[2].partition("cannot be graded")[0]
+
+
+def test_marks_are_handed_on_as_of_a_date(late):
+    found = late.read("ann", "turns")
+    ledger = Ledger(late.folder)
+    for month, credit in ((10, 0.5), (12, 1)):
+        made = ledger.decision(found, "turns/sum", credit, who="Ann")
+        ledger.append([made._replace(when=f"2026-{month}-20T12:00:00.000000+00:00")])
+    for day, points in (("2026-10-19", "6"), ("2026-10-21", "3"), ("2026-12-24", "6")):
+        late.folder.joinpath(gradebooks.WRITTEN).unlink(missing_ok=True)
+        assert filled(late, "--as-of", day)[0] == points

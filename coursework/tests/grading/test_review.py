@@ -301,9 +301,8 @@ def test_the_commands(out, capsys, tmp_path, graded):
         main(["merge", str(out), str(tmp_path / "none")])
 
 
-def test_who_stops_judging_has_the_decisions_in_the_marks(out, graded):
-    solutions = str(graded / "solutions")
-    command = [sys.executable, "-m", "coursework", "review", str(out), "--solutions", solutions]
+def test_who_stops_judging_has_the_decisions_in_the_marks(out):
+    command = [sys.executable, "-m", "coursework", "review", str(out)]
     # Whoever starts the tests in the background has them, and all that they start, not hear Ctrl+C.
     hear = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=hear) as page:

@@ -208,7 +208,8 @@ def numbers_in_a_browser(only):
         shutil.copy(Path(__file__).with_name("released.py"), folder)
         (folder / "sources").mkdir()
         for path in sources(only):
-            shutil.copy(path, folder / "sources")
+            text = json.dumps(nbformat.read(path, as_version=4))  # with each cell as one text
+            (folder / "sources" / path.name).write_text(text, "utf8")
         (folder / "codes.json").write_text(json.dumps({"cells": codes, "packages": list(PACKAGES)}), "utf8")
         (folder / "alone.py").write_text(ALONE, "utf8")
         (folder / "program.py").write_text(IN_A_BROWSER, "utf8")

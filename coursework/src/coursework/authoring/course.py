@@ -30,6 +30,9 @@ class Course(NamedTuple):
     chapter, solution : str
         Addresses that the graders' feedback leads to, with ``{notebook}`` and ``{question}`` in them: where one reads
         on, and the worked solution, named here once it is released.
+    variants : str
+        How variants are given to students: ``"by name"``, so that one that is taken out moves only those who had it, or
+        by number if nothing is said. Say it before a term begins: students' numbers change with it.
     moved : dict
         Names that questions had in an earlier edition, and those that they have now.
     """
@@ -44,11 +47,13 @@ class Course(NamedTuple):
     edition: str = ""
     chapter: str = ""
     solution: str = ""
+    variants: str = ""
     moved: dict = {}
 
 
 #: What a course may say that is no path.
-TEXTS = ("package", "edition", "chapter", "solution")
+TEXTS = ("package", "edition", "chapter", "solution", "variants")
+BY_NAME = "by name"
 MOVED = "moved"
 DEFAULTS = {
     "sources": "solutions",
@@ -87,6 +92,12 @@ def edition_of(folder):
     return course.edition if course else ""
 
 
+def gives_by_name(folder):
+    """Whether the course of a folder gives variants by their names."""
+    course = _course_around(folder)
+    return bool(course) and course.variants == BY_NAME
+
+
 def links_of(folder):
     """The addresses that the course of a folder names, by what they lead to."""
     course = _course_around(folder)
@@ -101,6 +112,8 @@ def _read(path):
     moved = said.pop(MOVED, {})
     if not isinstance(moved, dict) or not all(isinstance(name, str) for name in moved.values()):
         raise AuthorError(f'{path}: [{MOVED}] holds old and new names of questions: "levers/arm" = "levers/moment"')
+    if said.get("variants", BY_NAME) != BY_NAME:
+        raise AuthorError(f'{path}: variants = "{BY_NAME}", or nothing; this is {said["variants"]!r}.')
     unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(

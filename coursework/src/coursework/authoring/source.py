@@ -17,9 +17,10 @@ from typing import NamedTuple
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
-from coursework.checking.variants import Given, packed, shown
+from coursework.checking.variants import Given, names_of_variants, packed, shown
 
 from . import author
+from .course import gives_by_name
 from .packing import VERSION
 from .variation import COUNT, VARIANTS, Rule, drawn_in, written
 
@@ -157,6 +158,7 @@ def read_source(path, variant=0, edition="", only=None, pictures=None):
             _demand_marks(cell.source, f"{path.name}, cell {number}")
     answers, questions, figures = {}, {}, {}
     rules, given, texts, identities = {}, {}, _texts_of_variants(notebook), []
+    by_name = gives_by_name(path.parent)
 
     def draw(name, count=COUNT, where=None, picture=None, **pools):
         rules[name] = Rule(name, count, pools, where, picture)
@@ -188,9 +190,11 @@ def read_source(path, variant=0, edition="", only=None, pictures=None):
                 "variant": variant,
                 "variants": rules[name].count,
                 "text": texts[name],
-                "shown": {key: text for key, text in written(given[name]).items() if f"{{{{{key}}}}}" in texts[name]},
-                "given": {key: value for key, value in given[name].items() if _is_given(value)},
+                **_said(given[name], texts[name]),
             } | ({"edition": edition} if edition else {})
+            if by_name:
+                drawn = (rules[name].parameters(number, edition) for number in range(rules[name].count))
+                about["variant"]["names"] = names_of_variants(_said(one, texts[name]) for one in drawn)
             if rules[name].picture and (only is None if pictures is None else pictures):
                 drawing = rules[name].picture(given[name])
                 about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
@@ -294,6 +298,14 @@ def _texts_of_variants(notebook):
                 raise author.AuthorError(f"{found[1]}: the text of the question comes next after what may vary in it.")
             texts[found[1]] = after.source
     return texts
+
+
+def _said(drawn, text):
+    """What is shown and given of what was drawn for a variant."""
+    return {
+        "shown": {key: shown for key, shown in written(drawn).items() if f"{{{{{key}}}}}" in text},
+        "given": {key: value for key, value in drawn.items() if _is_given(value)},
+    }
 
 
 def texts_of_questions(notebook):

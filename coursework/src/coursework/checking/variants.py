@@ -14,7 +14,9 @@ import html
 import json
 import re
 import zlib
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 #: Where it is kept who works in this folder.
 KEPT = Path(".coursework", "me.txt")
@@ -51,12 +53,12 @@ def me(identity: str = "") -> None:
         pass  # a folder that cannot be written to: then it is said anew in each notebook
 
 
-def plain_identity(identity):
+def plain_identity(identity: str) -> str:
     """An identity as it is compared: without spaces around it and without capitals."""
     return " ".join(str(identity).split()).casefold()
 
 
-def variant_of(identity, name, count, edition=""):
+def variant_of(identity: str, name: str, count: int, edition: str = "") -> int:
     """The number of a student's variant of a question, below ``count``.
 
     >>> variant_of('Ada@Uni.example ', 'levers/see-saw', 16) == variant_of('ada@uni.example', 'levers/see-saw', 16)
@@ -72,13 +74,63 @@ def variant_of(identity, name, count, edition=""):
     return int.from_bytes(digest[:8], "big") % count
 
 
+def names_of_variants(questions: Iterable[Mapping[str, Any]]) -> list[str]:
+    """What variants are called, whatever their numbers: it follows from what is given and shown in each.
+
+    Parameters
+    ----------
+    questions : iterable of dict
+        The public parts of all variants of a question, in their order.
+
+    >>> names_of_variants([{"given": {"arm": 2}}, {"given": {"arm": 3}}]) == names_of_variants(
+    ...     [{"given": {"arm": 3}}, {"given": {"arm": 2}}])[::-1]
+    True
+    """
+    names: list[str] = []
+    for question in questions:
+        said = {**question.get("shown", {}), **question.get("given", {})}
+        name = hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:12]
+        while name in names:  # two that differ in nothing that is shown
+            name += "+"
+        names.append(name)
+    return names
+
+
+def numbers_of_variants(student: str, name: str, question: Mapping[str, Any], count: int) -> list[int]:
+    """The numbers of all variants in a student's own order: first the student's own, then its siblings.
+
+    A question that names its variants gives them by these names (rendezvous hashing): each student has an order of all
+    names that there could be, so that one that is taken out moves only those who had it, to the one that came next.
+    Without names the number follows from how many there are, and all others from it.
+
+    Parameters
+    ----------
+    student : str
+        Who one is; nobody in particular has the order in which the variants stand.
+    name : str
+    question : dict
+        The public part of the question.
+    count : int
+    """
+    edition, names = question.get("edition", ""), question.get("names")
+    student = plain_identity(student)
+    if not names or not student:
+        first = variant_of(student, name, count, edition)
+        return [(first + order) % count for order in range(count)]
+
+    def rank(number: int) -> bytes:
+        return hashlib.sha256(f"{edition}\n{name}\n{student}\n{names[number]}".encode()).digest()
+
+    return sorted(range(count), key=rank)
+
+
 def own_variant(name, question, order=0):
     """The number of the variant of whoever works here, or of one of its siblings."""
     count = question.get("variants", 1)
-    return (variant_of(_identity, name, count, question.get("edition", "")) + order) % count
+    return numbers_of_variants(_identity, name, question, count)[order % count]
 
 
-def siblings_of(name, count):
+def siblings_of(name: str, count: int) -> list[str]:
     """The names of the siblings of a question that has ``count`` variants, in their order.
 
     >>> siblings_of('levers/see-saw', 16)

@@ -27,8 +27,9 @@ def add_commands(commands):
     )
     grade.add_argument("--workers", type=int, help="how many notebooks are run at a time (one for each processor)")
     grade.add_argument(
-        "--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead, such as tcp://host:8786"
+        "--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead, such as tls://host:8786"
     )
+    grade.add_argument("--keys", metavar="FOLDER", help="the keys of that cluster, as `coursework cluster` made them")
     grade.add_argument(
         "--allow-weak-isolation",
         action="store_true",
@@ -44,6 +45,20 @@ def add_commands(commands):
     )
     regrade.add_argument("out", metavar="DIR")
     regrade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    regrade.add_argument("--yes", action="store_true", help="go on without asking, whoever gains or loses")
+    regrade.add_argument(
+        "--never-lower", action="append", default=[], metavar="QUESTION", help="nobody loses by this question's mending"
+    )
+    regrade.add_argument(
+        "--full-credit",
+        action="append",
+        default=[],
+        metavar="QUESTION[@VARIANT]",
+        help="all have its points, or all with a variant: its name, or taken-out for those that the source has no more",
+    )
+    regrade.add_argument(
+        "--void", action="append", default=[], metavar="QUESTION", help="this question counts for nobody"
+    )
     review = commands.add_parser("review", help="judge answers on a page that this machine alone sees")
     review.add_argument("out", metavar="DIR")
     review.add_argument("--grader", help="your name, for the ledger; your user's if it is not said")
@@ -51,7 +66,6 @@ def add_commands(commands):
         "--share", default="1/1", metavar="K/N", help="the K-th of N shares, if several people judge: 2/3"
     )
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
-    review.add_argument("--solutions", help="folder of the notebooks with solutions")
     review.add_argument("--port", type=int, default=0, help="the port; any that is free if it is not said")
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
     merge.add_argument("out", metavar="DIR")
@@ -86,6 +100,12 @@ def add_commands(commands):
     export.add_argument(
         "--as-graded", action="store_true", help="hand on the points as graded, although the term has rules"
     )
+    export.add_argument(
+        "--as-of",
+        metavar="TIME",
+        type=_moment,
+        help="by what was decided and due then, such as 2026-12-01T12:00; now, if it is not said",
+    )
     export.add_argument("--dry-run", action="store_true", help="say what would be filled in, and write nothing")
     export.add_argument(
         "--overwrite",
@@ -108,6 +128,14 @@ def add_commands(commands):
     gradescope.add_argument("--solutions", help="folder of the notebooks with solutions")
     gradescope.add_argument("--assignment", required=True, metavar="NAME[=NOTEBOOK,...]")
     gradescope.add_argument("--roster", metavar="FILE.csv", help="who is in the course, with their addresses")
+    cluster = commands.add_parser("cluster", help="start the scheduler of a cluster, or a machine that works for it")
+    cluster.add_argument("--keys", required=True, metavar="FOLDER", help="its keys; they are made if there are none")
+    cluster.add_argument("--host", help="the address of this machine at which the others reach the scheduler")
+    cluster.add_argument("--port", type=int, default=8786)
+    cluster.add_argument(
+        "--worker", metavar="ADDRESS", help="work for the scheduler at this address, such as tls://..."
+    )
+    cluster.add_argument("--workers", type=int, help="how many notebooks at a time (one for each processor)")
     sample = commands.add_parser("sample-class", help="make a class to try grading on")
     sample.add_argument("--out", required=True, help="folder for the class")
     sample.add_argument("--students", type=int, default=200)
@@ -119,6 +147,13 @@ def add_commands(commands):
     sample.add_argument(
         "--layout", default="folders", choices=("folders", "canvas", "moodle", "brightspace", "nbgrader")
     )
+
+
+def _moment(text):
+    """A time that a person typed, on the clocks of this machine if it names no zone."""
+    import datetime
+
+    return datetime.datetime.fromisoformat(text).astimezone()
 
 
 def _named(assignments):
@@ -167,21 +202,29 @@ def grade(assignment, **options):
         print(f"The report: {options['out']}/report.html")
 
 
-def regrade(out, solutions):
+def regrade(out, solutions, yes, never_lower, full_credit, void):
+    from .reporting.laboratory import PAGE, Policies
     from .store import InUse
 
+    policies = Policies(tuple(never_lower), tuple(full_credit), tuple(void))
     try:
-        _regrade(out, solutions)
-    except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade is such
+        with _on_linux():
+            from .grade import regrade as regrade_class
+        laboratory = regrade_class(out, solutions=solutions, policies=policies, dry_run=True)
+        for line in laboratory.lines():
+            print(line)
+        if laboratory.changes and not yes:
+            print(f"Each of them: {out}/{PAGE}")
+            if not sys.stdin.isatty() or input("Shall these marks move? yes or no: ").strip().casefold() != "yes":
+                sys.exit("No mark has moved. To go on, say --yes.")
+        _say_moved(regrade_class(out, solutions=solutions, policies=policies))
+    except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade and BadPolicy are such
         sys.exit(f"coursework regrade: {error}")
 
 
-def _regrade(out, solutions):
-    with _on_linux():
-        from .grade import regrade as regrade_class
+def _say_moved(moved):
     from .tables import number
 
-    moved = regrade_class(out, solutions=solutions)
     for one in moved:
         print(
             f"{one.student!r}, {one.assignment}: {number(one.before)} -> {number(one.after)}  "
@@ -190,7 +233,7 @@ def _regrade(out, solutions):
     print(f"{len(moved)} moved.")
 
 
-def review(out, grader, share, hide_names, solutions, port):
+def review(out, grader, share, hide_names, port):
     import getpass
 
     from .review import review as serve
@@ -211,7 +254,9 @@ def review(out, grader, share, hide_names, solutions, port):
     except KeyboardInterrupt:
         print("\nThe decisions are brought into the marks and pages.")
         try:
-            _regrade(out, solutions)
+            with _on_linux():
+                from .grade import bring_in_decisions
+            _say_moved(bring_in_decisions(out))
         except (InUse, NeedsLinux, ValueError) as error:
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
@@ -275,6 +320,7 @@ def export(
     name,
     rules,
     as_graded,
+    as_of,
     dry_run,
     overwrite,
     assignment,
@@ -297,7 +343,7 @@ def export(
                 f"The term has rules, {known}, and these would be the points before them. Say --rules {known}, or "
                 "--as-graded."
             )
-        marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None)
+        marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None, as_of)
         if lms:
             names = dict(one.partition("=")[::2] for one in name)
             said = gradebooks.fill(lms, marks, column, filled, names, overwrite, dry_run)
@@ -323,6 +369,39 @@ def gradescope(out, solutions, assignment, roster):
     except (OSError, ValueError) as error:
         sys.exit(f"coursework gradescope: {error}")
     print(f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and show it to nobody.")
+
+
+def cluster(keys, host, port, worker, workers):
+    import os
+    from pathlib import Path
+
+    from .execution import cluster_keys
+    from .workers import processors
+
+    keys = Path(keys).absolute()
+    try:
+        if worker:
+            command = cluster_keys.worker(keys, worker, workers or processors())
+        else:
+            if not host:
+                sys.exit(
+                    "coursework cluster: say at which address of this machine the others reach it: --host 192.0.2.7."
+                )
+            made = cluster_keys.make_keys(keys)
+            command = cluster_keys.scheduler(keys, host, port)
+            address = f"tls://{host}:{port}"
+            print(
+                f"{'New keys are' if made else 'The keys are'} in {keys}: whoever has them runs code on this cluster.\n"
+                f"On each machine that is to work, with a copy of that folder:\n"
+                f"  coursework cluster --keys {keys.name} --worker {address}\n"
+                f"Then, where the notebooks are:\n"
+                f"  coursework grade ... --scheduler {address} --keys {keys.name}\n"
+                "Stop it with Ctrl+C.",
+                flush=True,
+            )
+    except cluster_keys.NoKeys as error:
+        sys.exit(f"coursework cluster: {error}")
+    os.execv(command[0], command)
 
 
 def sample_class(out, students, seed, notebooks, solutions, layout):
@@ -353,6 +432,7 @@ COMMANDS = {
     "term": term,
     "export": export,
     "gradescope": gradescope,
+    "cluster": cluster,
     "sample-class": sample_class,
 }
 COMMANDS = {name: _told(name, command) for name, command in COMMANDS.items()}

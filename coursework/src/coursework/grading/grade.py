@@ -20,12 +20,14 @@ from typing import NamedTuple
 from ..authoring.course import edition_of, find_course, links_of
 from ..checking.plugins import kinds
 from ..checking.variants import plain_identity
+from .execution.cluster_keys import demand_keys
 from .judging import marking
 from .judging import secret as in_secret
-from .judging.cases import Contracts
+from .judging.cases import Contracts, variants_of
 from .judging.judge import Judge
 from .judging.ledger import DECISIONS, Ledger, with_decisions
 from .judging.secret import secret_beside
+from .reporting.laboratory import Laboratory, Policies
 from .store import FORMAT, REFUSED, Store, as_text, write
 from .submissions import intake
 from .submissions.identity import BadRoster, Roster
@@ -157,6 +159,7 @@ def grade(
     only_list=False,
     workers=None,
     scheduler=None,
+    keys=None,
     allow_weak_isolation=False,
     as_listed=False,
     limits=None,
@@ -181,6 +184,8 @@ def grade(
         How many notebooks run at a time; as many as there are processors if it is not said.
     scheduler : str, optional
         The address of a Dask cluster.
+    keys : path, optional
+        The folder of its keys.
     allow_weak_isolation : bool
     as_listed : bool
         Go on although many notebooks say that they are somebody else's.
@@ -205,6 +210,9 @@ def grade(
         raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
     if scheduler and importlib.util.find_spec("distributed") is None:
         raise ValueError("To give notebooks to a cluster, install what speaks to it: python -m pip install distributed")
+    keys = Path(keys) if keys else None
+    if scheduler:
+        demand_keys(scheduler, keys)
     store, limits, show = Store(out), limits or Limits(), show or sys.stderr
     roster = Roster(roster) if roster else None
     if student is not None and roster and student not in roster.people:
@@ -236,8 +244,16 @@ def grade(
             print(line, file=show)
         _take_in_decisions(ledger, store, show)
 
+        decisions, contracts, policies = ledger.current(), Contracts(store.folder), Policies.of(store.folder)
+
+        def before(one):
+            """The record of the same student before, from which it is known which variants are whose."""
+            return store.read(one.student, one.assignment)
+
         def key(one):
-            return key_of(one, questions[one.assignment], limits, allow_weak_isolation)
+            own, _ = marking.of_student(questions[one.assignment], one.student, before(one), contracts)
+            asked = marking.asked_of_sandbox(marking.with_second_chances(own))
+            return key_of(one, asked, limits, allow_weak_isolation)
 
         waiting, kept = [], []
         for one in work:
@@ -247,12 +263,6 @@ def grade(
             file=show,
         )
         store.log(f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on {platform.node()}")
-        decisions, contracts = ledger.current(), Contracts(store.folder)
-
-        def before(one):
-            """The record of the same student before, from which it is known which variants are whose."""
-            return store.read(one.student, one.assignment)
-
         jobs = _Jobs(waiting, questions, store, contracts, before)
         judge = closing.enter_context(Judge(questions, contracts, store.log))
 
@@ -260,15 +270,19 @@ def grade(
             """Judge one student's work, and write its record."""
             one = waiting[order]
             asked = questions[one.assignment]
-            of_student, cases = marking.of_student(asked, one.student, before(one), contracts)
+            old = before(one)
+            of_student, cases = marking.of_student(asked, one.student, old, contracts)
             record = record_of(one, results, key(one), of_student, limits)
+            # By whose mending nobody is to lose, nobody loses who handed the same answer in again.
+            marks = old["marks"] if old else {}
+            record["marks"] = {name: mark for name, mark in marks.items() if _is_same(old, record, name)}
             record["cases"] = {name: case.answered(of_student[name]).as_json() for name, case in cases.items()}
-            store.save(marked(record, judge, decisions))
+            store.save(marked(record, judge, decisions, policies))
             return order, record["notebooks"][0]["isolation"]
 
         progress = _Progress(len(waiting), show)
         finished = (
-            _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store)
+            _on_cluster(jobs, finish, workers, scheduler, keys, limits, allow_weak_isolation, store)
             if scheduler
             else _here(jobs, finish, workers, limits, allow_weak_isolation, store)
         )
@@ -278,7 +292,7 @@ def grade(
         # What was kept may have been decided on since.
         for one in kept:
             record = store.read(one.student, one.assignment)
-            again = marked(record, judge, decisions)
+            again = marked(record, judge, decisions, policies)
             if again != record:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
@@ -471,8 +485,17 @@ def _is_done(store, one, key):
     )
 
 
-def key_of(work, questions, limits, weak):
-    """What a record depends on, as one short text."""
+def _is_same(record, other, name):
+    """Whether two records hold the same answer, in whatever cell."""
+    first, second = (one["answers"].get(name, {}).get("plain") for one in (record, other))
+    return first == second
+
+
+def key_of(work, asked, limits, weak):
+    """What of a record depends on running the work, as one short text; it is judged again without that.
+
+    ``asked`` is what the sandbox is told of the questions: with a call that was mended just those are run again.
+    """
     depends = [
         FORMAT,
         [
@@ -481,10 +504,7 @@ def key_of(work, questions, limits, weak):
         ],
         [notebook.digest for notebook in work.superseded],
         reply_of(work),
-        {
-            name: [one["version"] for one in (question, *question.get("others", []))]
-            for name, question in questions.items()
-        },
+        asked,
         vars(limits),
         weak,
         software(),
@@ -582,7 +602,7 @@ def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
         )
 
 
-def _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, store):
+def _on_cluster(jobs, finish, workers, scheduler, keys, limits, allow_weak_isolation, store):
     """Run on a cluster and judge here: right answers do not leave this machine."""
     from .execution.cluster import run_on_cluster
 
@@ -593,7 +613,9 @@ def _on_cluster(jobs, finish, workers, scheduler, limits, allow_weak_isolation, 
     def results():
         # Not before the processes are there, which are to have no part in the connection.
         if jobs.work:
-            yield from jobs.whole(run_on_cluster(jobs, scheduler, limits, allow_weak_isolation=allow_weak_isolation))
+            yield from jobs.whole(
+                run_on_cluster(jobs, scheduler, limits, keys=keys, allow_weak_isolation=allow_weak_isolation)
+            )
 
     def lost(task):
         return finish(task[0], jobs.given_up(task[0], MARKING_ENDED))
@@ -657,15 +679,22 @@ def _says_little(answer):
     )
 
 
-def marked(record, judge, decisions=None):
+def marked(record, judge, decisions=None, policies=None):
     """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
+    questions = judge.questions[record["assignment"]]
     own, cases = marking.of_student(judge.questions[record["assignment"]], record["student"], record, judge.contracts)
     for question in own.values():
         for one in (question, question.get("contract"), *question.get("second chances", {}).values()):
             if one is not None:
                 judge.contracts.keep(one)
     found = judge.marks(record)
-    marks = {name: {**found[name], "title": question["title"]} for name, question in own.items()}
+    marks = {}
+    for name, question in own.items():
+        old = record.get("marks", {}).get(name)
+        old = old and {**old, **old.get("before", {})}
+        taken_out = cases[name].own.variant not in variants_of(questions[name])
+        mark = (policies or Policies()).applied(name, found[name], old, cases[name], taken_out)
+        marks[name] = {**mark, "title": question["title"]}
     cases = {name: case.as_json() for name, case in cases.items()}
     return with_decisions({**record, "format": FORMAT, "cases": cases, "marks": marks}, decisions or {})
 
@@ -718,8 +747,17 @@ class Moved(NamedTuple):
     questions: list
 
 
-def regrade(out, *, solutions=None, show=None):
+def regrade(out, *, solutions=None, policies=None, dry_run=False, show=None):
     """Judge the stored answers again, by the questions and people's decisions as they are now.
+
+    Parameters
+    ----------
+    out : path
+    solutions : path, optional
+    policies : Policies, optional
+        What mended questions may do to marks, beside what was chosen before: from now on.
+    dry_run : bool
+        Write what would move into a page and a table, and nothing else.
 
     Returns
     -------
@@ -744,24 +782,63 @@ def regrade(out, *, solutions=None, show=None):
             )
         course = Course(solutions, {name: known[name] for name in names})
         questions = course.questions(names, store.folder / "questions")
-        ledger = Ledger(store.folder)
-        _take_in_decisions(ledger, store, show or sys.stderr)
-        decisions, moved = ledger.current(), []
+        policies = Policies.of(store.folder).and_also(policies or Policies())
+        policies.demand(name for asked in questions.values() for name in asked)
+        ledger, laboratory, moved = Ledger(store.folder), Laboratory(), []
+        if not dry_run:
+            _take_in_decisions(ledger, store, show or sys.stderr)
+            policies.keep(store.folder)
+        decisions = ledger.current()
         judge = closing.enter_context(Judge(questions, Contracts(store.folder), store.log))
         for record in store.all():
-            again = marked(record, judge, decisions)
+            again = marked(record, judge, decisions, policies)
             if again == record:
                 continue
-            store.save(again)
-            changed = [
-                name
-                for name in again["marks"]
-                if (again["marks"][name]["points"], again["marks"][name]["outcome"])
-                != (record["marks"].get(name, {}).get("points"), record["marks"].get(name, {}).get("outcome"))
-            ]
-            if changed:
+            # What people decided is their own doing, and asks for nobody's yes.
+            laboratory.add(with_decisions(record, decisions), again)
+            if not dry_run:
+                store.save(again)
+            if changed := changed_in(record, again):
                 moved.append(Moved(record["student"], record["assignment"], record["points"], again["points"], changed))
+        if dry_run:
+            laboratory.write(store.folder)
+            return laboratory
         store.log(f"graded again: {len(moved)} moved")
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
+        reports.write_all(store)
+    return moved
+
+
+def changed_in(record, again):
+    """The questions of which points or outcome are others in a second record."""
+    return [
+        name
+        for name in again["marks"]
+        if (again["marks"][name]["points"], again["marks"][name]["outcome"])
+        != (record["marks"].get(name, {}).get("points"), record["marks"].get(name, {}).get("outcome"))
+    ]
+
+
+def bring_in_decisions(out, *, show=None):
+    """Bring what people decided into marks and pages; nothing is judged anew.
+
+    Returns
+    -------
+    list of Moved
+    """
+    from .reporting import reports
+
+    store = Store(out)
+    with store.locked():
+        ledger, moved = Ledger(store.folder), []
+        _take_in_decisions(ledger, store, show or sys.stderr)
+        decisions = ledger.current()
+        for record in store.all():
+            again = with_decisions(record, decisions)
+            if again != record:
+                store.save(again)
+                changed = changed_in(record, again)
+                moved.append(Moved(record["student"], record["assignment"], record["points"], again["points"], changed))
+        store.log(f"decisions brought in: {len(moved)} moved")
         reports.write_all(store)
     return moved

@@ -19,7 +19,7 @@ from typing import NamedTuple
 from ..authoring.course import edition_of, find_course
 from ..authoring.release import KERNEL, exercise_notebook, shows_variants
 from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
-from ..checking.variants import variant_of
+from ..checking.variants import numbers_of_variants
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
 #: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
@@ -92,7 +92,8 @@ class _Exercise:
 
     def variant(self, name, identity):
         """The number of a student's variant of a question."""
-        return variant_of(identity, name, len(self.questions[name]), self.edition)
+        variants = self.questions[name]
+        return numbers_of_variants(identity, name, variants[0].public, len(variants))[0]
 
     def notebook(self, cells):
         made = copy.deepcopy(self.metadata)

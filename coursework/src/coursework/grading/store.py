@@ -10,7 +10,9 @@ import json
 import os
 import re
 import secrets
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from .locks import lock
 
@@ -125,7 +127,7 @@ class Store:
             file.write(f"{now}  {line}\n")
 
 
-def as_text(value):
+def as_text(value: Any) -> str:
     """JSON with a line for each entry of the outermost list or object: short, and still to be read."""
     if isinstance(value, dict):
         lines = [
@@ -153,7 +155,9 @@ def file_name(name):
     return f"{plain.lower() or 'student'}-{hashlib.sha256(name.encode('utf8', 'surrogatepass')).hexdigest()[:20]}"
 
 
-def write(path, text, lasting=True, private=False):
+def write(
+    path: str | Path, text: str | bytes | Iterable[str | bytes], lasting: bool = True, private: bool = False
+) -> None:
     """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down.
 
     ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds right answers:

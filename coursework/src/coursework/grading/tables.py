@@ -4,6 +4,7 @@ import csv
 import io
 import itertools
 import unicodedata
+from collections.abc import Iterable
 
 STARTS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
@@ -28,12 +29,12 @@ def as_written(cell):
     return plain if plain != cell and unicodedata.normalize("NFKC", plain[:1]).startswith(STARTS_A_FORMULA) else cell
 
 
-def number(value):
+def number(value: float) -> str:
     """Points without needless zeros."""
     return f"{value:.4f}".rstrip("0").rstrip(".") if value != int(value) else str(int(value))
 
 
-def table(header, rows):
+def table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
     """A table as CSV, every text in quotation marks."""
     return "".join(lines(header, rows))
 

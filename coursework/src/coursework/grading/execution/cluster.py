@@ -17,9 +17,11 @@ from types import SimpleNamespace
 from distributed import Client, WorkerPlugin, as_completed, get_worker, protocol
 from distributed import client as client_of_dask
 from distributed.client import FutureCancelledError
+from distributed.security import Security
 
 from ...checking.plain import NotPlain, read_plain
 from ..versions import software
+from .cluster_keys import CERTIFICATE, KEY
 from .sandbox import given_up
 
 CONNECT_WITHIN = "30s"
@@ -100,8 +102,8 @@ def no_pickles():
             setattr(place, name, value)
 
 
-def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
-    """Run jobs on the cluster at an address; give the results as they come.
+def run_on_cluster(jobs, address, limits, *, keys=None, allow_weak_isolation=False):
+    """Run jobs on the cluster at an address; give the results as they come. ``keys`` is the folder of its keys.
 
     Raises
     ------
@@ -119,6 +121,7 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
             client = stack.enter_context(
                 Client(
                     address,
+                    security=_security(keys),
                     timeout=CONNECT_WITHIN,
                     set_as_default=False,
                     serializers=["msgpack", "pickle"],
@@ -156,6 +159,18 @@ def run_on_cluster(jobs, address, limits, *, allow_weak_isolation=False):
                 continue
             _demand_sound(answer, job, ours)
             yield answer["result"]
+
+
+def _security(keys):
+    if keys is None:
+        return None
+    certificate = str(keys / CERTIFICATE)
+    return Security(
+        tls_ca_file=certificate,
+        tls_client_cert=certificate,
+        tls_client_key=str(keys / KEY),
+        require_encryption=True,
+    )
 
 
 def _leave(client, name):

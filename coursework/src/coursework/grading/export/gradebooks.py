@@ -52,8 +52,8 @@ class Marks:
     assignment : str, optional
     rules : Rules, optional
         Of the term: then lateness costs what they say, and who is excused has no points.
-    now : datetime, optional
-        As of when.
+    as_of : datetime, optional
+        By what people had decided then, and what was due; what was handed in and judged is that of the records.
 
     Attributes
     ----------
@@ -62,9 +62,9 @@ class Marks:
         The records of each student.
     """
 
-    def __init__(self, store, assignment=None, rules=None, now=None):
+    def __init__(self, store, assignment=None, rules=None, as_of=None):
         self.store, self.rules = store, rules
-        decisions = Ledger(store.folder).current()
+        decisions = Ledger(store.folder).current(as_of)
         self.behind, self.records = 0, []
         for record in store.all():
             if assignment in (None, record["assignment"]):
@@ -80,7 +80,7 @@ class Marks:
             self.students.setdefault(record["student"], []).append(record)
         worth = {record["assignment"]: record["worth"] for record in self.records}
         self.worth = sum(worth.values())
-        self.results = self._results(worth, now or datetime.datetime.now(datetime.UTC)) if rules else {}
+        self.results = self._results(worth, as_of or datetime.datetime.now(datetime.UTC)) if rules else {}
 
     def _results(self, worth, now):
         """What the rules make of each record, by student and assignment."""

@@ -5,15 +5,14 @@ what its author saw all the same: a :class:`Case` names the variant by what is g
 contract, the question as it stood then, by its version. Contracts lie in the folder of results, one file each.
 """
 
-import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ...checking.variants import siblings_of, variant_of
+from ...checking.variants import names_of_variants, numbers_of_variants, siblings_of
 from ..store import write
 
 #: All that marks need of a question, as :func:`coursework.grading.judging.marking.about` gives it.
@@ -42,7 +41,7 @@ class Case:
     siblings : mapping of str to Place
         The other variants that may make good for help, by the names of the siblings.
     rule : str
-        How the variant was found: ``"number 3 of 8"``, or empty where there is only one.
+        How the variant was found: ``"number 3 of 8"``, ``"by name, of 8"``, or empty where there is only one.
     edition : str
         Of the course: another one draws afresh.
     known : str
@@ -79,15 +78,8 @@ def variants_of(question: Question) -> dict[str, Question]:
     A name follows from what is given in a variant, so it is the same wherever in the order the variant stands, and
     whatever of its solution, hints and worth was mended.
     """
-    found: dict[str, Question] = {}
-    for one in (question, *question.get("others", [])):
-        public = one["public"]
-        said = {**public.get("shown", {}), **public.get("given", {})}
-        name = hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:12] if said else ""
-        while name in found:  # two that differ in nothing that is shown
-            name += "+"
-        found[name] = one
-    return found
+    variants = [question, *question.get("others", [])]
+    return dict(zip(names_of_variants(one["public"] for one in variants), variants, strict=True))
 
 
 def edition_of_question(question: Question) -> str:
@@ -97,25 +89,22 @@ def edition_of_question(question: Question) -> str:
 def case_by_rule(name: str, question: Question, identity: str, known: str = AS_GRADED) -> Case:
     """The case of a student who is asked this question now."""
     count = 1 + len(question.get("others", []))
-    return _case(name, question, variant_of(identity, name, count, edition_of_question(question)), known)
+    return _case(name, question, numbers_of_variants(identity, name, question["public"], count), known)
 
 
-def _case(name: str, question: Question, number: int, known: str) -> Case:
-    """The case of whoever has the variant of a number."""
+def _case(name: str, question: Question, order: Sequence[int], known: str) -> Case:
+    """The case of whoever has the variants in this order."""
     variants = variants_of(question)
     names = list(variants)
-
-    def place(order: int) -> Place:
-        variant = names[(number + order) % len(names)]
-        return Place(variant, variants[variant]["version"])
-
+    places = [Place(names[number], variants[names[number]]["version"]) for number in order]
     # In an exam each has one question.
     siblings = [] if question["public"].get("exam") else siblings_of(name, len(names))
+    how = "by name, of" if question["public"].get("names") else f"number {order[0]} of"
     return Case(
         name,
-        place(0),
-        {sibling: place(order) for order, sibling in enumerate(siblings, 1)},
-        f"number {number} of {len(names)}" if len(names) > 1 else "",
+        places[0],
+        dict(zip(siblings, places[1:], strict=False)),
+        f"{how} {len(names)}" if len(names) > 1 else "",
         edition_of_question(question),
         known,
     )
@@ -163,8 +152,10 @@ class Contracts:
             for name in sorted(os.listdir(self.questions)) if self.questions.is_dir() else ():
                 if name.endswith(".json"):
                     for asked, question in json.loads((self.questions / name).read_text("utf8")).items():
-                        for number, one in enumerate((question, *question.get("others", []))):
-                            self._older[one["version"]] = one, _case(asked, question, number, FROM_THE_VERSION)
+                        variants = (question, *question.get("others", []))
+                        for number, one in enumerate(variants):
+                            order = [(number + further) % len(variants) for further in range(len(variants))]
+                            self._older[one["version"]] = one, _case(asked, question, order, FROM_THE_VERSION)
         return self._older
 
     def _path(self, version: str) -> Path:
@@ -191,7 +182,7 @@ def case_of(record: Mapping[str, Any], name: str, question: Question, contracts:
     return case_by_rule(name, question, record["student"], BY_THE_RULE)
 
 
-def asked_of(name: str, question: Question, case: Case, contracts: Contracts) -> Question:
+def asked_of(name: str, question: Question, case: Case, contracts: Contracts | None) -> Question:
     """The question of a case as it is judged now: mended if its variant is still there, or else as it stood.
 
     Beside what :func:`coursework.grading.judging.marking.about` gives there are ``"siblings"``, all other variants;
@@ -201,16 +192,17 @@ def asked_of(name: str, question: Question, case: Case, contracts: Contracts) ->
     variants = variants_of(question)
 
     def at(place: Place) -> Question:
-        found = variants.get(place.variant) or contracts.of(place.contract)
-        if found is None:
+        found = variants.get(place.variant) or (contracts and contracts.of(place.contract))
+        if not found:
             raise ValueError(
-                f"{name}: a variant of it was taken out, and what it was is kept nowhere: there is no "
-                f"{contracts.folder / place.contract}.json. Put it back into the source, and judge again."
+                f"{name}: a variant of it was taken out, and what it was is kept nowhere: there is no contract "
+                f"{place.contract}. Put the variant back into the source, and judge again."
             )
         return found
 
     own = dict(at(case.own))
-    if own["version"] != case.own.contract and (before := contracts.of(case.own.contract)) is not None:
+    before = contracts.of(case.own.contract) if contracts and own["version"] != case.own.contract else None
+    if before is not None:
         own["contract"] = before
     if case.siblings or len(variants) > 1:
         own["siblings"] = [one for variant, one in variants.items() if variant != case.own.variant]

@@ -145,12 +145,16 @@ class Ledger:
             f"With the next decision its beginning is moved to {CUT}."
         )
 
-    def standing(self):
-        """The decisions on each answer that nobody took back, the last one last, by student, assignment, question."""
+    def standing(self, until=None):
+        """The decisions on each answer that nobody took back, the last one last, by student, assignment, question.
+
+        With a time, those that stood then.
+        """
+        made = [one for one in self.decisions if until is None or datetime.datetime.fromisoformat(one.when) <= until]
         # By time and not by line: ledgers of several graders may have been put together.
-        undone = {one.undoes for one in self.decisions if one.undoes}
+        undone = {one.undoes for one in made if one.undoes}
         found = {}
-        for one in sorted(self.decisions, key=lambda one: (one.when, one.id)):
+        for one in sorted(made, key=lambda one: (one.when, one.id)):
             key = one.student, one.assignment, one.question
             if one.credit is not None and one.id not in undone:
                 found.setdefault(key, []).append(one)
@@ -158,9 +162,9 @@ class Ledger:
                 found.pop(key, None)
         return found
 
-    def current(self):
-        """The decision that counts for each answer, by student, assignment and question."""
-        return {key: several[-1] for key, several in self.standing().items() if several}
+    def current(self, until=None):
+        """The decision that counts for each answer, or counted at a time, by student, assignment and question."""
+        return {key: several[-1] for key, several in self.standing(until).items() if several}
 
     def of(self, student, assignment):
         """The decisions that count on one student's answers."""

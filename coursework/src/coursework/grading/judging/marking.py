@@ -12,8 +12,10 @@ import importlib
 import io
 import itertools
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 from ...authoring.author import AuthorError
 from ...authoring.source import DECLARED, checked_names, declared_strengths, read_source, texts_of_questions
@@ -27,7 +29,7 @@ from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
 from . import secret as in_secret
-from .cases import asked_of, case_by_rule, case_of
+from .cases import Case, Contracts, Question, asked_of, case_by_rule, case_of
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
@@ -89,7 +91,12 @@ def _questions_of(path, secret, edition):
     return found
 
 
-def of_student(questions, identity, record=None, contracts=None):
+def of_student(
+    questions: Mapping[str, Question],
+    identity: str,
+    record: Mapping[str, Any] | None = None,
+    contracts: Contracts | None = None,
+) -> tuple[dict[str, Question], dict[str, Case]]:
     """The questions of a student, each in the student's own variant, and the case of each.
 
     Parameters
@@ -109,10 +116,11 @@ def of_student(questions, identity, record=None, contracts=None):
         As :func:`coursework.grading.judging.cases.asked_of` gives each.
     cases : dict of str to Case
     """
-    own, cases = {}, {}
+    own: dict[str, Question] = {}
+    cases: dict[str, Case] = {}
     for name, question in questions.items():
         today = case_by_rule(name, question, identity)
-        case = case_of(record, name, question, contracts) if record else None
+        case = case_of(record, name, question, contracts) if record and contracts else None
         if case is None or case.edition != today.edition:
             case = today
         own[name], cases[name] = asked_of(name, question, case, contracts), case
@@ -225,7 +233,7 @@ def asked_of_sandbox(questions):
     }
 
 
-def was_limited(record):
+def was_limited(record: Mapping[str, Any]) -> bool:
     """Whether a limit ended one of the cells of a record."""
     return any(
         cell["outcome"] in BY_A_LIMIT or "SIGKILL" in cell.get("error", "")
@@ -327,7 +335,14 @@ def parts_right(question, text):
     return sum(good), len(good), max(0, (sum(good) / len(good) - chance) / (1 - chance))
 
 
-def mark_with_siblings(name, question, answers, remembered, finished=True, limited=False):
+def mark_with_siblings(
+    name: str,
+    question: Question,
+    answers: Mapping[str, Any],
+    remembered: Mapping[str, Any],
+    finished: bool = True,
+    limited: bool = False,
+) -> dict[str, Any]:
     """The mark of a question, with regard to the help that a student had and to the siblings that were solved.
 
     Parameters

@@ -25,6 +25,6 @@ ENVIRONMENT.filters |= {
 }
 
 
-def page(template, **about):
+def page(template: str, **about: object) -> str:
     """A page that is complete in one file, by the template of a name."""
     return ENVIRONMENT.get_template(template).render(style=Markup(pages.STYLE), policy=Markup(pages.POLICY), **about)

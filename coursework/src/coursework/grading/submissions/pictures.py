@@ -23,7 +23,8 @@ def is_picture(kind: str, data: bytes) -> bool:
 def _is_png(data: bytes) -> bool:
     if not data.startswith(PNG_BEGINS):
         return False
-    place, names = len(PNG_BEGINS), []
+    place = len(PNG_BEGINS)
+    names: list[bytes] = []
     while place < len(data):
         length, name = struct.unpack_from(">I4s", data, place)
         body = data[place + 4 : place + 8 + length]

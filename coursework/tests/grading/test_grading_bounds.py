@@ -1,0 +1,225 @@
+"""Judging is bounded, whatever was answered; whenever the machine goes down, nothing is lost and nothing done twice."""
+
+import hashlib
+import io
+import json
+import random
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import sympy as sm
+from grading_class import write_sources
+
+from coursework.checking.plain import NotPlain, to_plain
+from coursework.grading.judging import marking
+from coursework.grading.judging.cases import Contracts
+from coursework.grading.judging.judge import Judge
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.store import Store
+
+NAME = "turns/sum"
+alpha, beta = sm.symbols("alpha beta")
+
+
+@pytest.fixture(scope="module")
+def questions(tmp_path_factory):
+    return marking.questions_of(write_sources(tmp_path_factory.mktemp("bounds") / "s") / "turns.ipynb", b"secret")
+
+
+def ordinary(dice, depth=0):
+    """An expression as students write them; its numbers may be tiny or huge."""
+    if depth > 3 or dice.random() < 0.25:
+        size = dice.choice([1, 1, 10, 1e-3, 1e-30, 1e30, 1e-300, 1e300])
+        number = sm.Float(dice.uniform(-3, 3) * size)
+        power = sm.Float(10) ** dice.choice([-40, -2000, -99999, 40, 5000, 999999])
+        return dice.choice([alpha, beta, alpha, beta, sm.Integer(dice.randint(-9, 9)), number, sm.pi, sm.I, power])
+    parts = [ordinary(dice, depth + 1) for _ in range(2)]
+    unary = [sm.sin, sm.cos, sm.tan, sm.exp, sm.log, sm.sqrt, sm.asin, sm.atan, sm.Abs, sm.sinh, sm.conjugate, sm.arg]
+    way = dice.randrange(6)
+    with sm.evaluate(False):
+        if way == 0:
+            return sm.Add(*parts)
+        if way == 1:
+            return sm.Mul(*parts)
+        if way == 2:
+            return sm.Pow(*parts)
+        if way == 3:
+            return sm.atan2(*parts)
+        return dice.choice(unary)(parts[0])
+
+
+def judged(answers, questions, folder):
+    """What a judge of its own says of each of these answers; a record holds one."""
+    said = []
+    with Judge({"turns": {NAME: questions[NAME]}}, Contracts(folder), said.append) as judge:
+        for number, plain in enumerate(answers):
+            record = {
+                "student": f"{number}",
+                "assignment": "turns",
+                "answers": {NAME: {"outcome": "recorded", "plain": plain, "from": "check", "cell": 0}},
+                "finished": True,
+                "notebooks": [],
+            }
+            yield judge.marks(record)[NAME]
+    assert said == []
+
+
+@pytest.mark.parametrize("number", [300, pytest.param(10_000, marks=pytest.mark.long)])
+def test_ordinary_answers_are_judged_in_bounded_time_and_memory(number, questions, tmp_path):
+    dice, answers = random.Random(f"answers {number}"), []
+    while len(answers) < number:
+        try:
+            answers.append(to_plain(ordinary(dice)))
+        except NotPlain:
+            pass
+    # None takes so much that the judge has to be ended: that would be said.
+    outcomes = {mark["outcome"] for mark in judged(answers, questions, tmp_path)}
+    assert outcomes <= {"wrong", "invalid", "undecided", "correct"} and {"wrong", "invalid"} <= outcomes
+
+
+def _tower(dice, what):
+    """An answer of many nodes each of which is made to cost much."""
+    nodes = [["symbol", "alpha"], ["constant", "ImaginaryUnit"], ["float", "1e-999999"], ["integer", "9999"]]
+    nodes += [["float", "1e-300"], ["rational", "1", "3"], ["Add", 1, 2], ["Mul", 2, 1]]
+    for _ in range(3_000):
+        last = len(nodes) - 1
+        nodes.append(
+            {
+                "powers": ["Pow", last, 3],
+                "complex powers": ["Pow", dice.choice([6, 7, last]), 4],
+                "logarithms": ["log", dice.choice([6, 7, last])],
+                "squares": ["Mul", last, last],
+                "tiny": ["Mul", last, 2],
+                "angles": ["atan2", dice.choice([2, last]), dice.choice([2, 4])],
+                "inverse": [dice.choice(["asin", "acos", "atanh", "acosh"]), dice.choice([6, 7])],
+                "mixed": [
+                    dice.choice(["sin", "exp", "log", "tan", "acoth", "Abs", "arg"]),
+                    dice.choice([2, 6, 7, last]),
+                ],
+                "remainders": ["Mod", dice.choice([0, 4, last]), 2],
+                "sums": ["Add", *(dice.randrange(last) for _ in range(20))],
+            }[what]
+        )
+    return {"value": ["expression", len(nodes) - 1], "nodes": nodes}
+
+
+HOSTILE = (
+    "powers", "complex powers", "logarithms", "squares", "tiny", "angles", "inverse", "mixed", "remainders", "sums"
+)  # fmt: skip
+
+
+def test_hostile_answers_leave_every_other_mark(questions, tmp_path):
+    dice = random.Random("hostile")
+    hostile = [_tower(dice, what) for what in HOSTILE for _ in range(2)]
+    honest = [to_plain(sm.sin(alpha + beta)), to_plain(-sm.sin(alpha + beta))]
+    answers = [one for bad in hostile for one in (bad, *honest)]
+    found = list(judged(answers, questions, tmp_path))
+    assert [mark["outcome"] for mark in found[1::3]] == ["correct"] * len(hostile)
+    assert [mark["note"] for mark in found[2::3]] == ["opposite"] * len(hostile)
+    assert not any(mark["points"] for mark in found[::3])
+
+
+# --- the machine goes down ----------------------------------------------------------------------
+
+PROGRAM = """
+import io, sys
+sys.path.insert(0, {tests!r})
+import test_grading_whole_terms as terms
+from coursework.__main__ import main
+from coursework.grading import grade as grading
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.store import Store
+from pathlib import Path
+
+grading._here = terms.run_without_a_sandbox
+place = Path({place!r})
+store, what = Store(place / "out"), {what!r}
+print("begun", flush=True)
+if what == "grade":
+    grading.grade(place / "class", place / "out", solutions=place / "solutions", show=io.StringIO())
+elif what == "regrade":
+    grading.regrade(place / "out", solutions=place / "mended", show=io.StringIO())
+elif what == "export":
+    main(["export", str(place / "out"), "--lms", str(place / "book.csv"), "--assignment", "hw0"])
+else:
+    ledger = Ledger(store.folder)
+    for record in store.all():
+        for name in record["marks"]:
+            print(ledger.add(record, name, 0.5, who="Ann").id, flush=True)
+print("ended", flush=True)
+"""
+
+
+def _run(place, what, killed_after=None):
+    """Run a command; what it said, of which a part is missing if it was killed."""
+    program = PROGRAM.format(tests=str(Path(__file__).parent), place=str(place), what=what)
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "begun\n"
+        if killed_after is None:
+            said, _ = process.communicate()
+            assert process.returncode == 0
+            return said.split()
+        try:
+            said, _ = process.communicate(timeout=killed_after)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+            said, _ = process.communicate()
+        return said.split()
+
+
+def _contents(folder):
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in folder.rglob("*")
+        if path.is_file() and path.name not in ("run.log", "lock") and not path.name.startswith(".half-")
+    }
+
+
+@pytest.fixture
+def whole(tmp_path):
+    """A class and its sources, as they lie when nothing was graded yet."""
+    import test_grading_whole_terms as terms
+
+    term = terms.Term(tmp_path, random.Random("killed"), 12)
+    term.draw()
+    term.write()
+    terms.write_sources(tmp_path / "solutions")
+    terms.write_sources(tmp_path / "mended", {"hw0": (terms.WEIGHTS[1:], 3)})
+    lines = [f'"{student}",{number},,{student},x,' for number, student in enumerate(term.students, 1)]
+    head = "Student,ID,SIS User ID,SIS Login ID,Section,hw0 (7)\n"
+    (tmp_path / "book.csv").write_text(head + "\n".join(lines) + "\n")
+    return tmp_path
+
+
+@pytest.mark.parametrize("kills", [1, pytest.param(25, marks=pytest.mark.long)])
+def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, kills):
+    """Four commands, each killed so many times at moments drawn by lot, and then let come to its end."""
+    import shutil
+    import time
+
+    dice = random.Random(f"killed {kills}")
+    other = Path(shutil.copytree(whole, tmp_path_factory.mktemp("other") / "course"))
+    for what in ("grade", "regrade", "review", "export"):
+        begun = time.monotonic()
+        expected = _run(whole, what)
+        lasted = time.monotonic() - begun
+        said = [line for _ in range(kills) for line in _run(other, what, dice.uniform(0, lasted))]
+        if what != "review":
+            _run(other, what)
+            assert _contents(other / "out") == _contents(whole / "out"), what
+            continue
+        # What somebody was told is there, once; a line that was cut off does not stop anything.
+        kept = [one.id for one in Ledger(other / "out").decisions]
+        assert len(kept) == len(set(kept)) and {line for line in said if line != "ended"} <= set(kept)
+        shutil.copy(whole / "out" / "ledger.jsonl", other / "out" / "ledger.jsonl")
+        (other / "out" / "ledger.cut").unlink(missing_ok=True)
+        assert (
+            len(expected) - 1
+            == len(Ledger(whole / "out").decisions)
+            == sum(len(record["marks"]) for record in Store(whole / "out").all())
+        )
+    assert (other / "book-filled.csv").read_bytes() == (whole / "book-filled.csv").read_bytes()
+    assert json.loads((other / "out" / "exported.json").read_text()) and io
