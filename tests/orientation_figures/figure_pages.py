@@ -31,6 +31,7 @@ CHANGES = {
     "simple": ("angle", 0.3, "theta in degrees", 17.19),
     "successive": ("turns", (("z", 0.3),), "Turn 1, to frame A in degrees", 17.19),
     "triad": ("angle", 0.3, "theta in degrees", 17.19),
+    "workbench": ("noise", 2.0, "They may differ by, in degrees", 2),
 }
 assert set(CHANGES) == set(KINDS), (
     f"CHANGES says what a test sets in each figure, and not in {set(KINDS) - set(CHANGES)}"

@@ -7,6 +7,7 @@ import traitlets
 from orientation_workbench.mismatch.table import COUNTS, SEQUENCES, whole_table
 
 from .figure import MovingFigure
+from .state import Numbers
 
 UNKNOWN = "not known"
 #: Cases as they are met, each with what both programs gave: two poses of a camera in its gimbal.
@@ -70,11 +71,11 @@ class WorkbenchFigure(MovingFigure):
 
     kind = "workbench"
     sheet = (-330, -172, 330, 172)
-    room = (900, 1500)
+    room = (800, 1010)
     first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(sync=True, state=True)
     second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(sync=True, state=True)
     first_is = Known({"kind": UNKNOWN, "sequence": UNKNOWN}).tag(sync=True, state=True)
     second_is = Known({"kind": UNKNOWN, "sequence": UNKNOWN}).tag(sync=True, state=True)
-    noise = traitlets.Float(0.0, min=0.0, max=30.0).tag(sync=True, state=True)
+    noise = Numbers(0.0, (), 30.0, smallest=0.0).tag(sync=True, state=True)
     table = traitlets.Dict(_as_the_page_has_it(whole_table()), read_only=True).tag(sync=True, told=True)
     examples = traitlets.Dict(_as_the_page_has_it(EXAMPLES), read_only=True).tag(sync=True, told=True)

@@ -6,18 +6,16 @@ import numpy as np
 
 from orientation import dcm_from_body_fixed
 
-from .content import DEGREES, points_one_way, read_content, unit_of_field, unit_of_gravity
+from .content import DEGREES, places_by_name, read_content, unit_of_field, unit_of_gravity
 from .field import fit_field
-from .judged import Judgement, Noise, in_blocks, judge
+from .judged import Noise, in_blocks, judge
 from .motion import (
     ASSIGNMENTS,
     dcm_of_quaternions,
     fit_axes,
     fit_scale,
     readings,
-    steps_of,
     stretches,
-    turned,
     written,
 )
 
@@ -210,7 +208,7 @@ class _Bench:
             if kind in self.raw:
                 vectors[kind] = self.raw[kind]
                 if kind == "magnetometer":  # a constant part belongs to the instrument, not to the Earth
-                    vectors[kind] = vectors[kind] - _centre(raw, vectors[kind], self.time)
+                    vectors[kind] = vectors[kind] - _centre(vectors[kind])
         units = [1.0] if self.content.counted else list(DEGREES.values())
         grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units]))
         if self.content.counted:
@@ -441,14 +439,14 @@ class _Bench:
             )
             return
         lengths = np.linalg.norm(means, axis=1)
-        centre, radius = _sphere(means)
+        centre, _ = _sphere(means)
         off = float(np.linalg.norm(centre))
-        evidence = {"lengths": lengths.round(3).tolist(), "offset (g)": centre.round(3).tolist()}
+        evidence = {"lengths": lengths.round(3).tolist()[:12], "offset (g)": centre.round(3).tolist()}
         uneven = float(np.ptp(lengths))
         light = RED if uneven > 0.04 else YELLOW if uneven > 0.015 else GREEN
         words = f"gravity is {lengths.min():.3f} to {lengths.max():.3f} long in {len(means)} poses"
         if light != GREEN:
-            words += f"; an offset of {off:.3f} would explain {_explained(means, centre, radius):.0%} of that"
+            words += f"; an offset of {off:.3f} would explain {_explained(means, centre):.0%} of that"
         advice = "" if light == GREEN else f"Subtract {(centre * gravity).round(3).tolist()}, and look at its scales."
         self.say("accelerometer", light, words, evidence, advice)
         if light != GREEN and off < 0.3:
@@ -552,9 +550,9 @@ class _Bench:
         )
         light = (
             RED
-            if uneven > 0.2 or (dips and dips[1] > 12)
+            if uneven > 0.12 or (dips and dips[1] > 8)
             else YELLOW
-            if uneven > 0.1 or (dips and dips[1] > 6)
+            if uneven > 0.06 or (dips and dips[1] > 4)
             else GREEN
         )
         words = f"once corrected, its length varies by {uneven:.0%}" + (
@@ -707,10 +705,11 @@ class _Bench:
         moving = np.ones(len(push), dtype=bool)
         for one in lying:
             moving[one.first : one.last] = False
-        alike = np.corrcoef(push[1:], push[:-1])[0, 1] if push.std() > 0 else 0.0
-        lasting = np.sqrt((1 + min(max(alike, 0.0), 0.999)) / (1 - min(max(alike, 0.0), 0.999)))
         usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
-        doubt = np.where(moving, np.hypot(usual, push) * lasting, 0.0)
+        doubt = np.where(moving, np.hypot(usual, push) * _lasting(push), 0.0)
+        if self.field is not None:  # iron shows in the field's length, and lasts as well
+            uneven = np.linalg.norm(self.field, axis=1) - 1
+            noise = noise._replace(field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * _lasting(uneven)))
         field = self.field
         trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
         if field is not None and {"field"} & trouble:
@@ -759,7 +758,7 @@ class _Bench:
         worst = max(ratios.values())
         high = max(squares.values())
         light = (
-            RED if worst > 4 or high > 5 else YELLOW if worst > 2 or high > 2 or max(alike.values()) > 0.5 else GREEN
+            RED if worst > 5 or high > 5 else YELLOW if worst > 2 or high > 2 or max(alike.values()) > 0.5 else GREEN
         )
         advice = ""
         if light == RED:
@@ -772,7 +771,7 @@ class _Bench:
             "found (°)": round(found, 3),
             "innovations": squares,
             "likeness": alike,
-            "held out (°)": self.judgements[0].held_out,
+            "held out (°)": {name: round(off, 1) for name, off in self.judgements[0].held_out.items()},
         }
         self.say("filter", light, words, evidence, advice)
 
@@ -791,6 +790,14 @@ class _Bench:
         )
 
 
+def _lasting(values):
+    """By how much less the samples of something that lasts tell than as many that know nothing of each other."""
+    if values.std() == 0:
+        return 1.0
+    alike = min(max(np.corrcoef(values[1:], values[:-1])[0, 1], 0.0), 0.999)
+    return float(np.sqrt((1 + alike) / (1 - alike)))
+
+
 def _at(time, source, values):
     """Values at other times, between samples along a straight line."""
     if len(source) == len(time) and np.allclose(source, time, atol=1e-9):
@@ -807,14 +814,11 @@ def _said_unit(names):
     return ""
 
 
-def _centre(rates, field, time):
-    """A first idea of a magnetometer's offset: the middle of the sphere nearest to its values."""
-    del rates, time
-    if not points_one_way(field - np.median(field, axis=0)) and np.linalg.matrix_rank(field - field.mean(axis=0)) < 3:
-        return np.zeros(3)
+def _centre(field):
+    """A first idea of a magnetometer's offset: the middle of the sphere nearest to its values, or zero."""
     centre, radius = _sphere(field)
     spread = np.linalg.norm(field - centre, axis=1)
-    ways = np.linalg.eigvalsh(np.cov(((field - centre) / spread[:, None]).T))
+    ways = np.linalg.eigvalsh(np.cov(((field - centre) / np.maximum(spread, 1e-12)[:, None]).T))
     # Where the values cover a small part of the sphere, its middle is anybody's guess.
     return centre if ways[0] > 0.03 and spread.std() < 0.3 * radius else np.zeros(3)
 
@@ -826,10 +830,9 @@ def _sphere(points):
     return solution[:3], float(np.sqrt(max(solution[3] + (solution[:3] ** 2).sum(), 0.0)))
 
 
-def _explained(points, centre, radius):
-    before = np.linalg.norm(points, axis=1).std()
-    after = np.linalg.norm(points - centre, axis=1).std()
-    del radius
+def _explained(points, centre):
+    """The share of the unevenness of lengths that goes when they are counted from the middle."""
+    before, after = (np.linalg.norm(values, axis=1).std() for values in (points, points - centre))
     return max(0.0, 1 - after / max(before, 1e-12))
 
 
@@ -844,7 +847,7 @@ def _angle_readings(group):
     """Three angles as orientations: which is which, about which axes, in degrees or radians."""
     degrees = np.abs(group.values).max() > 6.5
     values = np.radians(group.values) if degrees else group.values
-    order = _by_name(group.names)
+    order = places_by_name(group.names)
     found = {}
     unit = "degrees" if degrees else "radians"
     for sequence in ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx"):
@@ -859,22 +862,6 @@ def _angle_readings(group):
     return found
 
 
-def _by_name(names):
-    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their headings."""
-    text = [name.lower() for name in names]
-    for words in (
-        ("yaw", "pitch", "roll"),
-        ("heading", "pitch", "roll"),
-        ("azimuth", "pitch", "roll"),
-        ("alpha", "beta", "gamma"),
-        ("psi", "theta", "phi"),
-    ):
-        places = [next((k for k, name in enumerate(text) if word in name), None) for word in words]
-        if None not in places and len(set(places)) == 3:
-            return tuple(places)
-    return None
-
-
 def _parts_to_judge(time, rates, longest=60.0, count=3):
     """Where to judge a filter: all of a short recording, or its liveliest, calmest and middle parts."""
     if time[-1] - time[0] <= longest * 1.5:
@@ -884,6 +871,3 @@ def _parts_to_judge(time, rates, longest=60.0, count=3):
     lively = np.array([np.linalg.norm(rates[start : start + size], axis=1).mean() for start in starts])
     chosen = np.argsort(lively)[[0, len(starts) // 2, -1]][:count]
     return [(int(starts[k]), int(starts[k]) + size) for k in sorted(set(chosen.tolist()))]
-
-
-__all__ = ["Examined", "Judgement", "Verdict", "examine", "steps_of", "turned"]

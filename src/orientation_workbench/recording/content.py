@@ -14,8 +14,8 @@ HEADINGS = {
     "gravity": r"grav",
     "linear acceleration": r"^lin|user|without.?g",
     "magnetometer": r"mag|field|compass|^m$|^b$",
-    "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w$|^g$|^wib",
-    "accelerometer": r"acc|force|^a$|^fib|^f$",
+    "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
+    "accelerometer": r"acc|force|^a\b|^fib|^f$",
 }
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
@@ -109,6 +109,7 @@ def read_content(source, name=None, rate=None):
         groups += found
         unused += left
     chosen = _roles(groups)
+    remarks += _with_gravity(chosen, groups)
     alone = set(chosen) == {"gyroscope"} and not chosen["gyroscope"].called
     if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
         raise RecordingError(
@@ -181,7 +182,7 @@ def _parts(heading):
     heading = re.sub(r"^field\.", "", heading)  # before every heading of a robot's log
     text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
     text = re.sub(r"(?<=[a-z])(?=\[)|[\[\]|:. _-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)).strip()
-    words = text.split()
+    words = [word for word in text.split() if word not in ("cal", "uncal", "raw")] or text.split()
     if not words:
         return "", ""
     for place in (-1, 0):
@@ -225,6 +226,9 @@ def _groups(table, time_column, time):
         called = _called(stem) or _called(table.name.lower())
         columns = [k for _, k in found]
         if len(found) == 4 and _is_unit(table.values[:, columns]):
+            letters = "".join(axis for axis, _ in found)
+            if set(letters) == set("wxyz") and letters not in ("wxyz", "xyzw"):
+                columns = [axes[axis] for axis in "wxyz"]  # some write z before y before x
             add("quaternion", columns, "quaternion")
         elif {"x", "y", "z"} <= set(axes) and len(found) in (3, 4):
             add("vector", [axes[axis] for axis in "xyz"], called)
@@ -232,7 +236,8 @@ def _groups(table, time_column, time):
             add("vector", columns, called)
     angles = [k for k in usable if k not in taken and _called(table.columns[k].lower()) == "angles"]
     if len(angles) >= 3:
-        add("angles", angles[:3], "angles")
+        known = places_by_name([table.columns[k] for k in angles])
+        add("angles", [angles[k] for k in known] if known else angles[:3], "angles")
     rest = [k for k in usable if k not in taken]
     for k in list(rest):
         four = [k, k + 1, k + 2, k + 3]
@@ -258,10 +263,47 @@ def _groups(table, time_column, time):
     return groups, [table.columns[k] for k in range(len(table.columns)) if k not in taken]
 
 
+def places_by_name(names):
+    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their headings; None where there is doubt."""
+    text = [name.lower() for name in names]
+    for words in (
+        ("yaw", "pitch", "roll"),
+        ("heading", "pitch", "roll"),
+        ("azimuth", "pitch", "roll"),
+        ("alpha", "beta", "gamma"),
+        ("psi", "theta", "phi"),
+    ):
+        places = [next((k for k, name in enumerate(text) if word in name), None) for word in words]
+        if None not in places and len(set(places)) == 3:
+            return tuple(places)
+    return None
+
+
 def _is_unit(values):
     values = values[np.isfinite(values).all(axis=1)]
     squares = (values**2).sum(axis=1)
     return len(values) > 8 and abs(np.median(squares) - 1) < 0.02 and np.mean(np.abs(squares - 1) < 0.05) > 0.98
+
+
+def _with_gravity(chosen, groups):
+    """Where acceleration and gravity stand in columns of their own, their sum is what an accelerometer feels."""
+    felt = chosen.get("accelerometer")
+    apart = [group for group in groups if group.called == "gravity" and points_one_way(group.values)]
+    if felt is not None and points_one_way(felt.values) or not apart:
+        return []
+    if felt is None:
+        moved = [group for group in groups if group.called in ("linear acceleration", "accelerometer")]
+        if not moved:
+            return []
+        felt = moved[0]
+    gravity = np.stack([np.interp(felt.time, apart[0].time, column) for column in apart[0].values.T], axis=-1)
+    chosen["accelerometer"] = felt._replace(values=felt.values + gravity, called="accelerometer")
+    return [f"{', '.join(felt.names)} holds no gravity; {', '.join(apart[0].names)} was added to it"]
+
+
+def _has_length_one(values):
+    lengths = np.linalg.norm(values, axis=1)
+    return abs(np.median(lengths) - 1) < 1e-3 and np.ptp(lengths) < 1e-2
 
 
 def points_one_way(values):
@@ -290,6 +332,8 @@ def _roles(groups):
         if group.called not in ("gravity", "quaternion")
     ]
     vectors = [group for group in vectors if group.called != "linear acceleration"]
+    # Without a name, vectors of length one are rows of a matrix.
+    vectors = [group for group in vectors if group.called or not _has_length_one(group.values)]
     for group in list(vectors):
         if group.called == "angles":
             angles.append(group)

@@ -129,6 +129,13 @@ def in_blocks(time, rates, vectors, seconds=0.05):
     return time[ends], means, found
 
 
+def _earth(forces, field):
+    """The field along a ground with x to magnetic north and z up, by its usual dip against gravity."""
+    sines = (forces * field).sum(axis=1) / np.linalg.norm(forces, axis=1) / np.linalg.norm(field, axis=1)
+    sine = float(np.clip(np.median(sines), -0.999, 0.999))
+    return np.array([np.sqrt(1 - sine**2), 0, sine])
+
+
 def judge(time, rates, forces, field, noise, doubt=None, progress=None):
     """Run a filter forwards, backwards and with one sensor held out, and compare.
 
@@ -159,10 +166,13 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
         _start(forces[-lead:], field[-lead:] if magnetic else None),
     ]
     doubt = np.full(count, noise.force) if doubt is None else np.hypot(noise.force, doubt)
-    angle = np.hypot(max(doubt[0], doubt[-1]), 0.02)
-    first = np.diag([angle**2] * 3 + [np.radians(0.5) ** 2] * 3)
-    heading = np.hypot(noise.field, 0.05)
-    first[:3, :3] += 0 if not magnetic else np.eye(3) * heading**2
+    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by more of heading.
+    first = np.array(
+        [
+            np.diag([(0.03 + noise.field * magnetic + min(0.4, 8 * end)) ** 2] * 3 + [np.radians(0.5) ** 2] * 3)
+            for end in (doubt[0], doubt[-1], doubt[0], doubt[0])
+        ][:runs]
+    )
     estimate = MultiplicativeKalmanFilter(
         np.array([starts[0], starts[1], starts[0], starts[0]][:runs]), first, noise.gyroscope, noise.bias
     )
@@ -175,6 +185,7 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
     dcms, covariances = np.empty((runs, count, 3, 3)), np.empty((runs, count, 3, 3))
     said = {"accelerometer": [], "magnetometer": []}
     up = np.broadcast_to(UP, (runs, 3))
+    earth = np.broadcast_to(_earth(forces, field), (runs, 3)) if magnetic else None
     for k in range(count):
         at = order[:, k]
         if k:
@@ -184,9 +195,7 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
             estimate.turn((sign * step / step[0])[:, None] * rates[later], step[0])
         by_force = estimate.observe(forces[at], up, doubt[at] + no_force)
         if magnetic:
-            level = np.einsum("kji,kj->ki", estimate.dcm, field[at])
-            north = np.stack([np.hypot(level[:, 0], level[:, 1]), 0 * level[:, 0], level[:, 2]], axis=-1)
-            by_field = estimate.observe(field[at], north, noise.field + no_field)
+            by_field = estimate.observe(field[at], earth, noise.field + no_field)
             said["magnetometer"].append((by_field.difference[0], by_field.covariance[0]))
         said["accelerometer"].append((by_force.difference[0], by_force.covariance[0]))
         places = np.arange(runs), at
@@ -206,12 +215,12 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
         return float(np.degrees(np.sqrt(np.mean(values[inner]) / 2)))
 
     squares, bounds, alike, held_out = {}, {}, {}, {}
-    for name, ways in (("accelerometer", 2), ("magnetometer", 1)):
+    for name in ("accelerometer", "magnetometer"):
         if said[name]:
             differences, claims = (np.array(values)[lead:] for values in zip(*said[name], strict=True))
             one = np.linalg.solve(np.linalg.cholesky(claims), differences[..., None])[..., 0]
-            squares[name] = float((one**2).sum(axis=1).mean() / ways)
-            bounds[name] = chi_square_bounds(ways * len(one))
+            squares[name] = float((one**2).sum(axis=1).mean() / 2)
+            bounds[name] = chi_square_bounds(2 * len(one))
             alike[name] = float((one[1:] * one[:-1]).sum() / (one**2).sum())
     if magnetic:
         for name, run, seen in (("magnetometer", 2, field), ("accelerometer", 3, forces)):

@@ -141,7 +141,6 @@ def stretches(time, rates, seconds=0.5):
         return []
     blocks = rates[: count * size].reshape(count, size, 3)
     spread = np.sqrt(blocks.var(axis=1, ddof=1).mean(axis=1))
-    level = np.linalg.norm(blocks.mean(axis=1), axis=1)
     calm = spread < min(QUIET, max(6 * np.percentile(spread, 5), np.radians(0.3)))
     if not calm.any():
         return []
@@ -158,7 +157,6 @@ def stretches(time, rates, seconds=0.5):
         elif not inside and first is not None:
             found.append((first, k))
             first = None
-    del level
     result = []
     for first, last in found:
         part = rates[first * size : last * size]

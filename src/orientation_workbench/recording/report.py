@@ -3,9 +3,11 @@
 import io
 import re
 from html import escape
+from textwrap import wrap
 
 import numpy as np
 
+WIDTH = 88  # of a line of the text
 LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
 #: Ways to write an orientation down, by what the command calls them.
 CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
@@ -14,12 +16,16 @@ CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
 def as_text(examined):
     """The report as plain text: a line for each verdict, with its evidence and what to do."""
     lines = [f"{examined.name}"]
+
+    def add(words, first, rest):
+        lines.extend(wrap(words, WIDTH, initial_indent=first, subsequent_indent=rest, break_long_words=False))
+
     for verdict in examined.verdicts:
-        lines.append(f"{LIGHTS[verdict.light]} {verdict.about}: {verdict.words}")
+        add(f"{verdict.about}: {verdict.words}", f"{LIGHTS[verdict.light]} ", "     ")
         if verdict.evidence and verdict.light != "as it should be":
-            lines.append("       " + ", ".join(f"{name} {value}" for name, value in verdict.evidence.items()))
+            add(", ".join(f"{name} {value}" for name, value in verdict.evidence.items()), "       ", "       ")
         if verdict.advice:
-            lines.append(f"       -> {verdict.advice}")
+            add(verdict.advice, "  -> ", "     ")
     return "\n".join(lines)
 
 

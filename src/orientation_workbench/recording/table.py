@@ -239,11 +239,12 @@ def _names(head, width):
     ]
     if not head:
         return [f"column {k + 1}" for k in range(width)]
-    names = head[-1]
-    if len(head) > 1 and len(head[-2]) == len(names):
-        units = sum(bool(re.fullmatch(r"[(\[]?[°\w/^²·.*]{1,9}[)\]]?", field)) for field in names if field)
-        if len(set(names)) < 0.7 * len(names) and units > 0.7 * len(names):  # units repeat themselves, names do not
-            names = [f"{name} [{unit.strip('()[]')}]" for name, unit in zip(head[-2], names, strict=True)]
+    # Above the numbers there may be lines of kinds and of units: they repeat themselves, names do not.
+    most = max(range(len(head)), key=lambda k: (len(set(head[k])), k))
+    names = head[most]
+    below = head[-1]
+    if most < len(head) - 1 and len(below) == len(names):
+        names = [f"{name} [{unit.strip('()[]')}]" if unit else name for name, unit in zip(names, below, strict=True)]
     names = [*names, *(f"column {k + 1}" for k in range(len(names), width))][:width]
     return [name or f"column {k + 1}" for k, name in enumerate(names)]
 

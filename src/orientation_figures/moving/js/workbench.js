@@ -1,6 +1,6 @@
 import { IDENTITY, dcmFromQuaternion, quaternionFromDcm, determinant, scale, slerp } from './mathematics.js';
 import { explain, drawnDcms, mendingLine, taughtBy } from './mismatch.js';
-import { fragmentOf } from './address.js';
+import { carriedBy, fragmentOf } from './address.js';
 import { Sheet, button, calm, change, choice, element, follow, glide, group, liveText, numberField, onceAFrame, open, put, readout, stage,
   write } from './shared.js';
 
@@ -10,6 +10,21 @@ const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector
 // Of one engine and its prose: what the answer is called.
 const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers cannot decide.',
   unrelated: 'These are not the same motion.' };
+
+const PLACE = 'workbench', STATE = ['first', 'second', 'first_is', 'second_is', 'noise'], LONGEST = 5000;
+
+// What an address carries to here, as far as a reader could have entered it: it may come from anybody.
+export function takenUp(content) {
+  const state = {};
+  for (const side of ['first', 'second']) {
+    if (typeof content[side] === 'string' && content[side].length <= LONGEST) state[side] = content[side];
+    const { kind = UNKNOWN, sequence = UNKNOWN } = content[`${side}_is`] ?? {};
+    if (KINDS.includes(kind) && [UNKNOWN, ...SEQUENCES].includes(sequence)) state[`${side}_is`] = { kind, sequence };
+  }
+  if (content.noise >= 0 && content.noise <= 30) state.noise = content.noise;
+  // Numbers that were brought alone wait for the other program's.
+  return 'first' in state && !('second' in state) ? { ...state, second: '' } : state;
+}
 
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN
   && (name === 'kind' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
@@ -47,7 +62,7 @@ export function render({ model, el }) {
       change(model, { first, second, noise: 0, first_is: { kind: UNKNOWN, sequence: UNKNOWN }, second_is: { kind: UNKNOWN, sequence: UNKNOWN } });
     } });
   const noise = numberField({ name: 'They may differ by, in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
-  const verdict = element('div', { class: 'verdict' });
+  const verdict = element('div', { class: 'controls verdict' });
   const code = element('output', { class: 'result', 'aria-label': 'The line that mends it' });
   const mend = group('The line that mends it', 'controls line', element('div', { class: 'title' }, 'The line that mends it, in NumPy and SciPy'), code,
     button('Copy the line', async () => {
@@ -55,19 +70,19 @@ export function render({ model, el }) {
       words.say('The line is copied.');
     }));
   const post = button('Copy an address that carries this case', async () => {
-    const place = el.closest('[id]')?.id || 'workbench';
     try {
-      const content = Object.fromEntries(['first', 'second', 'first_is', 'second_is', 'noise'].map((name) => [name, model.get(name)]));
-      await navigator.clipboard.writeText(location.href.split('#')[0] + fragmentOf(place, content));
+      const content = Object.fromEntries(STATE.map((name) => [name, model.get(name)]));
+      await navigator.clipboard.writeText(location.href.split('#')[0] + fragmentOf(PLACE, content));
       words.say('The address is copied. Whoever opens it sees these numbers; they are sent to no server.');
     } catch (error) {
       words.say(error.message);
     }
   });
   open(el, element('div', { class: 'controls converter' }, sides[0].box, sides[1].box),
-    element('div', { class: 'row-of-controls' }, example.element, noise.element, post),
+    element('div', { class: 'controls' }, element('div', { class: 'row-of-controls' }, example.element,
+      element('label', { class: 'noise' }, 'They may differ by ', noise.element, ' degrees'), post)),
     verdict, mend, readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$']),
-    stage(sheet, words));
+    element('div', { class: 'across' }, stage(sheet, words)));
 
   // The orientations at the last pose, reached by one turn from where the drawing stands.
   function glideTo(dcms) {
@@ -116,9 +131,25 @@ export function render({ model, el }) {
     });
   }
 
+  // An address is taken up when the page opens with it, and when it is put into an open page.
+  function takeUp() {
+    try {
+      const carried = carriedBy(globalThis.location?.hash ?? '');
+      if (carried?.place === PLACE) change(model, takenUp(carried.content));
+    } catch (error) {
+      words.say(error.message);
+    }
+  }
+
+  takeUp();
   judge();
   draw();
-  return follow(model, ['first', 'second', 'first_is', 'second_is', 'noise'], judge);
+  globalThis.addEventListener?.('hashchange', takeUp);
+  const unfollow = follow(model, STATE, judge);
+  return () => {
+    globalThis.removeEventListener?.('hashchange', takeUp);
+    unfollow();
+  };
 }
 
 // The answer as the reader sees it; every fault leads to where the book teaches it.
