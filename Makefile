@@ -96,11 +96,11 @@ numpy: setup
 
 # What an author begins with. AFTER names the chapter that the new one follows; it is released, so that the book builds.
 new-chapter: $(VENV)/ready-release setup
-	@$(RUN) -m notebook_pages.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
+	@$(RUN) -m tools.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
 	@$(RUN) -m coursework release "$(NAME)" chapters
 
 new-question: setup
-	@$(RUN) -m notebook_pages.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
+	@$(RUN) -m tools.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
 
 check: $(VENV)/ready-test setup
 	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/chapters/test_chapters.py
@@ -127,7 +127,7 @@ release: $(VENV)/ready-release setup
 
 # Cells, releases and doctests, as other processors have their numbers (ONLY=unit-quaternions: those of one notebook); no browser.
 anywhere: $(VENV)/ready-test setup
-	@$(RUN) -m notebook_pages.anywhere $(ONLY)
+	@$(RUN) -m tools.anywhere $(ONLY)
 
 # What survives is told at the end: a test that notices it is missing, or it is no change.
 mutants: $(VENV)/ready-mutants setup

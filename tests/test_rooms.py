@@ -22,6 +22,7 @@ MAY_IMPORT = {
     "coursework.authoring": ("coursework.checking",),
     "coursework.grading": ("coursework.checking", "coursework.authoring"),
     "orientation_course": ("coursework", "orientation"),
+    "notebook_pages": (),
 }
 #: In grading, what follows a notebook on its way uses only what comes before it, and what stands beside the rooms.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
@@ -32,7 +33,7 @@ OURS = {*PACKAGES, "notebook_pages"}
 
 def folder_of(room):
     package, *inner = room.split(".")
-    return PACKAGES[package].joinpath(*inner)
+    return PACKAGES.get(package, PAGES).joinpath(*inner)
 
 
 def imported(path, sources):

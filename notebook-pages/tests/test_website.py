@@ -8,21 +8,17 @@ import stat
 import subprocess
 import sys
 from pathlib import Path
-from textwrap import dedent
 
 import nbformat
 import pytest
 import yaml
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
-from places import REPOSITORY
 
 from notebook_pages import build as book
-from notebook_pages import page, unchanged
+from notebook_pages import paths, unchanged
 from notebook_pages.alternative_text import says_something
-from notebook_pages.notebooks import all_notebooks, normalise
 from notebook_pages.paths import NODE, NODE_MODULES, WEBSITE, fingerprint, let_everybody_read
 from notebook_pages.serve import Handler
-from orientation_figures.plot import Plot
 
 FIGURE = '''
 class Figure:
@@ -102,18 +98,12 @@ anything else
 
 
 def build(folder, chapters, **changed):
-    """Build a book of ``chapters``, cells by file name, with the real settings but for some that are ``changed``.
+    """Build a book of ``chapters``, cells by file name, with a small book's settings but for some that are ``changed``.
 
     Returns the exit code and the words.
     """
-    settings = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
-    settings["sphinx"]["local_extensions"] = {"notebook_pages": str(REPOSITORY / "notebook-pages" / "src")}
-    settings["html"].pop("favicon")
-    settings.pop("bibtex_bibfiles")
-    for key in list(settings["sphinx"]["config"]):
-        if key.startswith("bibtex"):
-            settings["sphinx"]["config"].pop(key)
-    settings["sphinx"]["config"] |= {"moved": {}, **changed}
+    settings = yaml.safe_load((Path(__file__).with_name("small-book") / "_config.yml").read_text("utf8"))
+    settings["sphinx"]["config"] |= changed
     (folder / "_config.yml").write_text(json.dumps(settings))
     contents = {
         "format": "jb-book",
@@ -128,7 +118,8 @@ def build(folder, chapters, **changed):
     jupyter_book = Path(sys.executable).with_name("jupyter-book")
     done = subprocess.run(
         [jupyter_book, "build", folder, "-q", "-W", "-n", "--keep-going"],
-        env=os.environ | {"NO_COLOR": "1"}, capture_output=True, text=True,
+        cwd=folder, env=os.environ | {"NO_COLOR": "1", "NOTEBOOK_PAGES_FETCHED": str(paths.FETCHED)},
+        capture_output=True, text=True,
     )  # fmt: skip
     return done.returncode, done.stdout + done.stderr
 
@@ -255,16 +246,6 @@ def test_modules_are_served_as_javascript():
     assert Handler.extensions_map[".mjs"] == "text/javascript"
 
 
-@pytest.mark.parametrize("path", all_notebooks(REPOSITORY), ids=lambda path: path.stem)
-def test_notebook_is_stored_as_make_notebooks_stores_it(path):
-    """Run in order, every cell, with normal metadata: else nbval would compare nothing."""
-    notebook = nbformat.read(path, as_version=4)
-    counts = [cell.execution_count for cell in notebook.cells if cell.cell_type == "code"]
-    assert counts == list(range(1, len(counts) + 1)), "run `make notebooks`"
-    stored = dedent(path.read_text("utf8"))
-    assert nbformat.writes(normalise(notebook)) == stored.rstrip("\n"), "run `make notebooks`"
-
-
 def test_formulas_are_set_by_one_process_which_is_missed_when_it_ends():
     from notebook_pages import mathematics
 
@@ -277,20 +258,6 @@ def test_formulas_are_set_by_one_process_which_is_missed_when_it_ends():
     with pytest.raises(RuntimeError, match=r"KaTeX ended with code -9 .* at the formula \\theta"):
         katex(r"\theta", False, "1.15")
     katex.close()
-
-
-def test_letters_are_drawn_once_and_a_blank_not_at_all():
-    with Plot(alt="Empty axes with two words above them and the same two below.") as plot:
-        plot.axes.set(title="two words", xlabel="two words")
-    alone = plot._repr_html_()
-    blank = re.search(r'<path (?![^>]*\bd=)[^>]*\bid="', alone)
-    assert blank, "Matplotlib draws blanks no more: share_outlines need not know them"
-    body = page.share_outlines(alone + alone)
-    outlines = re.findall(r'<path id="(o\d+)"([^>]*)/>', body)
-    assert all(re.search(r'\bd="[^"]', outline) for _, outline in outlines)
-    assert len({outline for _, outline in outlines}) == len(outlines)
-    links = re.findall(r'<use [^>]*href="#([^"]*)"', body)
-    assert set(links) == {name for name, _ in outlines} and links.count(links[0]) >= 2
 
 
 @pytest.mark.long

@@ -27,7 +27,7 @@ TRIANGLE = ((0, 0), (-14, 5.6), (-14, 0), (-14, -5.6))
 DIAMOND = ((0, 0), (-8, 5.4), (-16, 0), (-8, -5.4))
 HEADS = {"A": TRIANGLE, "B": TRIANGLE, "C": DIAMOND, "D": TRIANGLE, "E": TRIANGLE, "F": DIAMOND, "Z": TRIANGLE}
 
-#: How the labels of the book's drawings are set: ``python -m notebook_pages.live.labels`` writes it.
+#: How the labels of the book's drawings are set: ``python -m tools.labels`` writes it.
 LABELS = Path(__file__).with_name("labels.json")
 
 ROUND = 0.5523  # a cubic with its inner points this far along the tangents is a quarter of a circle

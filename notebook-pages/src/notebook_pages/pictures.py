@@ -7,12 +7,13 @@ import html
 import re
 from hashlib import sha256
 from pathlib import Path
+from types import SimpleNamespace
 
-from orientation_figures.style import LIGHT, STYLE
-
-from .paths import fingerprint
+from .paths import REGISTERED, fingerprint, named
 
 FOLDER = "pictures"
+#: The style sheet of the book's figures, and its colours on a light page, by name.
+FIGURES = named(REGISTERED["style"]) if "style" in REGISTERED else SimpleNamespace(STYLE="", LIGHT={"ink": "#000000"})
 WIDTH, HEIGHT, MARGIN = 1200, 630, 40
 LARGEST = 300_000  # bytes: some who show pictures take no larger ones
 FIGURE = re.compile(
@@ -31,16 +32,16 @@ def mixed(colour, per_cent):
 def plain_colours(text):
     """``text`` with the colours of the light page where it names them, and none of those where it defines them."""
     text = re.sub(r"--[\w-]+:[^;]*;", "", text)
-    return re.sub(r"var\(--([\w-]+)[^)]*\)", lambda name: LIGHT.get(name[1], SHEET), text)
+    return re.sub(r"var\(--([\w-]+)[^)]*\)", lambda name: FIGURES.LIGHT.get(name[1], SHEET), text)
 
 
 def plain_style():
     """The style sheet of the figures without variables and mixtures, which programs that draw SVG do not know."""
     rules = []
-    for selector, rule in re.findall(r"([^{}]+)\{([^{}]*)\}", STYLE.partition("html[data-theme")[0]):
+    for selector, rule in re.findall(r"([^{}]+)\{([^{}]*)\}", FIGURES.STYLE.partition("html[data-theme")[0]):
         selector = selector.replace(".orientation-figure", "").strip() or "g"
         if mix := MIX.search(rule):
-            for name, colour in LIGHT.items():
+            for name, colour in FIGURES.LIGHT.items():
                 rules.append(f"{selector}.{name}{{{rule.replace(mix[0], mixed(colour, int(mix[1])))}}}")
         else:
             rules.append(f"{'g.figure' if selector == 'svg' else selector}{{{plain_colours(rule)}}}")
@@ -74,7 +75,7 @@ def drawn(figure, box):
     svg = (
         f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="{WIDTH}" '
         f'height="{HEIGHT}"><rect width="{WIDTH}" height="{HEIGHT}" fill="{SHEET}"/>'
-        f'<g class="figure" color="{LIGHT["ink"]}" transform="translate({across:g} {down:g}) scale({scale:g})">'
+        f'<g class="figure" color="{FIGURES.LIGHT["ink"]}" transform="translate({across:g} {down:g}) scale({scale:g})">'
         f'<g style="{own[1] if own else ""}">{inner}</g></g></svg>'
     )
     return bytes(resvg_py.svg_to_bytes(svg_string=svg, style_sheet=plain_style(), skip_system_fonts=True))

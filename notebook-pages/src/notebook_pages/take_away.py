@@ -12,18 +12,14 @@ from pathlib import Path
 import jupytext
 import nbformat
 
-from coursework.authoring.course import find_course
-from coursework.authoring.packing import archive as pack
-from coursework.authoring.packing import write_zip
-
 from .markdown import MarkdownWriter
-from .packing import PROJECTS
-from .paths import PACKAGES, REPOSITORY, pages
+from .packing import PROJECTS, write_zip
+from .paths import REGISTERED, REPOSITORY, named, pages
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
-RECORDINGS = PACKAGES["orientation_recordings"] / "data"
-RECORDINGS_ARCHIVE = "recordings.zip"
+#: What is measured, say, and comes beside the notebooks that import its package.
+DATA = REGISTERED.get("data", {})
 EXERCISES = REPOSITORY / "exercises"
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
@@ -49,7 +45,12 @@ def first_words(title):
 
 
 def packages_archive():
-    """The name of the zip of all packages that the notebooks import; its version is that of the newest of them."""
+    """The name of the zip of all packages that the notebooks import; its version is that of the newest of them.
+
+    Empty in a book that has no packages.
+    """
+    if not PROJECTS:
+        return ""
     stated, _, moment = PROJECTS[-1].version().partition(".post")
     newest = max([moment, *(project.version().partition(".post")[2] for project in PROJECTS)])
     return f"{PROJECTS[-1].name}-{stated}.post{newest}.zip"
@@ -57,6 +58,8 @@ def packages_archive():
 
 def introduction(title):
     """What the notebook of a page says first, below its title, in a paragraph of one line."""
+    if not PROJECTS:
+        return f"{first_words(title)} Text: CC BY 4.0. Code: BSD-3-Clause."
     return (
         f"{first_words(title)} To run it, install the packages that it "
         f"imports: download `{packages_archive()}` from the page's menu, unpack it, and in its folder `packages` run "
@@ -101,14 +104,10 @@ def write_page(app, pagename, templatename, context, doctree):
         return
     downloads = exercise_downloads if pagename.startswith("exercises/") else chapter_downloads
     context["downloads"] = downloads(app, pagename, doctree)
-    if "orientation_recordings" in Path(app.env.doc2path(pagename)).read_text("utf8"):
-        context["downloads"].append(
-            {
-                "path": f"{FOLDER}/{RECORDINGS_ARCHIVE}",
-                "text": "Measured data",
-                "note": "what the instruments recorded, as CSV",
-            }
-        )
+    source = Path(app.env.doc2path(pagename)).read_text("utf8")
+    for name, data in DATA.items():
+        if data["package"] in source:
+            context["downloads"].append({"path": f"{FOLDER}/{name}.zip", "text": data["text"], "note": data["note"]})
 
 
 def chapter_downloads(app, pagename, doctree):
@@ -118,14 +117,15 @@ def chapter_downloads(app, pagename, doctree):
     nbformat.write(notebook, target.with_suffix(".ipynb"))
     notebook.metadata = {"jupytext": NO_METADATA}
     target.with_suffix(".py").write_text(jupytext.writes(notebook, fmt="py:percent"), "utf8")
+    packages = {
+        "path": f"{FOLDER}/{packages_archive()}",
+        "text": "Packages",
+        "note": "what the code imports, with how to install it",
+    }
     return [
         {"path": notebook_address(pagename), "text": "Notebook", "note": "for Jupyter, with the prose"},
         {"path": f"{FOLDER}/{target.name}.py", "text": "Python script", "note": "the prose as comments"},
-        {
-            "path": f"{FOLDER}/{packages_archive()}",
-            "text": "Packages",
-            "note": "what the code imports, with how to install it",
-        },
+        *([packages] if PROJECTS else []),
     ]
 
 
@@ -142,26 +142,27 @@ def exercise_downloads(app, pagename, doctree):
 
 def pack_exercises(app, exception):
     """Put the archive of all exercises into the site, if what it holds has changed."""
-    if exception or app.builder.format != "html":
+    if exception or app.builder.format != "html" or "exercises" not in REGISTERED:
         return
     archive = Path(app.outdir) / FOLDER / ARCHIVE
     sources = [path for project in PROJECTS for path in project.sources()]
     newest = max(path.stat().st_mtime for path in [*sources, *EXERCISES.glob("*.ipynb")])
     if not archive.exists() or archive.stat().st_mtime < newest:
-        pack(find_course(), archive)
+        named(REGISTERED["exercises"])(REPOSITORY, archive)
 
 
-def pack_recordings(app, exception):
-    """Put what instruments measured into the site as it stands in the package, with its licences."""
+def pack_data(app, exception):
+    """Put data into the site as it stands in its package, with its licences."""
     if exception or app.builder.format != "html":
         return
-    files = {f"recordings/{path.name}": path.read_bytes() for path in RECORDINGS.iterdir()}
-    write_zip(Path(app.outdir) / FOLDER / RECORDINGS_ARCHIVE, files)
+    for name, data in DATA.items():
+        files = {f"{name}/{path.name}": path.read_bytes() for path in (REPOSITORY / data["folder"]).iterdir()}
+        write_zip(Path(app.outdir) / FOLDER / f"{name}.zip", files)
 
 
 def build_wheels(app, exception):
     """Build our packages into the site, as wheels and all in one zip; their names tell what they were built from."""
-    if exception or app.builder.format != "html":
+    if exception or app.builder.format != "html" or not PROJECTS:
         return
     folder = Path(app.outdir) / FOLDER
     wheels = {folder / project.wheel_name(): project for project in PROJECTS}
@@ -189,4 +190,4 @@ def setup(app):
     app.connect("html-page-context", write_page)
     app.connect("build-finished", build_wheels)
     app.connect("build-finished", pack_exercises)
-    app.connect("build-finished", pack_recordings)
+    app.connect("build-finished", pack_data)

@@ -15,8 +15,8 @@ from pathlib import Path
 from .paths import PACKAGES, REGISTERED, REPOSITORY
 
 #: What ``coursework`` finds by its entry point, which no import shows.
-PLUGIN = REGISTERED["plugin"]
-SEALED = PACKAGES[PLUGIN] / "sealed"
+PLUGIN = REGISTERED.get("plugin", "")
+SEALED = PACKAGES.get(PLUGIN, REPOSITORY) / "sealed"
 #: Versions of everything else that is imported.
 PINS = REPOSITORY / "constraints.txt"
 _PARSING = threading.Lock()
@@ -83,7 +83,7 @@ def modules_used(code):
 def files_used(code):
     """The files of this repository that running ``code`` may read, in their order."""
     modules = modules_used(code)
-    files = {file_of(module) for module in modules} | {PINS}
+    files = {file_of(module) for module in modules} | ({PINS} if PINS.is_file() else set())
     for folder in {path.parent for path in files if path != PINS} - {SEALED.parent}:
         beside = {path for path in folder.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")}
         files |= {path for path in beside if package_of(path) == folder}

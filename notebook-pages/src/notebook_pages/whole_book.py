@@ -17,7 +17,7 @@ import yaml
 from . import install, offline, unchanged
 from .paths import BUILD, HTML, REGISTERED, WEBSITE, fingerprint, let_everybody_read, pages
 
-NAME = REGISTERED["name"]
+NAME = REGISTERED.get("name", "book")
 FOLDER = HTML / "take-away"
 PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
 STAMPS = BUILD / "whole-book.json"  # what they were made from

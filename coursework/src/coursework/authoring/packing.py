@@ -14,6 +14,7 @@ from pathlib import Path
 import coursework
 
 from ..checking.update import MANIFEST, manifest
+from .course import find_course
 
 #: Every file of an archive carries this time, so that the same contents are the same bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
@@ -131,6 +132,11 @@ def archive(course, target=None):
     files[MANIFEST] = manifest(files).encode()
     write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
     return target
+
+
+def archive_of(folder, target):
+    """Make the archive for students of the course in a folder: for what makes pages of a course to offer."""
+    return archive(find_course(folder), target)
 
 
 def dated(stated, tag, folder, paths=(".",), files=()):

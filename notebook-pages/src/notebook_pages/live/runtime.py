@@ -17,12 +17,13 @@ from pathlib import Path
 
 from sphinx.errors import ConfigError
 
+from .. import paths
 from ..packing import PROJECTS
 from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY, fingerprint
 from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
-FETCHED = REPOSITORY / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt
+FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt
 FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")  # and those of lite/wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
@@ -37,14 +38,15 @@ COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 
 FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
-#: The book's own package, which leads to all that a page's Python starts with.
-DISTRIBUTION = PROJECTS[-1].name
+#: The book's own package, or SymPy alone: it leads to all that a page's Python starts with.
+DISTRIBUTION = PROJECTS[-1].name if PROJECTS else "sympy"
 #: What moving figures talk with their Python through: wheels that the notebook interface needs as well.
 WIDGETS = ("comm", "ipywidgets", "psygnal", "traitlets", "typing-extensions")
 DEPENDS = {
     "sympy": ["mpmath"],
-    **{project.name: ["sympy"] for project in PROJECTS[:-1]},
-    DISTRIBUTION: [project.name for project in PROJECTS[:-1]],
+    **{
+        project.name: ["sympy", *(other.name for other in PROJECTS[:number])] for number, project in enumerate(PROJECTS)
+    },
     "anywidget": list(WIDGETS),
     "ipywidgets": ["comm", "traitlets"],
 }

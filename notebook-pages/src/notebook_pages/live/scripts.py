@@ -6,20 +6,20 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from orientation_figures.moving.bundle import FOLDER as FIGURES
-
-from ..paths import NODE, NODE_MODULES, fingerprint
+from ..paths import NODE, NODE_MODULES, REGISTERED, fingerprint, named
 from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
-MODEL = FIGURES / "js" / "model.js"  # the figures of the build and those of the page's Python have one
+#: What a moving figure and its widget share; the figures of the build and those of the page's Python have one.
+MODEL = named(REGISTERED["figures"]).FOLDER / "js" / "model.js" if "figures" in REGISTERED else None
 ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 
 def folder_name():
     """Its scripts have the same names in every version of the book: the folder tells them apart."""
-    return f"{FOLDER}/scripts-{fingerprint(JS, MODEL, PYTHON, NODE_MODULES.parent / 'package-lock.json')}"
+    sources = filter(None, [JS, MODEL, PYTHON, NODE_MODULES.parent / "package-lock.json"])
+    return f"{FOLDER}/scripts-{fingerprint(*sources)}"
 
 
 def esbuild(*arguments):
@@ -37,7 +37,10 @@ def write(site):
     with tempfile.TemporaryDirectory() as folder:
         workshop = Path(folder)
         shutil.copytree(JS, workshop / "js")
-        shutil.copy(MODEL, workshop / "js")
+        if MODEL:
+            shutil.copy(MODEL, workshop / "js")
+        else:
+            (workshop / "js" / "model.js").write_text("export class Model {}\n", "utf8")
         write_python(workshop / "python")
         esbuild(
             *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")),

@@ -1,6 +1,6 @@
-"""``python -m notebook_pages.new``: a new chapter or a new question, with every part that the book asks of one.
+"""``python -m tools.new``: a new chapter or a new question, with every part that the book asks of one.
 
-What an author has to say stands there as TO BE WRITTEN, and :mod:`notebook_pages.chapters` tells where it still does.
+What an author has to say stands there as TO BE WRITTEN, and :mod:`tools.chapters` tells where it still does.
 """
 
 import argparse
@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import nbformat
 
+from notebook_pages.notebooks import METADATA, normalise
+
 from .chapters import CHAPTERS_SOURCE, INDEX, SOLUTIONS, TO_BE_WRITTEN, source_of
-from .notebooks import METADATA, normalise
 
 NAME = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
 
@@ -243,7 +244,7 @@ def new_question(name, title, kind):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="python -m notebook_pages.new", description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(prog="python -m tools.new", description=__doc__.partition("\n")[0])
     commands = parser.add_subparsers(required=True)
     chapter = commands.add_parser("chapter")
     chapter.add_argument("name")

@@ -1,4 +1,4 @@
-"""``python -m notebook_pages.anywhere``: numbers as other machines have them.
+"""``python -m tools.anywhere``: numbers as other machines have them.
 
 Every cell is run, all that is sealed or released is made, and every doctest is tried as if this processor were
 another one: with each kernel of OpenBLAS, without the instructions that NumPy would not have there, on one thread and
@@ -24,16 +24,16 @@ from nbclient import NotebookClient
 from coursework import authoring
 from coursework.authoring.course import find_course
 from coursework.authoring.source import notebooks_in
+from notebook_pages.execution import STORED
+from notebook_pages.live.cells import ALONE, kinds_of_cells, outputs_of_messages, stored_outputs, write_python
+from notebook_pages.live.runtime import COMPILER, FETCHED, PYODIDE, compile_wheels
+from notebook_pages.moves import moves, moves_of_outputs
+from notebook_pages.notebooks import all_notebooks
+from notebook_pages.packing import build_wheels
+from notebook_pages.paths import NODE, PACKAGES, REPOSITORY
+from notebook_pages.warm_kernels import WarmAsyncKernelManager
 
-from .execution import STORED
-from .live.cells import ALONE, kinds_of_cells, outputs_of_messages, stored_outputs, write_python
-from .live.runtime import COMPILER, FETCHED, PYODIDE, compile_wheels
-from .moves import moves, moves_of_outputs
-from .notebooks import all_notebooks
-from .packing import build_wheels
-from .paths import NODE, PACKAGES, REPOSITORY
 from .released import digests_of
-from .warm_kernels import WarmAsyncKernelManager
 
 #: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a processor has not that is as old as that.
 KERNELS = {

@@ -1,4 +1,4 @@
-"""What every chapter has, and where one has it not: ``python -m notebook_pages.chapters`` tells file, line and cell."""
+"""What every chapter has, and where one has it not: ``python -m tools.chapters`` tells file, line and cell."""
 
 import re
 import sys

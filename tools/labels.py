@@ -1,6 +1,6 @@
 """Write down how the labels of the book's drawings are set, so that a page draws them without Matplotlib.
 
-Run it with ``python -m notebook_pages.live.labels`` when a drawing has a new label: it runs the notebooks that draw.
+Run it with ``python -m tools.labels`` when a drawing has a new label: it runs the notebooks that draw.
 """
 
 import json
@@ -8,13 +8,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import nbformat
 
+from notebook_pages.live.cells import run_alone
+from notebook_pages.notebooks import all_notebooks
+from notebook_pages.paths import REPOSITORY
 from orientation_figures.drawing import LABELS, labels_to_keep
 
-from ..notebooks import all_notebooks
-from ..paths import REPOSITORY
-from .cells import run_alone
-
-COMMAND = "python -m notebook_pages.live.labels"
+COMMAND = "python -m tools.labels"
 RECORD = """
 from orientation_figures import drawing as _drawing
 _plain, _texts = _drawing.typeset, set()

@@ -1,0 +1,76 @@
+"""A book of three pages, built in one command: all that a page has, and nothing of any other book."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from bs4 import BeautifulSoup
+
+HERE = Path(__file__).parent
+#: Where the set-up of this working copy has put what it fetches.
+FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", HERE.parents[1]))
+PAGES = ("index", "levers", "triangles")
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """The folder of the site."""
+    if not (FETCHED / "node_modules" / "katex").is_dir():
+        pytest.skip(f"there is no node_modules in {FETCHED}: `make setup` brings it")
+    book = tmp_path_factory.mktemp("books") / "small"
+    shutil.copytree(HERE / "small-book", book)
+    environment = os.environ | {"NOTEBOOK_PAGES_FETCHED": str(FETCHED), "NO_COLOR": "1"}
+    done = subprocess.run(
+        [sys.executable, "-m", "notebook_pages.build"], cwd=book, env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    return book / "_build" / "html"
+
+
+def page(site, name):
+    return BeautifulSoup((site / f"{name}.html").read_text("utf8"), "html.parser")
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_comes_out_and_asks_nobody_else(built, name):
+    found = page(built, name)
+    assert found.find("h1") and not found.select("script[src*='//'], link[rel=stylesheet][href*='//']")
+    assert "orientation" not in found.get_text().lower()
+
+
+def test_mathematics_is_set_when_the_book_is_built(built):
+    found = page(built, "levers")
+    assert found.select(".katex math") and not found.select("script[type^='math/tex']")
+    assert "(1.1)" in found.get_text()
+
+
+def test_cells_were_run_and_can_be_run_in_the_page(built):
+    assert "60" in [output.get_text().strip() for output in page(built, "levers").select(".cell_output")]
+    lock = json.loads((built / "runtime" / "pyodide-lock.json").read_text("utf8"))
+    assert lock["first"] == "sympy" and set(lock["packages"]["sympy"]["depends"]) == {"mpmath"}
+    assert (built / lock["packages"]["sympy"]["file_name"]).exists() or (
+        built / "runtime" / lock["packages"]["sympy"]["file_name"]
+    ).exists()
+
+
+def test_a_prediction_waits_for_the_reader(built):
+    assert page(built, "levers").select("#predict-lever")
+
+
+def test_every_page_with_code_can_be_taken_away(built):
+    notebook = nbformat.read(built / "take-away" / "triangles.ipynb", as_version=4)
+    assert [cell.source.splitlines()[-1] for cell in notebook.cells if cell.cell_type == "code"] == [
+        "sm.pi - alpha - beta", "sm.pi - alpha - beta - (sm.pi - beta - alpha)",
+    ]  # fmt: skip
+    compile((built / "take-away" / "triangles.py").read_text("utf8"), "triangles.py", "exec")
+    assert not list((built / "take-away").glob("*.whl"))
+
+
+def test_the_notebook_interface_opens_it(built):
+    assert (built / "lite" / "notebooks" / "index.html").is_file()
+    assert (built / "lite" / "files" / "triangles.ipynb").is_file()
