@@ -62,7 +62,7 @@ export function render({ model, el }) {
       change(model, { first, second, noise: 0, first_is: { kind: UNKNOWN, sequence: UNKNOWN }, second_is: { kind: UNKNOWN, sequence: UNKNOWN } });
     } });
   const noise = numberField({ name: 'They may differ by, in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
-  const verdict = element('div', { class: 'controls verdict' });
+  const verdict = element('div', { class: 'controls answer' });
   const code = element('output', { class: 'result', 'aria-label': 'The line that mends it' });
   const mend = group('The line that mends it', 'controls line', element('div', { class: 'title' }, 'The line that mends it, in NumPy and SciPy'), code,
     button('Copy the line', async () => {
@@ -79,8 +79,8 @@ export function render({ model, el }) {
     }
   });
   open(el, element('div', { class: 'controls converter' }, sides[0].box, sides[1].box),
-    element('div', { class: 'controls' }, element('div', { class: 'row-of-controls' }, example.element,
-      element('label', { class: 'noise' }, 'They may differ by ', noise.element, ' degrees'), post)),
+    element('div', { class: 'controls' }, element('div', { class: 'row-of-controls case' }, example.element,
+      element('label', { class: 'differ' }, 'They may differ by ', noise.element, ' degrees'), post)),
     verdict, mend, readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$']),
     element('div', { class: 'across' }, stage(sheet, words)));
 
