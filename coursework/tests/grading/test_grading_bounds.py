@@ -194,7 +194,8 @@ def whole(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(25, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("kills", [25])
 def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, kills):
     """Four commands, each killed so many times at moments drawn by lot, and then let come to its end."""
     import shutil
