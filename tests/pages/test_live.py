@@ -182,7 +182,8 @@ def test_every_notebook_is_a_page_with_code():
 def test_results_equal_the_stored_ones(context, site, name):
     """Every cell that needs SymPy only gives what is printed; the others say why they did not run."""
     page = Page(context, site, name)
-    before = page.page.evaluate(RESULTS)
+    # What a check says where nobody has answered yet is shown only once somebody has asked it.
+    before = [result.replace(' hidden=""', "") for result in page.page.evaluate(RESULTS)]
     if all(kind.get("skip") for kind in kinds(name)):
         page.page.click("button.run-page")
         page.page.wait_for_function("document.querySelector('#live-words').textContent.includes('there already')")

@@ -74,7 +74,10 @@ def _writable(page):
 
     try:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
+        new = not Path(page).exists()
         open(page, "a").close()
+        if new:
+            Path(page).unlink()
     except OSError as error:
         raise AuthorError(f"{page} cannot be written ({error.strerror}). Say where the page may go: --page") from None
     return page

@@ -37,7 +37,8 @@
 // Boxes that scroll can be reached by keyboard, but only while they overflow. They are looked at when they have been
 // laid out, never before: to measure a box that nobody sees yet would lay out the page.
 const watch = new ResizeObserver((entries) => {
-  const found = entries.map(({ target }) => {
+  // What has been folded away has no size, and is looked at when it is unfolded.
+  const found = entries.filter(({ contentRect }) => contentRect.width).map(({ target }) => {
     const wide = target.scrollWidth > target.clientWidth + 1;
     return [target, wide || (!target.matches(".math-box, figure") && target.scrollHeight > target.clientHeight)];
   });

@@ -208,8 +208,8 @@
   const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));
   const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
   if (again.page) note(sessionStorage, RUN, "tried");
-  // The service worker has made a newer edition whole.
-  navigator.serviceWorker?.addEventListener("message", ({ data: { edition } }) =>
+  // The service worker has made a newer edition whole. In a frame that forbids storage to ask for it is an error.
+  if (self === top) navigator.serviceWorker?.addEventListener("message", ({ data: { edition } }) =>
     edition && script("keep.js").then(({ tellOfRenewal }) => tellOfRenewal(tools)).catch(() => {}));
   if (again.page === data.page) {
     addEventListener("load", () => scrollTo(0, again.line));
