@@ -34,7 +34,7 @@ def test_every_figure_is_tested():
     assert {"triad", "gimbal", "nine_numbers"} <= set(KINDS)
     modules = {path.stem for path in (bundle.FOLDER / "js").glob("*.js")}
     # The explorer needs Python for its algebra: tests/test_explorer.py and test_live.py.
-    assert modules == {*KINDS, *bundle.SHARED, "explorer"}
+    assert modules == {*KINDS, *bundle.SHARED, *(own for names in bundle.OWN.values() for own in names), "explorer"}
 
 
 def test_weight():
