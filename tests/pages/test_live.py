@@ -442,7 +442,7 @@ def test_edit_and_run(shared):
         "'ψ'",
     ]
     assert "made anew" in shared.try_code(3, "a = 'made anew'\na")
-    assert "made anew" in shared.try_code(5, "a")
+    assert "made anew" in shared.try_code(4, "a")
 
 
 def test_typo(shared):

