@@ -378,6 +378,7 @@ class _Overview(_Page):
             titles={one.question: one.mark["title"] for one in graded.clusters.values()},
             text=lambda cluster: pages.answer_as_text(cluster.answer.get("plain"), 120),
             guessable=guessable,
+            beyond=1 - sum(about["worth"] for about in guessable.values()) / max(1, worth["all"]),
         )
 
 
