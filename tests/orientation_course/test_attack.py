@@ -21,12 +21,14 @@ from coursework.checking.kinds import calls_for, canonical, fingerprint, read
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.grading.judging import marking, secret
 from orientation import (
+    angular_velocity_matrix,
     dcm_from_body_fixed,
+    dcm_from_quaternion,
     dcm_from_rotation_vector,
-    multiply_quaternions,
-    quaternion_from_axis_angle,
     simple_dcm,
 )
+
+FRAMES = {"frames": ("A", "N")}
 
 theta, alpha, phi = sm.symbols("theta alpha varphi")
 ABOUT_X = question(
@@ -62,21 +64,24 @@ def test_an_answer_that_can_be_guessed_is_found():
 
 
 def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
-    """None of these is a turn about an axis through a special angle; each is one or two calls with what is given."""
-    force, field = [0.087, -0.122, 0.985], [-3.1, 21.4, -40.2]
+    """None of these is a turn about an axis through a special angle; each is one to three calls with what is given."""
+    force, field, whole = [0.087, -0.122, 0.985], [-3.1, 21.4, -40.2], [4, -2, 5, 1]
     away = np.cross(force, np.cross(field, force))
-    given = {"variant": 0, "variants": 2, "text": "", "shown": {}, "given": {"force": force, "field": field}}
-    product = multiply_quaternions(quaternion_from_axis_angle(force, 0.7), quaternion_from_axis_angle(field, -0.4))
+    unit = np.array(whole) / np.linalg.norm(whole)
+    given = {"variant": 0, "variants": 2, "text": "", "shown": {}}
+    vectors, quaternion = {"force": force, "field": field}, {"whole": whole, "field": field}
+    angles = {"psi": 0.3, "theta": 0.8, "phi": -0.5, "field": field}
+    rates = np.linalg.solve(angular_velocity_matrix([0.3, 0.8, -0.5], "zxy"), field)
     tried = {
-        "a cross product": ("vector", np.cross(field, force).tolist(), {}, 300),
-        "its length": ("expression", float(np.linalg.norm(np.cross(field, force))), {}, 3000),
-        "a rotation vector": ("direction cosine matrix", dcm_from_rotation_vector(force), {"frames": ("A", "N")}, 3000),
-        "two directions": ("vector", (away / np.linalg.norm(away)).tolist(), {}, 6000),
-        "a product": ("quaternion", product, {}, 30000),
+        "a cross product": ("vector", np.cross(field, force).tolist(), {}, vectors, "", 300),
+        "its length": ("expression", float(np.linalg.norm(np.cross(field, force))), {}, vectors, "", 3000),
+        "a rotation vector": ("direction cosine matrix", dcm_from_rotation_vector(force), FRAMES, vectors, "", 3000),
+        "two directions": ("vector", (away / np.linalg.norm(away)).tolist(), {}, vectors, "", 6000),
+        "turned": ("vector", (np.asarray(dcm_from_quaternion(unit)).T @ field).tolist(), {}, quaternion, "", 6000),
+        "of a gimbal": ("vector", rates.tolist(), {}, angles, "The gimbal is z-x-y.", 6000),
     }
-    for name, (kind, answer, about, most) in tried.items():
-        text = "Turn it by 0.7 and by -0.4." if name == "a product" else ""
-        found = attack(question("trial/data", kind, answer, variant=given, **about), text)
+    for name, (kind, answer, about, data, text, most) in tried.items():
+        found = attack(question("trial/data", kind, answer, variant={**given, "given": data}, **about), text)
         assert found.way and found.tries < most, (name, found)
 
 

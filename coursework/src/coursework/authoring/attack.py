@@ -157,7 +157,8 @@ def _in_turns(public, text):
     if not kinds()[public.get("result", public["kind"])].text and public["kind"] != "free text":
         pool, steps = _beginning(public, text), typed.priced(typed.public_functions(), words)
         values = _portions(_of_values(public, pool, (*steps, *typed.OPERATIONS)))
-        streams += [values, values, values, _portions(_of_parts(public, pool))]
+        turns = _portions(_of_values(public, _beginning(public, text), (*steps, *typed.TURNS), typed.MOST // 2))
+        streams += [values, turns, values, _portions(_of_parts(public, pool))]
     while streams:
         for stream in list(streams):
             portion = next(stream, None)
@@ -208,11 +209,11 @@ def shape_of(public):
     return tuple(public["shape"]) if "shape" in public else {1: (), 9: (3, 3)}.get(size, (size,))
 
 
-def _of_values(public, pool, steps):
+def _of_values(public, pool, steps, most=typed.MOST):
     """Candidates that some steps lead to from what is given: at each price those first that use all that is given."""
     left_out = []
     with np.errstate(all="ignore"):
-        for price in typed.by_price(pool, steps):
+        for price in typed.by_price(pool, steps, most):
             yield from _tables(public, pool, price, True)
             yield from left_out
             left_out = list(_tables(public, pool, price, False))

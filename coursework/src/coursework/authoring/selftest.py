@@ -438,10 +438,10 @@ def _write_measured(sources, paths, found):
     Path(sources, MEASURED).write_text(json.dumps(measured, indent=1) + "\n", "utf8")
 
 
-def weakest(source, course, budget=BUDGET):
-    """What the attack found of each question of a notebook: of one with variants, in the weakest that is attacked."""
+def weakest(source, course, budget=BUDGET, numbers=(0,)):
+    """What the attack found of each question of a notebook, in the weakest of some of its variants."""
     found, kept = {}, course.archive.parent / "attacks"
-    for number in [0, *_numbers_attacked(source)]:
+    for number in numbers:
         one_variant = read_source(course.sources / f"{source.name}.ipynb", number, course.edition) if number else source
         for name, question in one_variant.questions.items():
             if question.public.get("exam") or kinds()[question.public["kind"]].by_a_person:
@@ -456,7 +456,7 @@ def weakest(source, course, budget=BUDGET):
 def _try_notebook(path, course, budget):
     """What was found of the questions of a notebook, and its secrets."""
     source = read_source(path, edition=course.edition)
-    found, secrets, findings = weakest(source, course, budget), secrets_of(source), []
+    found, secrets, findings = weakest(source, course, budget, [0, *_numbers_attacked(source)]), secrets_of(source), []
     for name, question in source.questions.items():
         finding = try_question(question, found=found[name])
         findings.append(finding._replace(faults=[*finding.faults, *told_openly(question, secrets)]))

@@ -21,7 +21,7 @@ import numpy as np
 from ..checking.plugins import packages, plugins
 
 #: Values that one step may give at one price, values in all, and calls of a function that takes one value at a time.
-MOST_OF_A_STEP, MOST, MOST_CALLS = 6_000, 150_000, 600
+MOST_OF_A_STEP, MOST, MOST_CALLS = 6_000, 60_000, 300
 #: Values of one sort and price that a step is applied to: where it takes one, two or three.
 TAKEN = {1: 4000, 2: 400, 3: 40}
 #: The dearest values that are made.
@@ -30,6 +30,8 @@ DEAREST = 12
 DEAREST_PART = (3, 5, 6, 3)
 #: Calls after which a function that has refused each of them is left alone.
 FEW = 3
+#: As many numbers of a text all matter.
+FEW_NUMBERS = 8
 #: What a function costs whose words the text does not name.
 UNNAMED = 3
 #: Degrees, as texts write them.
@@ -182,8 +184,9 @@ def beginning(at, given, text, code, wanted):
         add([float(part) for part in found[1].split(",")], uses=0)
     for above, below, over, under in FRACTION.findall(text):
         add(float(above or over) / (float(below or under) or 1), uses=0)
-    for number in re.findall(NUMBER, text):
-        add(float(number), 2, uses=0)
+    found = list(dict.fromkeys(re.findall(NUMBER, text)))
+    for number in found:
+        add(float(number), 1 if len(found) <= FEW_NUMBERS else 2, uses=0)
     numbers = pool.of_shape(())[:30]
     for value in numbers:
         pool.add(np.radians(value)[None], 2)
@@ -400,6 +403,17 @@ OPERATIONS = (
     ),
 )  # fmt: skip
 
+#: With these and the functions alone one gets further before there are too many values.
+TURNS = (
+    *_steps(1, (1,), np.negative),
+    *_steps(1, (2,), _turn_round),
+    *_steps(1, (1, 1), _quotient),
+    *_steps(1, (2, 2), np.matmul),
+    *_steps(1, (2, 1), lambda m, v: np.einsum("...ij,...j->...i", m, v)),
+    *_steps(2, (1,), np.degrees),
+    *_steps(2, (0, 1), lambda x, v: v / x[..., None]),
+)
+
 
 @functools.cache
 def public_functions():
@@ -495,7 +509,7 @@ def _swaps(size):
         yield order
 
 
-def by_price(pool, steps):
+def by_price(pool, steps, most=MOST):
     """Make all values of a price from cheaper ones, price by price; yields the price, first that of what is given."""
     yield from (1, 2)
     refused = set()
@@ -509,14 +523,14 @@ def by_price(pool, steps):
                 if not fits or (step, sorts) in refused:
                     continue
                 for prices in _sums(price - step.price, step.arity):
-                    if len(pool.seen) >= MOST:
+                    if len(pool.seen) >= most:
                         break
                     chosen = [before[sort].get(one) for sort, one in zip(sorts, prices, strict=True)]
                     if all(chosen) and not _apply(pool, chosen, step, price):
                         refused.add((step, sorts))
                         break
         yield price
-        if len(pool.seen) >= MOST:
+        if len(pool.seen) >= most:
             return
 
 
