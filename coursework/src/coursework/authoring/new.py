@@ -149,6 +149,7 @@ def new(folder):
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
     notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL})
+    (folder / "solutions").mkdir()
     nbformat.write(notebook, folder / "solutions" / f"{NOTEBOOK}.ipynb")
     (folder / "wheels").mkdir()
     for name in DISTRIBUTIONS:

@@ -21,7 +21,7 @@ import numpy as np
 from ..checking.plugins import packages, plugins
 
 #: Values that one step may give at one price, values in all, and calls of a function that takes one value at a time.
-MOST_OF_A_STEP, MOST, MOST_CALLS = 6_000, 60_000, 300
+MOST_OF_A_STEP, MOST, MOST_CALLS = 1_500, 100_000, 300
 #: Values of one sort and price that a step is applied to: where it takes one, two or three.
 TAKEN = {1: 4000, 2: 400, 3: 40}
 #: The dearest values that are made.
