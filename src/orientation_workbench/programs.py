@@ -17,8 +17,8 @@ matrix, that mean the inverse of this book's; ``body`` and ``world`` are where x
 point to. East counts as forward there and north as left, as ROS has it.
 """
 
-FLU, FRD, RDF = ("forward", "left", "up"), ("forward", "right", "down"), ("right", "down", "forward")
-RUB, LUF = ("right", "up", "back"), ("left", "up", "forward")
+FLU, FRD, RDF = ["forward", "left", "up"], ["forward", "right", "down"], ["right", "down", "forward"]
+RUB, LUF = ["right", "up", "back"], ["left", "up", "forward"]
 ROLL_PITCH_YAW = {"sequence": "xyz", "axes of the turns": "space fixed", "unit": "radians"}
 
 FORMS = ("matrix", "quaternion", "body fixed angles", "space fixed angles", "axis times angle")
@@ -181,8 +181,8 @@ PROGRAMS = {
         "unit": "radians",
         "sequences": {"space fixed angles": TAIT_BRYAN},
         "angles": {"sequence": "xyz", "axes of the turns": "space fixed"},
-        "body": ("left", "back", "up"),
-        "world": ("left", "back", "up"),
+        "body": ["left", "back", "up"],
+        "world": ["left", "back", "up"],
         "lines": {
             "matrix": "Matrix({m})",
             "quaternion": "Quaternion(({w}, {x}, {y}, {z}))",
@@ -196,7 +196,7 @@ PROGRAMS = {
         "scalar": "",
         "unit": "radians",
         "three numbers": "rotation vector",
-        "inverse": ("rotation vector",),
+        "inverse": ["rotation vector"],
         "body": RDF,
     },
     "COLMAP": {
@@ -205,7 +205,7 @@ PROGRAMS = {
         "matrix": "as here",
         "scalar": "first",
         "unit": "radians",
-        "inverse": ("quaternion",),
+        "inverse": ["quaternion"],
         "body": RDF,
     },
     "OpenGL view": {
@@ -265,8 +265,8 @@ PROGRAMS = {
         "scalar": "last",
         "unit": "degrees",
         "angles": {"sequence": "zxy", "axes of the turns": "space fixed", "places": "231"},
-        "body": ("right", "up", "forward"),
-        "world": ("right", "up", "forward"),
+        "body": ["right", "up", "forward"],
+        "world": ["right", "up", "forward"],
     },
     "Unreal": {
         "version": "",
@@ -275,8 +275,8 @@ PROGRAMS = {
         "scalar": "last",
         "unit": "degrees",
         "angles": {"sequence": "zyx", "axes of the turns": "body fixed", "places": "213", "signs": "+--"},
-        "body": ("forward", "right", "up"),
-        "world": ("forward", "right", "up"),
+        "body": ["forward", "right", "up"],
+        "world": ["forward", "right", "up"],
     },
     "PX4": {
         "version": "",
@@ -286,7 +286,7 @@ PROGRAMS = {
         "unit": "radians",
         "angles": {"sequence": "zyx", "axes of the turns": "body fixed", "places": "321"},
         "body": FRD,
-        "world": ("left", "forward", "down"),
+        "world": ["left", "forward", "down"],
     },
     "Isaac Lab 2": {
         "version": "",
