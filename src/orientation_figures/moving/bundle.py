@@ -9,10 +9,10 @@ from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
-SHARED = ("mathematics", "glyphs", "model", "address", "shared")
+SHARED = ("formulas", "mathematics", "glyphs", "model", "address", "shared")
 #: Modules that one figure alone needs, before its own.
 OWN = {"workbench": ("mismatch",)}
-IMPORT = re.compile(r"^import \{([^}]*)\} from .*;\n", re.MULTILINE)
+IMPORT = re.compile(r"^(?:import|export) \{([^}]*)\} from .*;\n", re.MULTILINE)
 IMPORT_FROM = re.compile(r"^import \{([^}]*)\} from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
 COMMENT = re.compile(r"^\s*//.*\n|^ +", re.MULTILINE)
