@@ -101,7 +101,7 @@ class WorkbenchFigure(MovingFigure):
 
     kind = "workbench"
     sheet = (-330, -172, 330, 172)
-    room = (800, 1010)
+    room = (1070, 1480)
     first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(sync=True, state=True)
     second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(sync=True, state=True)
     first_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)

@@ -37,7 +37,7 @@ const several = (count, one) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
 export function render({ model, el }) {
   const table = model.get('table'), examples = model.get('examples'), programs = Object.keys(table.programs);
-  let found = null, fault = '', shown = [IDENTITY, IDENTITY], stop = () => {};
+  let found = null, fault = '', drawn = false, shown = [IDENTITY, IDENTITY], stop = () => {};
   const sheet = new Sheet({ bounds: [-330, -172, 330, 172], size: SIZE, changed: () => redraw(),
     name: 'The frames of both programs, each beside the frame N.' });
   const redraw = onceAFrame(draw);
@@ -88,18 +88,19 @@ export function render({ model, el }) {
       words.say(error.message);
     }
   });
-  open(el, element('div', { class: 'controls case' }, example.element),
-    element('div', { class: 'controls converter' }, sides[0].box, sides[1].box), verdict, mend,
-    element('div', { class: 'controls' }, element('div', { class: 'row-of-controls case' },
-      element('label', { class: 'differ' }, 'They may differ by ', noise.element, ' degrees'), post)),
-    element('div', { class: 'across' }, readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$']),
-      stage(sheet, words)));
+  open(el, stage(sheet, words), element('div', { class: 'across' },
+    readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$'])),
+  element('div', { class: 'controls case' }, example.element),
+  element('div', { class: 'controls converter' }, sides[0].box, sides[1].box), verdict, mend,
+  element('div', { class: 'controls' }, element('div', { class: 'row-of-controls case' },
+    element('label', { class: 'differ' }, 'They may differ by ', noise.element, ' degrees'), post)));
 
   // The orientations at the last pose, reached by one turn from where the drawing stands.
   function glideTo(dcms) {
     stop();
     const proper = dcms.every((dcm) => determinant(dcm) > 0) && shown.every((dcm) => determinant(dcm) > 0);
-    if (calm() || !proper) {
+    if (calm() || !proper || !drawn) {
+      drawn = true;
       shown = dcms;
       redraw();
       return;
@@ -128,8 +129,8 @@ export function render({ model, el }) {
       write(side.read, found ? wasRead(found, k, table) : '');
     });
     put(verdict, 'data-verdict', found?.verdict ?? '');
-    verdict.replaceChildren(...(found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'),
-      element('p', {}, `${capital(fault)}.`)]));
+    const said = found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'), element('p', {}, `${capital(fault)}.`)];
+    if (said.map((one) => one.outerHTML).join('') !== verdict.innerHTML) verdict.replaceChildren(...said);
     mended();
     words.say(found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)].join(' ') : fault);
     if (found) glideTo(drawnDcms(found, table, found.poses - 1));
@@ -167,7 +168,7 @@ export function render({ model, el }) {
   judge();
   draw();
   globalThis.addEventListener?.('hashchange', takeUp);
-  const unfollow = follow(model, STATE, judge);
+  const unfollow = follow(model, STATE, onceAFrame(judge));
   return () => {
     globalThis.removeEventListener?.('hashchange', takeUp);
     unfollow();
