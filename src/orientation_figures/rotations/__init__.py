@@ -86,7 +86,7 @@ class Gimbal(Stop):
 
     def _repr_html_(self):
         return (
-            f'<figure class="orientation-figure painted world"'
+            f'<figure class="orientation-figure painted world" '
             f'data-figure="rotations">'
             f'<style>{STYLE}{style()}</style><div class="still">{self.svg()}</div></figure>'
         )

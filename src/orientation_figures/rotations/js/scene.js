@@ -234,7 +234,8 @@ function through(list, t, marks = list.map((_, k) => k / (list.length - 1))) {
 
 export const AT_READER = poses([-38, 18, 0])[0];
 export const GENERIC = poses([28, 24, -22])[0];
-export const FROM = poses([-50, -8, -20])[0], TO = poses([62, 66, 58])[0];   // of stop 14
+export const CROOKED = poses([84, 32, -58])[0];
+export const FROM = poses([-80, 60, -30])[0], TO = poses([100, 65, 40])[0];   // of stop 14
 export const SAME = poses([35, 50, 65])[0];   // the angles of stop 8
 const SECOND = (angles) => [angles[0] + PI, PI - angles[1], angles[2] + PI];
 export const TOWARDS_STAR = [deg(22), deg(36), 0];
@@ -269,7 +270,7 @@ export const COURSE = {
 // The camera in stop 15: a rate that changes all the time, and what a gyroscope that is off by 1.5 degrees a second
 // makes of it, step by step. Frames as they are after each of the steps.
 const STEP = 0.05, OFF = deg(1.5);
-export const rateAt = (time) => [0.55 * Math.sin(0.9 * time), 0.4 * Math.cos(0.6 * time), 0.5 + 0.3 * Math.sin(0.4 * time)];
+export const rateAt = (time) => [0.5 * Math.sin(0.9 * time), 0.35 * Math.cos(0.6 * time), 0.4 * Math.sin(0.45 * time + 1)];
 const runs = { true: [IDENTITY], told: [IDENTITY] };
 export function motion(time) {
   const count = Math.floor(time / STEP);

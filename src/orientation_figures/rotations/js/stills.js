@@ -1,5 +1,5 @@
 // Writes down what is seen at the moment of each stop that stands for it on paper: `python -m tools.rotations`.
-import { COURSE, EYES, GENERIC, HALF, REST, TARGET, DISTANCE, GROUND, LIGHT, RIM, placed, project, sceneOf } from './scene.js';
+import { COURSE, CROOKED, EYES, GENERIC, HALF, REST, TARGET, DISTANCE, GROUND, LIGHT, RIM, placed, project, sceneOf } from './scene.js';
 import { AXES } from '../../moving/js/mathematics.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { STOPS } from './stops.js';
@@ -13,7 +13,7 @@ const sizeOf = ({ text }) => {
 };
 
 // The state of a stop at a moment of it, when it was entered in a pose.
-export function stateAt(stop, t, start = GENERIC) {
+export function stateAt(stop, t, start = stop.id === 'one-turn' ? CROOKED : GENERIC) {
   return { ...REST, eye: EYES[stop.id] ?? REST.eye, stop: stop.id, t, start, ...COURSE[stop.id](t, start) };
 }
 

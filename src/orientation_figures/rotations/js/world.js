@@ -5,7 +5,7 @@ import { add, dcmFromQuaternion, dot, multiply, quaternionFromDcm, scale, slerp,
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
-import { AT_READER, COURSE, EYES, FROM, GENERIC, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
+import { AT_READER, COURSE, CROOKED, EYES, FROM, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
   project, sceneOf, turnedAlong, turnedFrame, ways, wrapped } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
@@ -123,7 +123,7 @@ class World {
 
   enter(id) {
     if (this.state.stop === id && this.began.has(id)) return;
-    const stop = stopOf(id), before = dcmOf(this.state), first = !this.began.size;
+    const stop = stopOf(id), before = dcmOf(this.state), { free } = this.state, first = !this.began.size;
     this.began = new Set([id]);
     this.state.stop = id;
     this.state.t = 0;
@@ -136,7 +136,7 @@ class World {
     const angles = anglesNear(before, this.state.angles);
     this.state.angles = angles;
     // At the last stop it stands as it was left.
-    this.state.start = id === 'your-turn' || (id === 'one-turn' && axisOf(angles).angle > 0.6) ? angles : GENERIC;
+    this.state.start = id === 'your-turn' || (free && axisOf(angles).angle > 0.6) ? angles : CROOKED;
     if (!first && stop.by === 'camera') this.carry = { from: quaternionFromDcm(before), since: null };
     this.goal.eye = [...EYES[id] ?? REST.eye];
     this.showDials(stop);
