@@ -53,18 +53,19 @@ def add_scripts(app, pagename, templatename, context, doctree):
     bundle = named(REGISTERED["figures"])
     folder = Path(app.outdir) / "_static" / "moving"
     folder.mkdir(parents=True, exist_ok=True)
-    texts = {}
+    texts, later = {}, {}
     if own := [kind for kind in kinds if kind not in bundle.BUILT]:
         texts |= {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
         texts |= {f"{kind}.js": bundle.script(kind) for kind in own}
+        later |= {name: text for kind in own for name, text in bundle.beside(kind).items()}
     for kind in set(kinds) & set(bundle.BUILT):
         script = built(bundle.BUILT[kind])
-        name = f"{kind}-{sha256(script).hexdigest()[:8]}.js"  # an older page's script never meets a newer world
-        (folder / name).write_bytes(script)
+        name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"  # no older page meets a newer world
+        later[name] = script
         texts |= {f"{kind}.js": bundle.LOADER.replace("FILE", name), f"{kind}.css": bundle.built_style(kind)}
-    for name, text in texts.items():
+    for name, text in (texts | later).items():
         (folder / name).write_text(text, "utf8")
-        if name.endswith(".js"):
+        if name.endswith(".js") and name not in later:
             app.add_js_file(f"moving/{name}", loading_method="defer")
     context["styles"] = [*context["styles"], *(f"moving/{name}" for name in texts if name.endswith(".css"))]
 
@@ -73,7 +74,7 @@ def built(script):
     """The text of a script with all that it imports, those of npm's packages among it."""
     command = [NODE, ESBUILD, "--bundle", "--minify", "--format=iife", "--log-level=warning", script]
     environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
-    return subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True).stdout
+    return subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
 def setup(app):
