@@ -123,6 +123,8 @@ def fit_ellipsoid(values, most=0.1):
     in_shape = np.linalg.eigvalsh(covariance[:6, :6])[-1] / np.linalg.eigvalsh(shape)[0] ** 2
     in_offset = np.linalg.eigvalsh(shape @ covariance[6:, 6:] @ shape)[-1]
     uncertainty = float(np.sqrt(in_shape + in_offset))
+    if np.linalg.eigvalsh(np.cov(ways.T))[0] < 0.005:  # noise bends what lies in a plane
+        return None
     stretches = np.linalg.eigvalsh(shape)
     if not uncertainty < most or stretches[0] <= 0 or stretches[-1] > 3 * stretches[0]:
         return None
