@@ -9,7 +9,7 @@ import numpy as np
 
 from .allan import noise_of
 
-WIDTH = 88  # of a line of the text
+WIDTH = 76  # of a line of the text
 LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
 #: Ways to write an orientation down, by what the command calls them.
 CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
