@@ -20,7 +20,7 @@ from coursework.grading import grade as grading
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import secret
-from coursework.grading.judging.ledger import REJECTED, Collision, Ledger
+from coursework.grading.judging.ledger import REJECTED, Collision, Ledger, with_decisions
 from coursework.grading.judging.term import read_rules
 from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.laboratory import Policies
@@ -382,8 +382,9 @@ def final_marks(term, store):
 def decide_what_waits(store):
     """What no program could decide is decided in the end; nothing of it was right."""
     ledger = Ledger(store.folder)
+    standing = ledger.standing()
     for record in store.all():
-        for name, mark in record["marks"].items():
+        for name, mark in with_decisions(record, standing)["marks"].items():
             if mark["outcome"] == "undecided":
                 assert mark["note"] == "numbers of another edition", mark
                 ledger.add(record, name, 0, who="Ann")
