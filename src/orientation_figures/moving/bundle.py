@@ -8,11 +8,30 @@ import re
 from functools import cache
 from pathlib import Path
 
+from ..style import STYLE
+
 FOLDER = Path(__file__).parent
-SHARED = ("mathematics", "glyphs", "model", "address", "shared")
+SHARED = ("formulas", "mathematics", "glyphs", "model", "address", "shared")
 #: Modules that one figure alone needs, before its own.
-OWN = {"workbench": ("mismatch",)}
-IMPORT = re.compile(r"^import \{([^}]*)\} from .*;\n", re.MULTILINE)
+OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
+#: Figures that use packages of npm: what their page loads when they are seen is built from this script, and each has a
+#: style sheet of its own.
+BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
+#: Fetches that, when the page stands and the figure is in sight.
+LOADER = """(() => {
+const source = new URL('FILE', document.currentScript.src).href;
+const begin = () => {
+  const seen = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    seen.disconnect();
+    document.head.append(Object.assign(document.createElement('script'), { src: source }));
+  });
+  for (const figure of document.querySelectorAll('.world')) seen.observe(figure);
+};
+if (document.readyState === 'complete') begin(); else addEventListener('load', () => setTimeout(begin));
+})();
+"""
+IMPORT = re.compile(r"^(?:import|export) \{([^}]*)\} from .*;\n", re.MULTILINE)
 IMPORT_FROM = re.compile(r"^import \{([^}]*)\} from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
 COMMENT = re.compile(r"^\s*//.*\n|^ +", re.MULTILINE)
@@ -58,6 +77,20 @@ def script(name):
     return f"(() => {{\nconst {{ {names} }} = orientation;\n{whole(name)}orientation.start('{name}', render);\n}})();\n"
 
 
+def beside(name):
+    """Return what a figure of this kind loads when it needs it, by the names of the files."""
+    if "take_away" not in OWN.get(name, ()):
+        return {}
+    from .take_away import scripts  # which needs NumPy, as no figure in a page does
+
+    return {"drawing.css": STYLE} | scripts()
+
+
 def style():
     """Return the style sheet of the controls; that of the drawings comes with each still."""
     return (FOLDER / "moving.css").read_text("utf8")
+
+
+def built_style(kind):
+    """Return the style sheet of a figure of ``BUILT``."""
+    return (BUILT[kind].parent.parent / "essay.css").read_text("utf8")

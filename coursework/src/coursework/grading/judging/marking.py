@@ -12,6 +12,7 @@ import importlib
 import io
 import itertools
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
@@ -51,6 +52,8 @@ UNJUDGED = {
     "group": "",
     "tries": None,
 }
+#: A figure in the text of a question, as :func:`coursework.checking.variants.image` writes it.
+PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: How a cell ends that a limit ended: what is missing then may have been lost to it.
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
 #: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
@@ -79,7 +82,7 @@ def questions_of(path, secret, edition=""):
 def _questions_of(path, secret, edition):
     measured = measured_strengths(Path(path).parent)
     source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
-    texts = texts_of_questions(source.notebook)
+    texts = texts_of_questions(source.notebook, source.figures)
     found = {
         name: about(question, secret, measured.get(name) or None, texts.get(name, ""))
         for name, question in source.questions.items()
@@ -143,8 +146,8 @@ def with_second_chances(questions, named=None):
 def about(question, secret, guessable=None, text=""):
     """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it.
 
-    ``guessable`` is after how many tries the attack of the selftest guessed it, if it did;
-    ``text`` is that of a question without variants: one that has them holds its own.
+    ``guessable`` is after how many tries the attack guessed it, if it did;
+    ``text`` is that in the source: a question with variants holds its own, beside which the figures stay.
     """
     found = json.loads(
         json.dumps(
@@ -164,7 +167,7 @@ def about(question, secret, guessable=None, text=""):
                 "guessable": guessable,
                 "partial": read(question.public, question.plain).text if question.partial else None,
                 "rubric": question.rubric,
-                "text": "" if "text" in question.public else text,
+                "text": "\n\n".join(PICTURE.findall(text)) if "text" in question.public else text,
             }
         )
     )
