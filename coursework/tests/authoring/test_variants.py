@@ -19,7 +19,7 @@ from trial_course import made_in, write_source
 import coursework
 from coursework.authoring.author import AuthorError, solution_code
 from coursework.authoring.packing import archive
-from coursework.authoring.release import _even_out_pages, release
+from coursework.authoring.release import release
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import check as check_module
@@ -143,20 +143,6 @@ def test_empty_lockers_are_like_the_others_and_come_again(course):
     about = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]
     data = base64.b85decode(about["lockers"])
     assert len({data[start : start + 16] for start in range(0, len(data), 16)}) == sealing.count_of(about["lockers"])
-
-
-def test_how_many_pages_a_variant_has_tells_nothing_of_it():
-    """What mistakes lead to the same, and so how many pages there are, follows from the answer."""
-    made = [sealing.seal({"hints": [f"step {number}"]}, b"a key of a page.") for number in range(3)]
-    ones = [{"salt": "a", "pages": made}, {"salt": "b", "pages": made[:1]}, {"salt": "c", "pages": None}, {"salt": "d"}]
-    _even_out_pages(ones, "the code")
-    assert [len(one["pages"]) for one in ones] == [3] * 4
-    assert ones[0]["pages"] == made and ones[1]["pages"][0] == made[0]
-    assert [[len(page) for page in one["pages"]] for one in ones] == [[len(page) for page in made]] * 4
-    assert len({page for one in ones for page in one["pages"]}) == 3 + 2 + 3 + 3
-    without = [{"salt": "a"}, {"salt": "b", "pages": None}]
-    _even_out_pages(without, "the code")
-    assert without == [{"salt": "a"}, {"salt": "b", "pages": None}]
 
 
 def test_the_grader_finds_the_same_variant_from_the_roster():

@@ -258,7 +258,6 @@ def _even_out(name, code, course):
 
     How many there are follows from the answer: from what mistakes lead to the same, and how near to the edges of
     their cells the numbers lie. Over sixteen variants that singles out a right formula with no slow hash at all.
-    The same is true of the pages.
     """
     first = course.sealed / f"{name}.json"
     variants = sorted((course.sealed / "variants").glob(f"{name}-*.json"))
@@ -274,19 +273,8 @@ def _even_out(name, code, course):
         most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
         for one in ones:
             one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
-        _even_out_pages(ones[1:], code)
     for file, content in zip(files, contents, strict=True):
         file.write_text(_as_text(content), "utf8")
-
-
-def _even_out_pages(ones, code):
-    """Give the later variants of a question as many pages of their own as the one with most of them."""
-    longest = max(([*(one.get("pages") or [])] for one in ones), key=len, default=[])
-    for one in ones:
-        own = one.get("pages") or []
-        if len(own) < len(longest):
-            empty = enumerate(longest[len(own) :])
-            one["pages"] = [*own, *(sealing.like_page(page, f"{code} {one['salt']} {order}") for order, page in empty)]
 
 
 def _run_one(path, sealed):

@@ -153,11 +153,6 @@ def seal(content, key):
     return _text(hidden + _tag(hidden, key, "page")[:PAGE_TAG])
 
 
-def like_page(page, secret):
-    """What looks like a page and holds nothing: as long as one, and another one for each secret."""
-    return _text(hashlib.shake_256(f"page {secret}".encode()).digest(len(base64.b85decode(page))))
-
-
 def unseal(sealed, key):
     """Open what :func:`seal` locked.
 
