@@ -17,13 +17,14 @@ its own figure.
 import re
 from functools import cache
 from html import escape
+from itertools import pairwise
 
 from docutils import nodes
 from markdown_it import MarkdownIt
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 from sphinx.util import logging
 
-from .mathematics import to_html
+from .mathematics import PUNCTUATION, to_html
 from .paths import where
 from .questions import question
 
@@ -50,7 +51,18 @@ def typesetter():
 
 def in_words(text, whole):
     """HTML of a line, or of the ``whole`` of some paragraphs, of Markdown with formulas."""
-    return (typesetter().render if whole else typesetter().renderInline)(text)
+    tokens = (typesetter().parse if whole else typesetter().parseInline)(text)
+    for block in tokens:
+        keep_punctuation(block.children or [])
+    return typesetter().renderer.render(tokens, typesetter().options, {})
+
+
+def keep_punctuation(tokens):
+    """Let no line begin with the comma after a formula: it is set within the formula."""
+    for formula, after in pairwise(tokens):
+        if formula.type == "math_inline" and after.content[:1] in (*PUNCTUATION, "?", "!"):
+            formula.content += rf"\text{{{after.content[0]}}}"
+            after.content = after.content[1:]
 
 
 def name_of(node, number):
@@ -100,8 +112,8 @@ def marked(doctree):
             line = SHOWS.sub("", line)
             shows = [labels.get(label) or unknown(label, node) for label in named[1].split()]
         else:
-            following = (one for one in around[place + 1 :] if isinstance(one, SHOWN))
-            shows = [name_of(one, number) for one in following][:1]
+            following = [one for one in around[place + 1 :] if isinstance(one, SHOWN)]
+            shows = [name_of(one, number) for one in following[:1]]
         steps.append({"line": " ".join(line.split()), "notes": notes, "shows": shows, "section": heading_of(around)})
     for node, _ in marks:
         node.parent.remove(node)

@@ -100,61 +100,68 @@
   // ---- what is shown ----
   // Where it stands, each figure fills what the words leave: beside or below, whichever makes the drawing larger.
   const GAP = 16;
-  const proportion = (figure) => {
-    const drawing = figure.querySelector("svg[viewBox], img");
-    if (figure.querySelector(".moving") || !drawing) return 1.9; // a drawing with its numbers and controls beside it
-    if (drawing.localName === "img") return drawing.naturalWidth / drawing.naturalHeight || 1.6;
-    return drawing.viewBox.baseVal.width / drawing.viewBox.baseVal.height;
+  const PANEL = 19; // the width of a figure's controls and numbers, in the type of the lecture
+  const SIZES = [1, 0.9, 0.8, 0.7, 0.6, 0.5];
+  const LARGE = [1.8, 1.6, 1.4, 1.2, ...SIZES];
+  // The shape of a drawing, and what stands beside it within its figure.
+  const shapeOf = (figure) => {
+    const drawing = figure.querySelector("svg.sheet") ?? figure.querySelector("svg[viewBox], img");
+    const panel = figure.querySelector(".moving") ? PANEL * parseFloat(getComputedStyle(root).fontSize) : 0;
+    if (!drawing) return { shape: 1, panel: 2 * panel };
+    if (drawing.localName === "img") return { shape: drawing.naturalWidth / drawing.naturalHeight || 1.6, panel };
+    return { shape: drawing.viewBox.baseVal.width / drawing.viewBox.baseVal.height, panel };
   };
   const set = (name, value) => article.style.setProperty(`--lecture-${name}`, value);
-  const overflows = () => article.scrollHeight > article.clientHeight + 1 || [...article.querySelectorAll(".in-step .math-box, .in-step.math .math-box")].some((box) => box.scrollWidth > box.clientWidth + 1);
-  const SIZES = [1, 0.9, 0.8, 0.7, 0.6, 0.5];
-  const shrink = () => SIZES.some((size) => {
-    set("type", size);
-    return !overflows();
-  });
+  const overflows = () =>
+    article.scrollHeight > article.clientHeight + 1 ||
+    [line, ...article.querySelectorAll(".in-step .math-box")].some((box) => box.scrollWidth > box.clientWidth + 1);
   const fit = () => {
     if (stops.length || now < 0) return;
     const figures = steps[now].blocks.filter((block) => block.matches("figure"));
+    set("left", "0px");
+    set("top", "0px");
     if (!figures.length) {
-      article.dataset.words = "alone";
-      set("left", "0px");
-      set("top", "0px");
-      return shrink();
+      article.dataset.words = steps[now].blocks.length ? "alone" : "only";
+      LARGE.some((size) => (set("type", size), !overflows()));
+      return;
     }
-    const shape = figures.reduce((sum, figure) => sum + proportion(figure), 0);
-    const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - 3 * GAP];
-    const area = (w, h) => Math.min(w, h * shape) * Math.min(h, w / shape);
-    let best = { area: -1 };
-    const attempt = (layout, share) => {
-      article.dataset.words = layout;
-      set("left", layout === "beside" ? `${(1 - share) * 100}%` : "0px");
-      set("top", "0px");
-      for (const size of layout === "beside" ? SIZES : SIZES.slice(0, 3)) {
-        set("type", size);
-        const height = layout === "below" ? [...article.querySelectorAll(".in-step:not(figure), .lecture-line")].filter((one) => !one.parentElement.closest(".in-step, figure")).reduce((sum, one) => sum + one.offsetHeight + GAP, 0) : 0;
-        if (layout === "beside" ? overflows() : height > 0.45 * high) continue;
-        const found = layout === "beside" ? area(wide * (1 - share), high) : area(wide, high - height);
-        if (found * size ** 0.3 > best.area) best = { area: found * size ** 0.3, layout, share, size, height };
-        break;
-      }
-    };
-    for (const share of [0.2, 0.26, 0.32, 0.4, 0.5]) attempt("beside", share);
-    attempt("below");
-    if (best.area < 0) best = { layout: "beside", share: 0.5, size: SIZES.at(-1) };
-    article.dataset.words = best.layout;
+    const shapes = figures.map(shapeOf);
+    const shape = shapes.reduce((sum, one) => sum + one.shape, 0);
+    const panel = shapes.reduce((sum, one) => sum + one.panel, 0);
+    const foot = parseFloat(getComputedStyle(article).paddingBottom);
+    const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - GAP - foot];
+    const area = (width, height) => Math.min(height, Math.max(0, width - panel) / shape) ** 2 * shape;
+    // Words may be smaller or stand in a narrower column for the sake of the drawing, but not by much.
+    const worth = ({ width, height, size, tall }) => area(width, height) * size ** 0.8 * (tall ? 0.75 : 1);
+    const found = [];
+    article.dataset.words = "below";
+    for (const size of SIZES.slice(0, 3)) {
+      set("type", size);
+      const words = [line, ...steps[now].blocks.filter((block) => !block.matches("figure"))];
+      const height = high - words.reduce((sum, one) => sum + one.offsetHeight + GAP, 0);
+      found.push({ words: "below", width: wide + GAP, height, size });
+    }
+    article.dataset.words = "beside";
+    for (const share of [0.18, 0.22, 0.26, 0.3, 0.36, 0.44, 0.52]) {
+      set("left", `${(1 - share) * 100}%`);
+      const size = SIZES.find((one) => (set("type", one), !overflows()));
+      if (size) found.push({ words: "beside", width: wide * (1 - share), height: high, size, tall: line.offsetHeight > high / 3 });
+    }
+    const best = found.reduce((one, other) => (worth(other) >= worth(one) ? other : one));
+    article.dataset.words = best.words;
     set("type", best.size);
-    set("left", best.layout === "beside" ? `${(1 - best.share) * 100}%` : "0px");
-    set("top", best.layout === "below" ? `${article.clientHeight - best.height - 2 * GAP}px` : "0px");
-    const room = best.layout === "beside" ? wide * (1 - best.share) : wide + GAP;
-    let left = 0;
-    for (const figure of figures) {
-      const width = (room * proportion(figure)) / shape;
-      figure.style.setProperty("--lecture-from", `${left}px`);
+    set("left", best.words === "beside" ? `${best.width + GAP}px` : "0px");
+    set("top", `${best.height}px`);
+    let from = 0;
+    for (const [place, figure] of figures.entries()) {
+      const width = ((best.width - panel) * shapes[place].shape) / shape + shapes[place].panel;
+      figure.style.setProperty("--lecture-from", `${from}px`);
       figure.style.setProperty("--lecture-width", `${width}px`);
-      left += width;
+      from += width;
+      const live = figure.querySelector(".moving > .live");
+      if (live) SIZES.some((size) => (live.style.setProperty("--lecture-panel", size), live.scrollHeight <= live.clientHeight + 1));
     }
-    figures[0].dispatchEvent(new Event("resize", { bubbles: true }));
+    dispatchEvent(new Event("resize"));
   };
   const clear = () => {
     for (const block of document.querySelectorAll(".in-step, .around-step")) block.classList.remove("in-step", "around-step");
@@ -188,7 +195,6 @@
       step.stop.dispatchEvent(new CustomEvent("stop", { bubbles: true }));
     } else {
       article.scrollTop = 0;
-      dispatchEvent(new Event("resize"));
       fit();
       line.focus({ preventScroll: true });
     }
