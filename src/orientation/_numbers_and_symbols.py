@@ -163,15 +163,16 @@ def _evaluate_batch(formula, shape, arrays, arguments, guard):
     import numpy
 
     shapes = [array.shape[: array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)]
-    try:
-        batch = numpy.broadcast_shapes(*shapes)
-    except ValueError:
-        described = " and ".join(f"{name} {array.shape}" for array, (name, _, _) in zip(arrays, arguments))
-        raise ValueError(f"the batches do not fit each other: {described}") from None
-    flat = [
-        numpy.broadcast_to(array, batch + item).reshape(math.prod(batch), math.prod(item))
-        for array, (_, _, item) in zip(arrays, arguments)
-    ]
+    if len(set(shapes)) == 1:
+        batch = shapes[0]
+    else:
+        try:
+            batch = numpy.broadcast_shapes(*shapes)
+        except ValueError:
+            described = " and ".join(f"{name} {array.shape}" for array, (name, _, _) in zip(arrays, arguments))
+            raise ValueError(f"the batches do not fit each other: {described}") from None
+        arrays = [numpy.broadcast_to(array, batch + item) for array, (_, _, item) in zip(arrays, arguments)]
+    flat = [array.reshape(math.prod(batch), math.prod(item)) for array, (_, _, item) in zip(arrays, arguments)]
     result = numpy.empty((math.prod(batch), math.prod(shape)))
     functions = _array_functions()
     for start in range(0, len(result), BLOCK):

@@ -128,7 +128,7 @@ def quaternion_from_axis_angle(axis: Values, angle: Values) -> Result:
     return evaluate(formula, (4,), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD)
 
 
-def _axis_angle_components(f, scalar, x, y, z):
+def axis_angle_components(f, scalar, x, y, z):
     length = f.norm(x, y, z)
     angle = 2 * f.atan2(length, abs(scalar))
     at_rest = length == 0
@@ -175,7 +175,7 @@ def axis_angle_from_dcm(dcm: Values) -> tuple[Result, Result]:
     """
 
     def formula(f, *entries):
-        return _axis_angle_components(f, *quaternion_components_from_dcm(f, *entries))
+        return axis_angle_components(f, *quaternion_components_from_dcm(f, *entries))
 
     combined = evaluate(formula, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
     angle = combined[..., 3]

@@ -84,16 +84,20 @@ def dcm_from_quaternion(quaternion: Values) -> Result:
 def dcm_components_from_quaternion(f, scalar, x, y, z):
     """Formula of :func:`dcm_from_quaternion`, shared with the Rodrigues parameters."""
     ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
+    first, second = ss + xx, ss - xx
+    # Doubling loses nothing; of these products each stands in two entries.
+    x2, y2, s2 = 2 * x, 2 * y, 2 * scalar
+    xy, xz, yz, sx, sy, sz = x2 * y, x2 * z, y2 * z, s2 * x, s2 * y, s2 * z
     return (
-        ss + xx - yy - zz,
-        2 * (x * y + scalar * z),
-        2 * (x * z - scalar * y),
-        2 * (x * y - scalar * z),
-        ss - xx + yy - zz,
-        2 * (y * z + scalar * x),
-        2 * (x * z + scalar * y),
-        2 * (y * z - scalar * x),
-        ss - xx - yy + zz,
+        first - yy - zz,
+        xy + sz,
+        xz - sy,
+        xy - sz,
+        second + yy - zz,
+        yz + sx,
+        xz + sy,
+        yz - sx,
+        second - yy + zz,
     )
 
 

@@ -42,6 +42,7 @@ NOTEBOOKS = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob("exercises/*.ip
         ('<path d="M10.1-3L4 5"/>', '<path d="M10.1-3L4 5L4 6"/>', True),
         ('<path d="M10.1-3L4 5"/>', '<path d="M10.1-3C4 5"/>', True),
         ('<path id="g0123456789-0"/>', '<path id="g012345678a-0"/>', False),
+        ('<g clip-path="url(#p01234567-0)"/>', '<g clip-path="url(#p0123456a-0)"/>', False),
     ],
 )
 def test_numbers_may_move_by_their_last_digits(stored, now, far):

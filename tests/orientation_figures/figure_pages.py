@@ -60,8 +60,9 @@ def front_end(tmp_path_factory):
     """A folder with the scripts of all figures, as the site has them."""
     folder = tmp_path_factory.mktemp("figures")
     (folder / "shared.js").write_text(bundle.shared_script(), "utf8")
-    for kind in KINDS:
-        (folder / f"{kind}.js").write_text(bundle.script(kind), "utf8")
+    for kind in (*KINDS, "formula"):
+        for name, text in {f"{kind}.js": bundle.script(kind), **bundle.beside(kind)}.items():
+            (folder / name).write_text(text, "utf8")
     return folder
 
 

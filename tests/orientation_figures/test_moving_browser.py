@@ -33,8 +33,10 @@ MOST_WRITTEN = 300  # attributes, texts and elements that one picture of a drag 
 def test_every_figure_is_tested():
     assert {"triad", "gimbal", "nine_numbers"} <= set(KINDS)
     modules = {path.stem for path in (bundle.FOLDER / "js").glob("*.js")}
-    # The explorer needs Python for its algebra: tests/test_explorer.py and test_live.py.
-    assert modules == {*KINDS, *bundle.SHARED, *(own for names in bundle.OWN.values() for own in names), "explorer"}
+    # The explorer needs Python for its algebra: tests/test_explorer.py and test_live.py. A formula that is taken away
+    # is no drawing: test_take_away.py.
+    own = {own for names in bundle.OWN.values() for own in names}
+    assert modules == {*KINDS, *bundle.SHARED, *own, "explorer", "formula"}
 
 
 def test_weight():

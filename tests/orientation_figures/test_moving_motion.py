@@ -358,23 +358,6 @@ def test_faults_errors_and_margins_agree(node):
     assert abs(np.array(answer["margins"]) - margins).max() < 1e-9
 
 
-def test_rates_agree_with_the_module(node):
-    random = np.random.default_rng(5)
-    dcms, quaternions = random.normal(size=(300, 3, 3)), random.normal(size=(300, 4))
-    angles, omegas = random.uniform(-3, 3, (300, 3)), random.normal(size=(300, 3))
-    columns = [dcms.reshape(-1, 9), quaternions, angles, omegas]
-    answer = node(
-        "data.map(([dcm, q, angles, omega]) => [dcmRate(dcm, omega), quaternionRate(q, omega), angleRates(angles, "
-        "omega)])",
-        [[entry.tolist() for entry in row] for row in zip(*columns)],
-    )
-    for row, dcm, quaternion, angle, omega in zip(answer, dcms, quaternions, angles, omegas):
-        assert abs(np.reshape(row[0], (3, 3)) - dcm_rate(dcm, omega)).max() < 1e-14
-        assert abs(row[1] - quaternion_rate(quaternion, omega)).max() < 1e-14
-        rates = np.linalg.solve(angular_velocity_matrix(angle, "zxy"), omega)
-        assert abs(row[2] - rates).max() < 1e-13 * (1 + abs(rates).max()) / abs(np.cos(angle[1]))
-
-
 def test_both_end_a_hopeless_run_at_the_same_step(node):
     settings = dict(zip(SETTINGS, (MOMENTS["racket"], "y", 0.5, "Euler", 0.1, False)))
     answer = node(TRAJECTORY, {"settings": settings, "count": 200})

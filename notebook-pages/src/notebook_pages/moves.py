@@ -19,7 +19,7 @@ FREE = re.compile(rf"(?<![\w#])(?<![\w#][.])(?:{NUMBER})(?![\w])")
 #: What places the lines and the letters of a drawing.
 PLACING = re.compile(r'(?<= )(d|x|y|x1|x2|y1|y2|cx|cy|r|rx|ry|points|transform)="([^"]*)"')
 #: The name of a part of a drawing, which follows from the whole of it.
-PART = re.compile(r"\bg[0-9a-f]{10}(?=-\d)")
+PART = re.compile(r"\b(?:g[0-9a-f]{10}|p[0-9a-f]{8})(?=-\d)")
 TOKEN = re.compile(rf"[A-Za-z]+|{NUMBER}")
 
 

@@ -49,11 +49,12 @@ def add_scripts(app, pagename, templatename, context, doctree):
     bundle = named(REGISTERED["figures"])
     texts = {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
     texts |= {f"{kind}.js": bundle.script(kind) for kind in kinds}
+    later = {name: text for kind in kinds for name, text in bundle.beside(kind).items()}
     folder = Path(app.outdir) / "_static" / "moving"
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in texts.items():
+    for name, text in (texts | later).items():
         (folder / name).write_text(text, "utf8")
-        if name.endswith(".js"):
+        if name.endswith(".js") and name not in later:
             app.add_js_file(f"moving/{name}", loading_method="defer")
     context["styles"] = [*context["styles"], "moving/moving.css"]
 

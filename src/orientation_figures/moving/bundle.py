@@ -8,11 +8,13 @@ import re
 from functools import cache
 from pathlib import Path
 
+from ..style import STYLE
+
 FOLDER = Path(__file__).parent
-SHARED = ("mathematics", "glyphs", "model", "address", "shared")
+SHARED = ("formulas", "mathematics", "glyphs", "model", "address", "shared")
 #: Modules that one figure alone needs, before its own.
-OWN = {"workbench": ("mismatch",)}
-IMPORT = re.compile(r"^import \{([^}]*)\} from .*;\n", re.MULTILINE)
+OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
+IMPORT = re.compile(r"^(?:import|export) \{([^}]*)\} from .*;\n", re.MULTILINE)
 IMPORT_FROM = re.compile(r"^import \{([^}]*)\} from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
 COMMENT = re.compile(r"^\s*//.*\n|^ +", re.MULTILINE)
@@ -56,6 +58,15 @@ def script(name):
     }
     names = ", ".join(filter(None, taken))
     return f"(() => {{\nconst {{ {names} }} = orientation;\n{whole(name)}orientation.start('{name}', render);\n}})();\n"
+
+
+def beside(name):
+    """Return what a figure of this kind loads when it needs it, by the names of the files."""
+    if "take_away" not in OWN.get(name, ()):
+        return {}
+    from .take_away import scripts  # which needs NumPy, as no figure in a page does
+
+    return {"drawing.css": STYLE} | scripts()
 
 
 def style():

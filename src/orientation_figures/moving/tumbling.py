@@ -49,7 +49,7 @@ def run(moments, axis, disturbance, method, step, restored, count):
     }
 
 
-def _angular_acceleration(omega, moments):
+def angular_acceleration(omega, moments):
     """Return the change of the angular velocity along the principal axes, without torque."""
     (x, y, z), (a, b, c) = omega, moments
     return -(y * (c * z) - z * (b * y)) / a, -(z * (a * x) - x * (c * z)) / b, -(x * (b * y) - y * (a * x)) / c
@@ -61,10 +61,10 @@ def _turned_on(omega, moments, step):
     def beyond(length, slope):
         return [value + length * change for value, change in zip(omega, slope)]
 
-    first = _angular_acceleration(omega, moments)
-    second = _angular_acceleration(middle := beyond(step / 2, first), moments)
-    third = _angular_acceleration(again := beyond(step / 2, second), moments)
-    fourth = _angular_acceleration(end := beyond(step, third), moments)
+    first = angular_acceleration(omega, moments)
+    second = angular_acceleration(middle := beyond(step / 2, first), moments)
+    third = angular_acceleration(again := beyond(step / 2, second), moments)
+    fourth = angular_acceleration(end := beyond(step, third), moments)
     last = beyond(step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)])
     return (omega, middle, again, end), last
 

@@ -3,6 +3,7 @@ import { AXES, IDENTITY, SEQUENCES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm
   spaceFixedFromDcm, transpose, unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, group, hats, liveText, numberTable, onceAFrame,
   open, put, radians, readout, stage, write } from './shared.js';
+import { canTakeAway, languageChoice, textBox, textOf, textsIn } from './take_away.js';
 
 const REACH = 1.25, SIZE = 112;   // as in stills/converter.py
 const [N, A] = ['n', 'a'].map(hats);
@@ -89,6 +90,12 @@ export function line(side, numbers, programs) {
   return template.replace(/\{(\w+)\}/g, (_, name) => values[name]);
 }
 
+// The formulas that convert: from the source to the matrix of this book, and from that to the target.
+const NAMED = { quaternion: 'quaternion', [ANGLES[0]]: 'body_fixed', [ANGLES[1]]: 'space_fixed', 'axis times angle': 'rotation_vector' };
+export const formulasOf = (source, target) => [
+  ...(NAMED[source.form] ? [[`dcm_from_${NAMED[source.form]}`, source]] : []),
+  ...(NAMED[target.form] ? [[`${NAMED[target.form]}_from_dcm`, target]] : [])];
+
 // The numbers as they are shown: a matrix in three rows.
 export const shown = (numbers) => (numbers.length === 9 ? [0, 3, 6].map((k) => numbers.slice(k, k + 3)) : [numbers])
   .map((row) => row.map(short).join(', ')).join('\n');
@@ -149,6 +156,22 @@ export function render({ model, el }) {
     redraw();
   }
 
+  const box = textBox((text) => words.say(text)), none = 'no language yet';
+  let chosen = none;
+  const language = languageChoice((value) => { chosen = value; redraw(); }, [none]);
+
+  async function takeAway() {
+    const formulas = formulasOf(side('source'), side('target')), now = chosen;
+    language.show(now);
+    box.element.hidden = now === none;
+    if (now === none) return;
+    try {
+      const texts = await textsIn(now);
+      if (now !== chosen) return;
+      box.show(formulas.map(([name, how]) => textOf(texts, name, how)).join('\n\n'), formulas.map(([name]) => name).join('-'), now);
+    } catch (error) { words.say(error.message); }
+  }
+
   const panel = (name, heading) => {
     const lists = {
       program: choice({ name: `${heading}: program`, options: [...Object.keys(programs), OTHER], hidden: true, change: (value) => pick(name, { program: value }) }),
@@ -187,7 +210,9 @@ export function render({ model, el }) {
     element('div', { class: 'controls converter' },
       group('From', 'side', element('div', { class: 'title' }, 'From'), panels[0].box, field),
       group('To', 'side', element('div', { class: 'title' }, 'To'), panels[1].box, result)),
-    group('Line of code', 'controls line', element('div', { class: 'title' }, 'Line of code'), code, copy));
+    group('Line of code', 'controls line', element('div', { class: 'title' }, 'Line of code'), code, copy),
+    ...(canTakeAway() ? [group('Formula', 'controls line', element('div', { class: 'title' }, 'The formula itself'),
+      language.element, box.element)] : []));
 
   function draw() {
     const dcm = dcmFromQuaternion(model.get('quaternion')), to = side('target'), numbers = told(to, dcm);
@@ -198,6 +223,7 @@ export function render({ model, el }) {
     const programmed = fault ? '' : line(to, numbers, programs);
     write(code, programmed || '\u2013');
     copy.disabled = !programmed;
+    takeAway();
     sheet.draw(() => {
       sheet.triad('N', IDENTITY, { reach: REACH });
       sheet.triad('A', dcm);

@@ -1,10 +1,13 @@
-// The formulas of the Python module, for one orientation at a time. A matrix is three rows; the rows of
-// A_C_N are A's unit vectors along N. Angles in radians, quaternions scalar first, sequences body fixed.
-// tests/test_moving_mathematics.py holds every function against its namesake.
+import { PROPER_EULER, TAIT_BRYAN, axisAngleComponents, bodyFixedFromDcm, dcmFromBodyFixed, dcmFromQuaternion,
+  quaternionFromDcm } from './formulas.js';
+
+// What goes with the formulas of the module, which formulas.js has: vectors and matrices, and what is no formula but a
+// search or a message. A matrix is three rows.
+export { PROPER_EULER, TAIT_BRYAN, angularAcceleration, angularVelocityMatrix, bodyFixedFromDcm, dcmFromAxisAngle,
+  dcmFromBodyFixed, dcmFromQuaternion, dcmFromRotationVector, dcmRate, gimbalLockMargin, multiplyQuaternions,
+  quaternionFromAxisAngle, quaternionFromDcm, quaternionRate, simpleDcm } from './formulas.js';
 
 export const AXES = ['x', 'y', 'z'];
-export const PROPER_EULER = ['zxz', 'xyx', 'yzy', 'zyz', 'xzx', 'yxy'];
-export const TAIT_BRYAN = ['xyz', 'yzx', 'zxy', 'xzy', 'zyx', 'yxz'];
 export const SEQUENCES = [...PROPER_EULER, ...TAIT_BRYAN];
 export const IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const TOLERANCE = 1e-9;
@@ -37,21 +40,15 @@ export const multiply = (...matrices) => matrices.reduce((left, right) => {
 });
 // v_A = A_C_N v_N.
 export const times = (matrix, v) => matrix.map((row) => dot(row, v));
+// x where matrix x = v.
+export function solve(matrix, v) {
+  const [x, y, z] = transpose(matrix), whole = determinant([x, y, z]);
+  return [determinant([v, y, z]), determinant([x, v, z]), determinant([x, y, v])].map((part) => part / whole);
+}
 export const determinant = ([x, y, z]) => dot(cross(x, y), z);
 export const distance = (first, second) => Math.hypot(...first.flatMap((row, k) => subtract(row, second[k])));
 
-// Direction cosine matrices.
-
-export function simpleDcm(axis, angle) {
-  const first = AXES.indexOf(axis), second = (first + 1) % 3, third = (first + 2) % 3;
-  const sine = Math.sin(angle), cosine = Math.cos(angle);
-  const dcm = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
-  dcm[first][first] = 1;
-  dcm[second][second] = dcm[third][third] = cosine;
-  dcm[second][third] = sine;
-  dcm[third][second] = -sine;
-  return dcm;
-}
+// What a matrix is, and which is near.
 
 // As Python writes '%.6g', so that messages agree.
 export function general(value, digits = 6) {
@@ -143,84 +140,23 @@ export function nearestDcm(matrix) {
 
 // Euler angles.
 
-function layout(sequence) {
-  const i = AXES.indexOf(sequence[0]), j = AXES.indexOf(sequence[1]);
-  return [i, j, 3 - i - j, (j - i + 3) % 3 === 1 ? 1 : -1, sequence[0] === sequence[2]];
-}
-
-export const dcmFromBodyFixed = ([psi, theta, phi], sequence) => multiply(
-  simpleDcm(sequence[2], phi), simpleDcm(sequence[1], theta), simpleDcm(sequence[0], psi));
-
 export const reversed = (list) => [...list].reverse();
 
 export const dcmFromSpaceFixed = (angles, sequence) => dcmFromBodyFixed(
   reversed(angles), reversed(sequence).join(''));
 
-export function bodyFixedFromDcm(c, sequence) {
-  const [i, j, k, sign, proper] = layout(sequence);
-  // Adding zero turns -0 into 0: atan2(0, -0) would be pi.
-  const psi = proper ? Math.atan2(sign * c[i][j] + 0, 0 - sign * c[i][k]) : Math.atan2(0 - c[k][j], c[k][k] + 0);
-  const sine = Math.sin(psi), cosine = Math.cos(psi);
-  const jj = c[j][j] * cosine + c[j][k] * sine;
-  const [theta, phi] = proper
-    // The sine has the sign of the order, and the size alone keeps the middle angle in [0, pi].
-    ? [sign * Math.atan2(Math.abs(c[i][j] * sine - c[i][k] * cosine), c[i][i]),
-      Math.atan2(-c[k][j] * cosine - c[k][k] * sine, jj)]
-    : [Math.atan2(c[k][i], c[k][k] * cosine - c[k][j] * sine),
-      Math.atan2(c[i][j] * cosine + c[i][k] * sine, jj)];
-  return [sign * psi + 0, sign * theta + 0, sign * phi + 0];
-}
-
 export const spaceFixedFromDcm = (dcm, sequence) => reversed(bodyFixedFromDcm(dcm, reversed(sequence).join('')));
-
-export function gimbalLockMargin([, theta], sequence) {
-  const along = Math.abs(Math.cos(theta)), across = Math.abs(Math.sin(theta));
-  return sequence[0] === sequence[2] ? Math.atan2(across, along) : Math.atan2(along, across);
-}
 
 // Axis and angle.
 
-export function dcmFromAxisAngle(axis, angle) {
-  const [x, y, z] = unit(axis), cosine = Math.cos(angle), sine = Math.sin(angle), rest = 1 - cosine;
-  return [[cosine + rest * x * x, rest * x * y + sine * z, rest * x * z - sine * y],
-    [rest * x * y - sine * z, cosine + rest * y * y, rest * y * z + sine * x],
-    [rest * x * z + sine * y, rest * y * z - sine * x, cosine + rest * z * z]];
-}
-
-export const quaternionFromAxisAngle = (axis, angle) => [
-  Math.cos(angle / 2), ...scale(Math.sin(angle / 2), unit(axis))];
-
-export function axisAngleFromQuaternion([scalar, ...vector]) {
-  const size = length(vector);
-  const axis = size === 0 ? [1, 0, 0] : scale((scalar < 0 ? -1 : 1) / size, vector);
-  return { axis, angle: 2 * Math.atan2(size, Math.abs(scalar)) };
+export function axisAngleFromQuaternion(quaternion) {
+  const [x, y, z, angle] = axisAngleComponents(quaternion);
+  return { axis: [x, y, z], angle };
 }
 
 export const axisAngleFromDcm = (dcm) => axisAngleFromQuaternion(quaternionFromDcm(dcm));
 
 // Quaternions.
-
-export function dcmFromQuaternion([s, x, y, z]) {
-  const [ss, xx, yy, zz] = [s * s, x * x, y * y, z * z];
-  return [[ss + xx - yy - zz, 2 * (x * y + s * z), 2 * (x * z - s * y)],
-    [2 * (x * y - s * z), ss - xx + yy - zz, 2 * (y * z + s * x)],
-    [2 * (x * z + s * y), 2 * (y * z - s * x), ss - xx - yy + zz]];
-}
-
-export function quaternionFromDcm([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]) {
-  // Each row is the quaternion times four of its own components; the longest loses no digits.
-  const scores = [1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz];
-  const [si, sj, sk, ij, ik, jk] = [yz - zy, zx - xz, xy - yx, xy + yx, xz + zx, yz + zy];
-  const rows = [[scores[0], si, sj, sk], [si, scores[1], ij, ik], [sj, ij, scores[2], jk], [sk, ik, jk, scores[3]]];
-  const row = rows[scores.indexOf(Math.max(...scores))];
-  return row.map((entry) => (row[0] < 0 ? -1 : 1) / length(row) * entry + 0);
-}
-
-// The product turns by the first, then by the second.
-export function multiplyQuaternions([a, b, c, d], [e, g, h, k]) {
-  return [a * e - b * g - c * h - d * k, a * g + b * e + c * k - d * h,
-    a * h - b * k + c * e + d * g, a * k + b * h - c * g + d * e];
-}
 
 export const conjugate = ([s, x, y, z]) => [s, -x, -y, -z];
 

@@ -1,5 +1,7 @@
-import { AXES, IDENTITY, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed, dcmFromQuaternion, dot,
-  gimbalLockMargin, length, multiply, multiplyQuaternions, nearestDcm, quaternionFromAxisAngle, scale, times, transpose, unit } from './mathematics.js';
+import { AXES, IDENTITY, add, angularAcceleration, angularVelocityMatrix, axisAngleFromDcm, bodyFixedFromDcm, cross,
+  dcmFromBodyFixed, dcmFromQuaternion, dcmFromRotationVector, dcmRate, dot, gimbalLockMargin, length, multiply,
+  multiplyQuaternions, nearestDcm, quaternionFromAxisAngle, quaternionRate, scale, solve, times, transpose,
+  unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, follow, group, liveText, onceAFrame, open, plain, player, put, slider,
   stage, write, writeWords } from './shared.js';
 
@@ -17,21 +19,7 @@ const ROUNDING = 1e-15;
 
 // A reference is the angular velocity along A and a quaternion, found in fine steps. A state is a quaternion, the nine
 // entries of a matrix row by row and three Euler angles in the sequence zxy: each is given the reference's angular velocity.
-export const angularAcceleration = ([x, y, z], [a, b, c]) => [
-  -(y * (c * z) - z * (b * y)) / a, -(z * (a * x) - x * (c * z)) / b, -(x * (b * y) - y * (a * x)) / c];
-
-export const quaternionRate = ([a, b, c, d], [x, y, z]) => [(-b * x - c * y - d * z) / 2, (a * x + c * z - d * y) / 2,
-  (a * y + d * x - b * z) / 2, (a * z + b * y - c * x) / 2];
-
-export const dcmRate = ([xx, xy, xz, yx, yy, yz, zx, zy, zz], [x, y, z]) => [
-  z * yx - y * zx, z * yy - y * zy, z * yz - y * zz, x * zx - z * xx, x * zy - z * xy, x * zz - z * xz,
-  y * xx - x * yx, y * xy - x * yy, y * xz - x * yz];
-
-// The inverse of the angular velocity matrix for zxy, times the angular velocity.
-export function angleRates([, theta, phi], [x, y, z]) {
-  const sine = Math.sin(phi), cosine = Math.cos(phi), psiRate = (cosine * z - sine * x) / Math.cos(theta);
-  return [psiRate, cosine * x + sine * z, y - Math.sin(theta) * psiRate];
-}
+const angleRates = (angles, omega) => solve(angularVelocityMatrix(angles, 'zxy'), omega);
 
 // One Runge-Kutta step from the slopes that it asks for at each stage.
 function rungeKutta(state, step, slopes) {
@@ -47,7 +35,7 @@ const fine = (reference, step, moments) => {
   return [x, y, z, ...unit(quaternion)];
 };
 
-const rates = (state, omega) => [...quaternionRate(state.slice(0, 4), omega), ...dcmRate(state.slice(4, 13), omega),
+const rates = (state, omega) => [...quaternionRate(state.slice(0, 4), omega), ...dcmRate(rowsOf(state.slice(4, 13)), omega).flat(),
   ...angleRates(state.slice(13), omega)];
 
 // The turn of a step of the fourth order (Magnus), from the angular velocity at its two Gauss points.
@@ -70,8 +58,8 @@ export function stepped(state, step, method, moments, references) {
   const later = rungeKutta(state, step, slopes);
   if (method !== 'exponential') return later;
   const turn = turnOf(step, moments, references), angle = length(turn);   // of which Euler angles have none
-  return [...multiplyQuaternions(state.slice(0, 4), quaternionFromAxisAngle(turn, angle)),
-    ...multiply(dcmFromAxisAngle(turn, angle), rowsOf(state.slice(4, 13))).flat(), ...later.slice(13)];
+  return [...multiplyQuaternions(state.slice(0, 4), angle ? quaternionFromAxisAngle(turn, angle) : [1, 0, 0, 0]),
+    ...multiply(dcmFromRotationVector(turn), rowsOf(state.slice(4, 13))).flat(), ...later.slice(13)];
 }
 
 const rowsOf = (list) => [list.slice(0, 3), list.slice(3, 6), list.slice(6, 9)];

@@ -1,7 +1,7 @@
 // What the moving figures share: a sheet to draw on, in the look of orientation_figures.drawing, and controls that
 // work by pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
 // contract; on a page of the book without a kernel, `start` gives it a model of its own.
-import { AXES, IDENTITY, add, cross, dcmFromAxisAngle, dot, length, multiply, scale, simpleDcm, subtract, times,
+import { AXES, IDENTITY, add, cross, dcmFromRotationVector, dot, length, multiply, scale, simpleDcm, subtract, times,
   transpose, unit } from './mathematics.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
@@ -413,7 +413,7 @@ export class Sheet {
 }
 
 // A vector turned with its frame: the rows of A_C_N are N's unit vectors turned, its transpose turns all alike.
-export const turned = (axis, angle, vector) => times(transpose(dcmFromAxisAngle(axis, angle)), vector);
+export const turned = (axis, angle, vector) => times(transpose(dcmFromRotationVector(scale(angle, unit(axis)))), vector);
 
 // Follows the pointer with a point that can only move on a circle: returns a function from the place of
 // the pointer to the angle, in whole degrees, that brings the turned `arm` nearest to it.

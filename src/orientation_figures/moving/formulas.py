@@ -1,0 +1,107 @@
+"""Write the formulas of ``orientation`` for the page, in ``js/formulas.js``.
+
+Run it with ``python -m orientation_figures.moving.formulas``. They are recorded from the module, so that none stands
+in JavaScript a second time; the file is kept with the others, as the figures need it where nothing is recorded.
+"""
+
+from dataclasses import replace
+
+from orientation import PROPER_EULER, SEQUENCES, TAIT_BRYAN
+from orientation.axis_angle import axis_angle_components
+from orientation_workbench.formulas import CHOICES, FORMULAS, LISTS, SIZES, applied, formula_of, variable
+from orientation_workbench.languages import LANGUAGES, written
+
+from .bundle import FOLDER
+from .tumbling import angular_acceleration
+
+COMMAND = "python -m orientation_figures.moving.formulas"
+FILE = FOLDER / "js" / "formulas.js"
+
+#: What figures use of the formulas, with those of the sequences or axes that they use.
+NAMES = {
+    "simple_dcm": "xyz",
+    "dcm_from_body_fixed": SEQUENCES,
+    "body_fixed_from_dcm": SEQUENCES,
+    "gimbal_lock_margin": SEQUENCES,
+    "angular_velocity_matrix": ("zxy",),
+    **dict.fromkeys(
+        (
+            "dcm_from_axis_angle", "quaternion_from_axis_angle", "dcm_from_quaternion", "quaternion_from_dcm",
+            "multiply_quaternions", "dcm_from_rotation_vector", "dcm_rate", "quaternion_rate",
+        )
+    ),
+}  # fmt: skip
+JAVASCRIPT = replace(
+    LANGUAGES["JavaScript"], part="const {part} = {value};", chosen="const {part} = {condition} ? {yes} : {no};"
+)
+
+
+def text():
+    """The module: matrices are three rows, here as in the other modules of the figures."""
+    lines = [
+        f"// Written by `{COMMAND}`: the formulas of the module `orientation`. Angles in radians, quaternions",
+        "// scalar first; the rows of a matrix A_C_N are A's unit vectors along N.",
+        "",
+        *(f"export const {name} = [{', '.join(map(repr, value))}];" for name, value in CONSTANTS.items()),
+        "",
+    ]
+    for name, choices in NAMES.items():
+        takes, gives = FORMULAS[name]
+        if choices is None:
+            lines.append(f"export const {camel(name)} = {function(name, takes, gives)};")
+            continue
+        what = CHOICES[name][0]
+        rows = (f"  {choice}: {function(name, takes, gives, choice)},\n" for choice in choices)
+        lines.append(f"const {camel(name)}By = {{\n{''.join(rows)}}};")
+        order = [what, *takes] if name == "simple_dcm" else [*takes, what]
+        lines.append(
+            f"export const {camel(name)} = ({', '.join(order)}) => {camel(name)}By[{what}]({', '.join(takes)});"
+        )
+    quaternion, (omega, moments) = components("quaternion", "q"), (components("vector", one) for one in "om")
+    for name, entries, given in (
+        ("axisAngleComponents", applied(axis_angle_components, *quaternion), [quaternion]),
+        ("angularAcceleration", list(angular_acceleration(omega, moments)), [omega, moments]),
+    ):
+        lines.append(f"export const {name} = {arrow(given, ['vector'] * 2, entries, 'vector')};")
+    return "\n".join(lines) + "\n"
+
+
+CONSTANTS = {"PROPER_EULER": PROPER_EULER, "TAIT_BRYAN": TAIT_BRYAN}
+
+
+def camel(name):
+    first, *others = name.split("_")
+    return first + "".join(map(str.capitalize, others))
+
+
+def components(kind, letter):
+    return [variable(f"{letter}{k}" if kind in LISTS else letter) for k in range(SIZES[kind])]
+
+
+def function(name, takes, gives, choice=None):
+    given = [components(kind, letter) for kind, letter in zip(takes.values(), "abc")]
+    results = formula_of(name, given, choice)
+    if gives == "angles":
+        results = [one + 0.0 for one in results]  # as in the module: -0 would look like a wrong sign
+    return arrow(given, list(takes.values()), results, gives)
+
+
+def arrow(given, kinds, results, gives):
+    """A function of lists that are taken apart, as its parts and its result."""
+    names = {entry.parts[0]: entry.parts[0] for entries in given for entry in entries}
+    lines, values = written(JAVASCRIPT, results, names)
+    head = ", ".join(shaped([one.parts[0] for one in entries], kind) for entries, kind in zip(given, kinds))
+    result = shaped(values, gives)
+    return f"({head}) => {{ {' '.join(lines)} return {result}; }}" if lines else f"({head}) => {result}"
+
+
+def shaped(texts, kind):
+    if kind not in LISTS:
+        return texts[0]
+    if kind not in ("matrix", "entries"):
+        return f"[{', '.join(texts)}]"
+    return f"[{', '.join(shaped(texts[k : k + 3], 'vector') for k in (0, 3, 6))}]"
+
+
+if __name__ == "__main__":
+    FILE.write_text(text(), "utf8")

@@ -1,0 +1,276 @@
+"""Record the formulas of ``orientation``: what each computes, step by step, without any number.
+
+Each conversion is written once, as a formula that takes components and a namespace of functions. Here the components
+are :class:`Value`, which remember how they were made, and so the formula tells itself, with its operations in their
+order. :mod:`orientation_workbench.languages` writes it down in other languages.
+"""
+
+import math
+from types import SimpleNamespace
+from unittest import mock
+
+import numpy as np
+
+import orientation
+
+_made = {}
+
+
+class Value:
+    """A number, or what is true or false, that is not known yet: an operation, and what it is applied to."""
+
+    __slots__ = ("operation", "parts")
+    __hash__ = object.__hash__
+
+    def __init__(self, operation, parts):
+        self.operation, self.parts = operation, parts
+
+    def __bool__(self):
+        raise TypeError("a formula that is recorded chooses by where and pick, not by if")
+
+    def __add__(self, other):
+        return added(self, other)
+
+    def __radd__(self, other):
+        return added(other, self)
+
+    def __sub__(self, other):
+        return added(self, negative(other)) if _negative(other) else made("-", self, other)
+
+    def __rsub__(self, other):
+        return made("-", other, self)
+
+    def __mul__(self, other):
+        return multiplied(self, other)
+
+    def __rmul__(self, other):
+        return multiplied(other, self)
+
+    def __truediv__(self, other):
+        return divided(self, other)
+
+    def __rtruediv__(self, other):
+        return divided(other, self)
+
+    def __pow__(self, count):
+        return multiplied(self, self ** (count - 1)) if count > 1 else self
+
+    def __neg__(self):
+        return negative(self)
+
+    def __abs__(self):
+        return made("abs", self)
+
+    def __lt__(self, other):
+        return made("<", self, other)
+
+    def __gt__(self, other):
+        return made(">", self, other)
+
+    def __ge__(self, other):
+        return made(">=", self, other)
+
+    def __eq__(self, other):
+        return made("==", self, other)
+
+
+def made(operation, *parts):
+    """The value that an operation makes: the same object for the same operation on the same parts."""
+    key = (operation, *(id(part) if isinstance(part, Value) else (part,) for part in parts))
+    if key not in _made:
+        _made[key] = Value(operation, parts)
+    return _made[key]
+
+
+def variable(name):
+    """A value that has a name: a component of what the formula is given."""
+    return made("variable", name)
+
+
+def _is(value, number):
+    # A zero with a point is added on purpose: it turns -0 into 0.
+    return type(value) is int and value == number
+
+
+def _negative(value):
+    return isinstance(value, Value) and value.operation == "negative"
+
+
+def negative(value):
+    if not isinstance(value, Value):
+        return -value
+    return value.parts[0] if _negative(value) else made("negative", value)
+
+
+# Signs are joined where the numbers stay the same to the last bit.
+def added(first, second):
+    if _is(first, 0) or _is(second, 0):
+        return second if _is(first, 0) else first
+    if _negative(second):
+        return first - second.parts[0]
+    return made("+", first, second) if Value in (type(first), type(second)) else first + second
+
+
+def multiplied(first, second):
+    for one, other in ((first, second), (second, first)):
+        if _is(one, 0):
+            return 0
+        if _is(one, 1):
+            return other
+        if _is(one, -1):
+            return negative(other)
+        if _negative(one):
+            return negative(multiplied(one.parts[0], other))
+    return made("*", first, second) if Value in (type(first), type(second)) else first * second
+
+
+def divided(first, second):
+    if _is(first, 0) or _is(second, 1):
+        return first
+    return made("/", first, second) if Value in (type(first), type(second)) else first / second
+
+
+def _pick(scores, rows):
+    """The row whose score is the largest, the first of several, entry by entry."""
+    *others, last = [
+        (made("and", *(score >= other for other in scores if other is not score)), row)
+        for score, row in zip(scores, rows)
+    ]
+    chosen = last[1]
+    for best, row in reversed(others):
+        chosen = [_where(best, one, other) for one, other in zip(row, chosen)]
+    return chosen
+
+
+def _where(condition, yes, no):
+    return yes if yes is no or (type(yes) is int and _is(no, yes)) else made("where", condition, yes, no)
+
+
+#: The namespace that a formula is given.
+FUNCTIONS = SimpleNamespace(
+    sin=lambda angle: made("sin", angle),
+    cos=lambda angle: made("cos", angle),
+    atan2=lambda sine, cosine: made("atan2", sine, cosine),
+    norm=lambda *components: made("sqrt", sum(entry * entry for entry in components)),
+    where=_where,
+    pick=_pick,
+)
+
+
+def derivative(value, by):
+    """The derivative of a value by a variable, by the rules of the operations."""
+    known = {}
+
+    def of(value):
+        if not isinstance(value, Value):
+            return 0
+        if value not in known:
+            known[value] = rule(value.operation, value, *value.parts)
+        return known[value]
+
+    def rule(operation, value, *parts):
+        match operation:
+            case "variable":
+                return int(value is by)
+            case "+":
+                return added(of(parts[0]), of(parts[1]))
+            case "-":
+                return added(of(parts[0]), negative(of(parts[1])))
+            case "*":
+                return added(multiplied(of(parts[0]), parts[1]), multiplied(parts[0], of(parts[1])))
+            case "/":
+                along, across = of(parts[0]), of(parts[1])
+                return divided(added(along, negative(multiplied(value, across))), parts[1])
+            case "negative":
+                return negative(of(parts[0]))
+            case "sin":
+                return multiplied(FUNCTIONS.cos(parts[0]), of(parts[0]))
+            case "cos":
+                return multiplied(-FUNCTIONS.sin(parts[0]), of(parts[0]))
+            case "sqrt":
+                return divided(of(parts[0]), 2 * value)
+            case "abs":
+                change = of(parts[0])
+                return _where(parts[0] < 0, negative(change), change)
+            case "atan2":
+                sine, cosine = parts
+                change = added(multiplied(cosine, of(sine)), negative(multiplied(sine, of(cosine))))
+                return divided(change, sine * sine + cosine * cosine)
+            case "where":
+                return _where(parts[0], of(parts[1]), of(parts[2]))
+        raise TypeError(f"there is no rule for the derivative of {operation}")
+
+    return of(value)
+
+
+def applied(formula, *components):
+    """The results of a formula ``formula(f, *components)`` that are recorded."""
+    return list(formula(FUNCTIONS, *components))
+
+
+def recorded(function, *arguments):
+    """The results of a public function of ``orientation``, in a flat list."""
+
+    def record(formula, shape, *given, guard=None, symbols=True):
+        components = [entry for _, value, _ in given for entry in _flat(value)]
+        results = np.empty(math.prod(shape), object)
+        results[:] = applied(formula, *components)
+        return results.reshape(shape)
+
+    # The function looks its helpers up among the names of its module: there it finds these, and goes on.
+    helpers = {"evaluate": record, "is_symbolic": lambda value: True, "symbol_components": lambda value, *what: value}
+    with mock.patch.dict(function.__globals__, helpers):
+        return list(np.ravel(function(*arguments)))
+
+
+def _flat(value):
+    return [entry for row in value for entry in _flat(row)] if isinstance(value, (list, tuple)) else [value]
+
+
+#: What can be taken away: what each function takes, by the names of its arguments, and what it gives.
+FORMULAS = {
+    "simple_dcm": ({"angle": "angle"}, "matrix"),
+    "dcm_from_body_fixed": ({"angles": "angles"}, "matrix"),
+    "dcm_from_space_fixed": ({"angles": "angles"}, "matrix"),
+    "body_fixed_from_dcm": ({"dcm": "matrix"}, "angles"),
+    "space_fixed_from_dcm": ({"dcm": "matrix"}, "angles"),
+    "gimbal_lock_margin": ({"angles": "angles"}, "angle"),
+    "dcm_from_axis_angle": ({"axis": "vector", "angle": "angle"}, "matrix"),
+    "quaternion_from_axis_angle": ({"axis": "vector", "angle": "angle"}, "quaternion"),
+    "dcm_from_quaternion": ({"quaternion": "quaternion"}, "matrix"),
+    "quaternion_from_dcm": ({"dcm": "matrix"}, "quaternion"),
+    "multiply_quaternions": ({"first": "quaternion", "second": "quaternion"}, "quaternion"),
+    "interpolate_quaternions": ({"first": "quaternion", "second": "quaternion", "share": "number"}, "quaternion"),
+    "dcm_from_rotation_vector": ({"vector": "angles"}, "matrix"),
+    "rotation_vector_from_dcm": ({"dcm": "matrix"}, "angles"),
+    "angular_velocity_matrix": ({"angles": "angles"}, "entries"),
+    "dcm_rate": ({"dcm": "matrix", "angular_velocity": "vector"}, "matrix"),
+    "quaternion_rate": ({"quaternion": "quaternion", "angular_velocity": "vector"}, "quaternion"),
+    "rotation_vector_rate": ({"vector": "vector", "angular_velocity": "vector"}, "vector"),
+}
+#: How many numbers each is; one alone is no list.
+SIZES = {"angle": 1, "number": 1, "angles": 3, "vector": 3, "quaternion": 4, "matrix": 9, "entries": 9}
+LISTS = ("angles", "vector", "quaternion", "matrix", "entries")
+#: What is chosen once for a whole function, and not a number of it.
+CHOICES = {
+    "simple_dcm": ("axis", orientation.direction_cosines.AXES),
+    **{
+        name: ("sequence", orientation.SEQUENCES)
+        for name in (
+            "dcm_from_body_fixed", "dcm_from_space_fixed", "body_fixed_from_dcm", "space_fixed_from_dcm",
+            "gimbal_lock_margin", "angular_velocity_matrix",
+        )
+    },
+}  # fmt: skip
+
+
+def formula_of(name, components, choice=None):
+    """The results of one of :data:`FORMULAS` for the components of its arguments, each a list of values."""
+    given = [
+        [entries[k : k + 3] for k in (0, 3, 6)] if kind in ("matrix", "entries") else entries if kind in LISTS
+        else entries[0]
+        for kind, entries in zip(FORMULAS[name][0].values(), components)
+    ]  # fmt: skip
+    chosen = [] if choice is None else [choice]
+    arguments = [*chosen, *given] if name == "simple_dcm" else [*given, *chosen]
+    return recorded(getattr(orientation, name), *arguments)
