@@ -10,8 +10,8 @@ A mark is a comment in the text, which neither the page nor Jupyter shows::
 The first paragraph is the line that stands beside what is shown; ``shows:`` names labels of the page (none, for a line
 alone), and without it the step shows the next figure, formula, box, table, list or cell. What follows an empty line is
 for the speaker. A page without marks is shown section by section: each heading with a figure, or else with its first
-displayed formula. Where sections carry ``data-stop``, as those of an essay do, these are the steps, and the page moves
-its own figure.
+displayed formula. A page that moves its own figure as it is scrolled, an essay, puts ``data-stop`` into each of the
+sections that are its steps: the heading is the line, and the text is for the speaker.
 """
 
 import re

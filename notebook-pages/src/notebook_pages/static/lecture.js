@@ -10,22 +10,29 @@
     element.append(...children);
     return element;
   };
-  const heading = (id) => {
-    const words = document.getElementById(id)?.closest("section")?.querySelector(":scope > :is(h1, h2, h3)")?.cloneNode(true);
-    words?.querySelectorAll(".headerlink").forEach((link) => link.remove());
+  const headingOf = (section) => {
+    const words = section?.querySelector(":scope > :is(h1, h2, h3)")?.cloneNode(true);
+    words?.querySelectorAll(".headerlink, .section-number").forEach((part) => part.remove());
     return words?.textContent.trim() ?? "";
   };
 
-  // Steps are marked in the notebook (lecture.py), or they are the stops of an essay, which moves its own figure.
-  const stops = [...document.querySelectorAll("[data-stop]")];
+  // Steps are marked in the notebook (lecture.py). Or they are the stops of an essay, the sections that hold something
+  // with data-stop: such a page moves its own figure as it is scrolled, so its text is for the speaker.
+  const stops = [...new Set([...document.querySelectorAll("[data-stop]")].map((stop) => stop.closest("section")))];
   const items = [...(document.querySelector("template#lecture")?.content.querySelectorAll("li[data-shows]") ?? [])];
   const steps = stops.length
-    ? stops.map((stop) => ({ stop, blocks: [stop], line: make("p", { textContent: stop.dataset.stop }), notes: stop.querySelector("template.notes")?.innerHTML ?? "", section: "" }))
+    ? stops.map((stop) => ({
+        stop,
+        blocks: [],
+        line: make("p", { textContent: headingOf(stop) }),
+        notes: [...stop.querySelectorAll(":scope > p")].map((text) => text.outerHTML).join(""),
+        section: "",
+      }))
     : items.map((item) => ({
         blocks: item.dataset.shows.split(" ").filter(Boolean).map((id) => document.getElementById(id)).filter(Boolean),
         line: item.querySelector("p"),
         notes: item.querySelector("aside").innerHTML,
-        section: heading(item.dataset.section),
+        section: headingOf(document.getElementById(item.dataset.section)?.closest("section")),
       }));
 
   let now = -1, began = 0, place = 0, speaker = null, typed = "", words = "", unseen = [];
@@ -163,7 +170,24 @@
     }
     dispatchEvent(new Event("resize"));
   };
+  // The page is scrolled past a stop as a reader would, so that its figure goes through what the stop shows.
+  const GLIDE = 5000;
+  let gliding = 0;
+  const glide = (stop) => {
+    cancelAnimationFrame(gliding);
+    const { top, height } = stop.getBoundingClientRect();
+    const from = scrollY + top - 0.55 * innerHeight + 1;
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const start = performance.now();
+    const move = (moment) => {
+      const share = still ? 1 : Math.min(1, Math.max(0, (moment - start) / GLIDE));
+      scrollTo({ top: from + 0.8 * height * share, behavior: "instant" });
+      if (share < 1) gliding = requestAnimationFrame(move);
+    };
+    move(start);
+  };
   const clear = () => {
+    cancelAnimationFrame(gliding);
     for (const block of document.querySelectorAll(".in-step, .around-step")) block.classList.remove("in-step", "around-step");
     for (const block of unseen) block.inert = true;
     unseen = [];
@@ -191,13 +215,12 @@
     notes.innerHTML = step.notes || "<p>No notes for this step.</p>";
     said.textContent = `Step ${words}`;
     if (step.stop) {
-      step.stop.scrollIntoView({ block: "center", behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth" });
-      step.stop.dispatchEvent(new CustomEvent("stop", { bubbles: true }));
+      glide(step.stop);
     } else {
       article.scrollTop = 0;
       fit();
-      line.focus({ preventScroll: true });
     }
+    line.focus({ preventScroll: true });
     if (told) tellSpeaker();
   };
 
@@ -303,11 +326,11 @@
     began = Date.now();
     ticking = setInterval(tick, 1000);
     // Begin with what the reader was looking at.
-    const at = steps.findIndex(({ blocks }) => blocks.some((block) => block.getBoundingClientRect().bottom > 80));
+    const at = steps.findIndex(({ blocks, stop }) => [stop ?? blocks].flat().some((block) => block.getBoundingClientRect().bottom > 80));
     root.classList.add("lecture");
     root.classList.toggle("in-steps", !stops.length);
     button.setAttribute("aria-pressed", "true");
-    if (!stops.length) article.append(line);
+    article.append(line);
     document.body.append(bar, said, notes, black, menu);
     show(place > 200 ? Math.max(at, 0) : 0);
     tick();
@@ -334,7 +357,7 @@
 
   // ---- keys, clicks and fingers ----
   const TYPING = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable], .cm-editor";
-  const MOVED = "[role=slider], [role=radiogroup], input, .sheet, button.number";
+  const MOVED = "[role=slider], [role=radiogroup], input, .sheet, canvas, button.number";
   function keys(event) {
     if (event.altKey || event.ctrlKey || event.metaKey || event.target.closest?.(`${TYPING}, dialog`)) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
@@ -370,7 +393,7 @@
     if (!root.classList.contains("lecture")) return;
     setTimeout(() => {
       const holder = document.activeElement;
-      if (!menu.open && holder && !holder.matches(TYPING)) (stops.length ? holder.blur() : line.focus({ preventScroll: true }));
+      if (!menu.open && holder && !holder.matches(TYPING)) line.focus({ preventScroll: true });
     });
   });
   let touched = null;
