@@ -42,12 +42,12 @@ STEPS = """() => {
 def opened(browser, site):
     contexts = []
 
-    def open_chapter(name="simple-orientations", **settings):
+    def open_chapter(name="simple-orientations", folder="chapters/", **settings):
         context = browser.new_context(viewport={"width": 1280, "height": 720}, **settings)
         contexts.append(context)
         context.set_default_timeout(60_000)
         page = context.new_page()
-        page.goto(f"{site}chapters/{name}.html")
+        page.goto(f"{site}{folder}{name}.html")
         page.wait_for_function("!document.documentElement.matches('.settling, .in-parts')")
         return page
 
@@ -176,6 +176,19 @@ def test_a_hall_without_a_mouse_may_swipe(opened):
     page.locator(BAR).tap()
     page.get_by_role("button", name="back to the page").tap()
     assert page.locator(".lecture-bar").count() == 0
+
+
+def test_the_essay_is_lectured_by_its_stops(opened):
+    page = opened("rotations", "", reduced_motion="reduce")
+    page.keyboard.press("l")
+    stops = page.locator("[data-stop]").evaluate_all("all => all.map((one) => one.dataset.stop)")
+    assert page.locator(BAR).inner_text() == f"1 of {len(stops)}"
+    for stop in stops[:5]:
+        page.wait_for_function("(stop) => document.querySelector('.world').dataset.state === stop", arg=stop)
+        drawing, line = page.locator(".world canvas").bounding_box(), page.locator(".lecture-line").bounding_box()
+        assert drawing["width"] * drawing["height"] > 0.5 * 1280 * 720
+        assert drawing["y"] + drawing["height"] <= line["y"]
+        page.keyboard.press("PageDown")
 
 
 def test_on_paper_the_page_is_whole(opened):
