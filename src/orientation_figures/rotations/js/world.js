@@ -142,7 +142,7 @@ class World {
     this.showDials(stop);
     if (!first) this.tell(`${stop.before}`);
     this.passed = false;
-    if (!this.sections.length) this.play();
+    if ('play' in this.figure.dataset) this.play();
   }
 
   // Alone, in somebody else's page, a stop runs by itself once.
