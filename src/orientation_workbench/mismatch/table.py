@@ -406,18 +406,49 @@ FURTHER_POSES = (
 )
 
 
-#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation.
+#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation: the section, and a
+#: checked question on that very fault.
 TAUGHT = {
-    "order": ("chapters/convention-card.html", "The convention card"),
-    "sequence": ("chapters/euler-angles.html", "Euler angles"),
-    "axes of the turns": ("chapters/successive-orientations.html", "Successive orientations"),
-    "places": ("chapters/euler-angles.html", "Euler angles"),
-    "signs": ("chapters/simple-orientations.html", "Simple orientations"),
-    "unit": ("chapters/convention-card.html", "The convention card"),
-    "place of the angle": ("chapters/axis-and-angle.html", "Axis and angle"),
-    "inverse": ("chapters/direction-cosine-matrices.html", "Direction cosine matrices"),
-    "axes": ("chapters/cases-from-practice.html", "Cases from practice"),
-    "turn": ("chapters/cases-from-practice.html", "Cases from practice"),
+    "order": (
+        ("chapters/convention-card.html#four-questions", "The convention card"),
+        ("exercises/convention-card.html#two-messages", "Two messages"),
+    ),
+    "sequence": (
+        ("chapters/euler-angles.html#the-twelve-sequences", "The twelve sequences"),
+        ("exercises/euler-angles.html#four-frames-one-after-another", "Four frames, one after another"),
+    ),
+    "axes of the turns": (
+        ("chapters/euler-angles.html#body-fixed", "Body fixed"),
+        ("exercises/convention-card.html#angles-from-scipy", "Angles from SciPy"),
+    ),
+    "places": (
+        ("chapters/successive-orientations.html#order-matters", "Order matters"),
+        ("exercises/convention-card.html#eight-lines-of-code", "Eight lines of code"),
+    ),
+    "signs": (
+        ("chapters/simple-orientations.html#who-has-turned-you-or-the-vector", "Who has turned, you or the vector?"),
+        ("exercises/simple-orientations.html#a-bicycle-crank", "A bicycle crank"),
+    ),
+    "unit": (
+        ("chapters/convention-card.html#four-questions", "The convention card"),
+        ("exercises/simple-orientations.html#a-ship-s-heading", "A ship's heading"),
+    ),
+    "place of the angle": (
+        ("chapters/axis-and-angle.html#a-direction-that-stays", "Axis and angle"),
+        ("exercises/axis-and-angle.html#a-folding-bicycle", "A folding bicycle"),
+    ),
+    "inverse": (
+        ("chapters/simple-orientations.html#the-way-back", "The way back"),
+        ("exercises/convention-card.html#a-game-engine", "A game engine"),
+    ),
+    "axes": (
+        ("chapters/convention-card.html#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
+        ("exercises/cases-from-practice.html#which-way-is-the-phone-pointing", "Which way is the phone pointing?"),
+    ),
+    "turn": (
+        ("chapters/convention-card.html#exercises", "Hand and eye"),
+        ("exercises/cases-from-practice.html#a-knee-from-two-boxes", "A knee, from two boxes"),
+    ),
 }
 
 
