@@ -73,7 +73,7 @@ def test_an_axis_that_is_marked_wrong_makes_an_adduction():
 
 
 def walks():
-    """Heading errors by group and way: middle, least and largest for walking, by the car, after it; and the verdicts."""
+    """Heading errors by group and way: middle, least, largest of walking, by the car, after it; and the verdicts."""
     text = printed("what the bench says of the heading")
     errors, _, verdicts = text.partition("\nwhat the bench")
     rows = {
