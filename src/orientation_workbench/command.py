@@ -9,6 +9,7 @@ from pathlib import Path
 from .mismatch import mend
 from .mismatch.explanation import explain, sentences
 from .mismatch.table import COUNTS, KINDS
+from .programs import PROGRAMS
 
 #: What ``orientation explain`` ends with.
 EXIT_CODES = {"same": 0, "named": 1, "undecided": 2, "unrelated": 2}
@@ -40,6 +41,10 @@ def _add_explain(commands):
     parser.add_argument("--all", action="store_true", help="every other reading that fits, too")
     parser.add_argument("--noise", type=float, default=0.0, metavar="DEGREES", help="what the two may differ by anyway")
     for side in ("first", "second"):
+        parser.add_argument(
+            f"--{side}", dest=f"{side}_program", metavar="PROGRAM",
+            help=f"the program that gave the {side} numbers, as far as its manual is known here: {', '.join(PROGRAMS)}",
+        )  # fmt: skip
         parser.add_argument(
             f"--{side}-is", action="append", default=[], metavar="WHAT",
             help=f"what is known of the {side} numbers: a kind ({', '.join(COUNTS)}) or a choice such as "
@@ -110,6 +115,8 @@ def _explain(chosen):
             *texts,
             first_declared=declared[0],
             second_declared=declared[1],
+            first_program=chosen.first_program,
+            second_program=chosen.second_program,
             noise=math.radians(chosen.noise),
         )
     except (ValueError, UnicodeDecodeError) as error:
@@ -126,6 +133,9 @@ def _explain(chosen):
         if found.verdict == "named":
             print("It is mended by (NumPy and SciPy; `second` is one pose)")
             print(f"    {mend.python_line(found.chains[0])}")
+            print("in C++ with Eigen, as the first program's matrix,")
+            print(f"    {mend.cpp_line(found.chains[0])}")
+            print(f"for the matrices are {mend.formula(found.chains[0])}.")
         if chosen.all:
             for chain in found.chains[1:]:
                 print("or: " + "; ".join(chain.words() or ["both mean the same"]))
@@ -144,4 +154,6 @@ def as_data(explanation):
         "others": [chain.words() for chain in explanation.chains[1:]],
         "further pose": explanation.further_pose,
         "mended by": mend.python_line(explanation.chains[0]) if explanation.verdict == "named" else "",
+        "mended in C++ by": mend.cpp_line(explanation.chains[0]) if explanation.verdict == "named" else "",
+        "formula": mend.formula(explanation.chains[0]) if explanation.verdict == "named" else "",
     }

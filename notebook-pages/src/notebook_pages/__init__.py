@@ -14,6 +14,7 @@ from . import (
     first_view,
     fonts,
     install,
+    lecture,
     lite,
     live,
     mathematics,
@@ -33,7 +34,18 @@ from . import (
 
 
 def setup(app):
-    pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress, subject_index)
+    pages = (
+        execution,
+        fonts,
+        mathematics,
+        alternative_text,
+        accessible,
+        questions,
+        exercises,
+        progress,
+        lecture,
+        subject_index,
+    )
     for module in (
         exam,
         *pages,

@@ -7,6 +7,7 @@ knows whose they are: none of them is graded, and a person is asked.
 
 import csv
 import datetime
+import io
 import os
 import re
 import unicodedata
@@ -539,7 +540,8 @@ def _rows(path):
         raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
     text = decoded(text)
     first = text.split("\n", 1)[0]
-    reader = csv.reader(text.splitlines(), delimiter=max(",;\t", key=first.count))
+    # Not at every sign that ends a line somewhere: students choose their names, and would begin a line of theirs.
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:
@@ -550,7 +552,7 @@ def _rows(path):
         yield number, dict(zip(header, (cell.strip() for cell in cells), strict=False))
 
 
-def decoded(data):
+def decoded(data: bytes) -> str:
     """The text of a table, in whichever encoding a spreadsheet left it."""
     for mark, encoding in ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
         if data.startswith(mark):
