@@ -26,7 +26,7 @@ WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, i
 FIELDS = ("kind", "page", "anchor", "number", "title", "about", "weight", "asked")
 KINDS = ("page", "section", "term", "function", "exercise", "example", "equation")
 SYNONYMS = Path("synonyms.yml")
-LONGEST_SENTENCE = 84
+LONGEST_SENTENCE = 76
 LITTLE = 0.5  # what counts no more than this, is found by its title alone
 ASKED = 0.8  # what a place counts at least that readers ask for in words of their own
 #: Sections of every chapter: nobody looks for them by their name.
