@@ -526,9 +526,11 @@ class _Answer(_Page):
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         try:
             stays = deed_of_form[self.get_argument("form", "decision")](cluster, comment, why)
-        except Collision as error:
-            self.set_status(409)
-            self.show_cluster(cluster, filters, collision=error, comment=comment, why=why)
+        except (Collision, OSError) as error:
+            full = isinstance(error, OSError)
+            self.set_status(507 if full else 409)
+            shown = Collision(f"It could not be written: {error.strerror or error}.") if full else error
+            self.show_cluster(cluster, filters, collision=shown, comment=comment, why=why)
             return
         # On to the one that came next, though the list may be shorter now.
         later = order[order.index(name) + 1 :] if name in order else []

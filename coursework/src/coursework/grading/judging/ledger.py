@@ -16,6 +16,7 @@ import csv
 import datetime
 import getpass
 import hashlib
+import io
 import json
 import math
 import os
@@ -23,7 +24,7 @@ import secrets
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 from ..locks import lock
 from ..submissions.identity import decoded
@@ -576,9 +577,10 @@ class Ledger:
                     raise Collision(f"Somebody else changed what “{one.line}” is worth in the meantime.")
 
     @contextlib.contextmanager
-    def _alone(self) -> Iterator[BinaryIO]:
+    def _alone(self) -> Iterator[io.FileIO]:
         """Keep other writers away, and know what they have written."""
-        with open(self.path, "ab+") as file:
+        # Without a buffer: what a full disk refused is not written once more when the file is closed.
+        with open(self.path, "ab+", buffering=0) as file:
             lock(file)
             file.seek(0)
             whole = file.read()
@@ -595,10 +597,15 @@ class Ledger:
             self.read()
             yield file
 
-    def _write(self, file: BinaryIO, events: Sequence[Event]) -> None:
-        file.write(b"".join(_line(one) for one in events))
-        file.flush()
-        os.fsync(file.fileno())
+    def _write(self, file: io.FileIO, events: Sequence[Event]) -> None:
+        lines, whole = memoryview(b"".join(_line(one) for one in events)), file.seek(0, os.SEEK_END)
+        try:
+            while lines:
+                lines = lines[file.write(lines) :]
+            os.fsync(file.fileno())
+        except OSError:
+            file.truncate(whole)  # who is told that it was not written finds nothing of it
+            raise
         self.events += events
 
     def merge(self, path: Path) -> tuple[list[Event], list[tuple[Decision, Decision]]]:
@@ -827,7 +834,8 @@ def _fitting_rows(
 def _rows(path: Path, column: str) -> Iterator[tuple[int, dict[str, str]]]:
     text = decoded(path.read_bytes())
     first = text.split("\n", 1)[0]
-    reader = csv.reader(text.splitlines(keepends=True), delimiter=max(",;\t", key=first.count))
+    # Not at every sign that ends a line somewhere: students choose some of the words, and would begin a line of theirs.
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     if column not in header or not ("id" in header or {"student", "question"} <= set(header)):
         raise ValueError(
