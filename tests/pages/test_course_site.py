@@ -9,7 +9,6 @@ import zipfile
 
 import nbformat
 import pytest
-from places import REPOSITORY
 from test_live import ELSEWHERE
 
 from coursework.authoring import publish
@@ -22,10 +21,10 @@ PAGE = "exercises/first-steps"
 
 
 def run(folder, *arguments):
-    environment = os.environ | {"NOTEBOOK_PAGES_FETCHED": str(REPOSITORY), "NO_COLOR": "1"}
     done = subprocess.run(
-        [sys.executable, "-m", "coursework", *arguments], cwd=folder, env=environment, capture_output=True, text=True
-    )
+        [sys.executable, "-m", "coursework", *arguments],
+        cwd=folder, env=os.environ | {"NO_COLOR": "1"}, capture_output=True, text=True,
+    )  # fmt: skip
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 
@@ -93,5 +92,8 @@ def test_what_cannot_be_published_is_said(course, tmp_path, monkeypatch):
     monkeypatch.setattr(publish.metadata, "entry_points", lambda **wanted: [])
     with pytest.raises(AuthorError, match="notebook-pages"):
         publish.publish(found, tmp_path / "site")
+    monkeypatch.setenv("NOTEBOOK_PAGES_FETCHED", str(tmp_path))
+    with pytest.raises(RuntimeError, match="make setup"):
+        pages.publish({"format": 1}, tmp_path / "book", tmp_path / "site")
     with pytest.raises(ValueError, match="format 2"):
         pages.publish({"format": 2}, tmp_path / "book", tmp_path / "site")

@@ -15,6 +15,8 @@ from pathlib import Path
 
 import nbformat
 
+#: The folder that `make setup` fetches into, where this is a working copy.
+WORKING_COPY = Path(__file__).resolve().parents[3]
 SETTINGS = Path(__file__).with_name("course.yml")
 #: Of what is handed over: see ``parts_of`` in ``coursework.authoring.publish``.
 FORMAT = 1
@@ -42,9 +44,17 @@ def publish(parts, workshop, site):
     """
     if parts["format"] != FORMAT:
         raise ValueError(f"the parts of the course are of format {parts['format']}; these pages are made of {FORMAT}")
+    fetched = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", WORKING_COPY)).resolve()
+    if not (fetched / "node_modules" / "katex").is_dir():
+        raise RuntimeError(
+            f"What pages are made with is not in {fetched}: KaTeX, the typefaces, Python for browsers. `make setup` in "
+            "the repository of notebook-pages fetches them; NOTEBOOK_PAGES_FETCHED names its folder."
+        )
     workshop, site = Path(workshop).resolve(), Path(site).resolve()
     write_book(parts, workshop)
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(_places(workshop / "packages"))}
+    environment = os.environ | {
+        "NOTEBOOK_PAGES_FETCHED": str(fetched), "PYTHONPATH": os.pathsep.join(_places(workshop / "packages"))
+    }  # fmt: skip
     done = subprocess.run([sys.executable, "-m", "notebook_pages.build"], cwd=workshop, env=environment)
     if done.returncode:
         raise RuntimeError("The pages of the course were not made: see above.")
