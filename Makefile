@@ -31,7 +31,7 @@ help:
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"
 	@echo "make anywhere   compare all numbers with those of other processors, and with WebAssembly"
-	@echo "make mutants    change the mathematics in thousands of places, and see which change no test notices (hours)"
+	@echo "make mutants    change the mathematics and the checking in thousands of places, and see which change no test notices (hours)"
 	@echo "make renew-pins newest versions of all that is installed"
 	@echo "make benchmark  compare with other libraries"
 	@echo "make clean      remove what was built, not what was set up"
@@ -133,6 +133,8 @@ anywhere: $(VENV)/ready-test setup
 mutants: $(VENV)/ready-mutants setup
 	@$(RUN) -m mutmut run
 	@$(RUN) -m mutmut results
+	@cd coursework && ../$(RUN) -m mutmut run
+	@cd coursework && ../$(RUN) -m mutmut results
 
 renew-pins: setup
 	@$(RUN) -m notebook_pages.pins

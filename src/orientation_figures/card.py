@@ -3,7 +3,7 @@
 import textwrap
 from pathlib import Path
 
-from .conventions import PROGRAMS
+from orientation_workbench.programs import WITH_CODE
 
 COMMAND = "python -m orientation_figures.card"
 SETTINGS = {"svg.hashsalt": "convention card", "svg.fonttype": "path", "pdf.fonttype": 42}
@@ -39,7 +39,7 @@ QUESTIONS = (
 def rows():
     """What the card says of each program: its name, its convention, and a line of code for each form."""
     found = []
-    for program, facts in PROGRAMS.items():
+    for program, facts in WITH_CODE.items():
         scalar = f"scalar {facts['scalar']}" if facts["scalar"] else "no quaternions"
         lines = []
         for form, line in facts["lines"].items():

@@ -9,6 +9,7 @@ from pathlib import Path
 from .mismatch import mend
 from .mismatch.explanation import explain, sentences
 from .mismatch.table import COUNTS, KINDS
+from .programs import PROGRAMS
 
 #: What ``orientation explain`` ends with.
 EXIT_CODES = {"same": 0, "named": 1, "undecided": 2, "unrelated": 2}
@@ -40,6 +41,10 @@ def _add_explain(commands):
     parser.add_argument("--all", action="store_true", help="every other reading that fits, too")
     parser.add_argument("--noise", type=float, default=0.0, metavar="DEGREES", help="what the two may differ by anyway")
     for side in ("first", "second"):
+        parser.add_argument(
+            f"--{side}", dest=f"{side}_program", metavar="PROGRAM",
+            help=f"the program that gave the {side} numbers, as far as its manual is known here: {', '.join(PROGRAMS)}",
+        )  # fmt: skip
         parser.add_argument(
             f"--{side}-is", action="append", default=[], metavar="WHAT",
             help=f"what is known of the {side} numbers: a kind ({', '.join(COUNTS)}) or a choice such as "
@@ -110,6 +115,8 @@ def _explain(chosen):
             *texts,
             first_declared=declared[0],
             second_declared=declared[1],
+            first_program=chosen.first_program,
+            second_program=chosen.second_program,
             noise=math.radians(chosen.noise),
         )
     except (ValueError, UnicodeDecodeError) as error:

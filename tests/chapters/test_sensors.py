@@ -19,6 +19,10 @@ def cells(name):
     return json.loads((REPOSITORY / "chapters" / f"{name}.ipynb").read_text("utf8"))["cells"]
 
 
+#: The chapter on what was the second half of it.
+FILTERS = "orientation-filters"
+
+
 def found(word, name="orientation-from-sensors"):
     """Code and print of the one cell whose code holds the word."""
     [cell] = [cell for cell in cells(name) if cell["cell_type"] == "code" and re.search(word, "".join(cell["source"]))]
@@ -64,7 +68,7 @@ def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():
         return np.degrees(np.arccos(mean @ last / np.linalg.norm(mean) / np.linalg.norm(last)))
 
     stretches = [(start, start + 0.5 * k) for k in (1, 2, 3, 4) for start in np.arange(0, 2.1 - 0.5 * k, 0.5)]
-    for line in found("nothing removed")[1].splitlines()[2:6]:
+    for line in found("nothing removed", FILTERS)[1].splitlines()[2:6]:
         gain, nothing, _, low, high, worse, count = numbers(line)
         assert abs(left(gain, 0) - nothing) < 0.06
         removed = [
@@ -82,7 +86,7 @@ def test_eigenvector_and_decomposition_agree_to_rounding():
 
 
 def test_a_claim_is_tested_with_all_that_the_filter_is_told_and_over_twenty_draws():
-    rows = {line[:25].strip(): numbers(line[25:]) for line in found("def groups")[1].splitlines()[1:]}
+    rows = {line[:28].strip(): numbers(line[28:]) for line in found("def groups", FILTERS)[1].splitlines()[1:]}
     errors, innovations = ({name: row[k : k + 3] for name, row in rows.items()} for k in (0, 3))
     middle, low, high = errors["the truth"]
     assert low < 6.1 and 5.7 < middle < 6.4  # the first second lies above
@@ -112,7 +116,7 @@ def test_innovations_are_what_the_filter_claims_only_if_it_knows_its_instruments
 
 
 def test_no_setting_of_the_filter_on_the_recording_is_said_to_be_right():
-    rows = [numbers(line) for line in found("it       normalised squares")[1].splitlines()[2:]]
+    rows = [numbers(line) for line in found("it       normalised squares", FILTERS)[1].splitlines()[2:]]
     assert len(rows) >= 5
     for by_force, by_field, inclination, remains, claims, force, field, alike in rows:
         assert 1.4 < inclination < 2.3 and 0 < by_force <= by_field and remains > 0.5 and claims > 0.5

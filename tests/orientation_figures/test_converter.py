@@ -21,8 +21,9 @@ from scipy.spatial.transform import Rotation
 
 import orientation
 from orientation_figures import card
-from orientation_figures.conventions import FORMS, OTHER, PROGRAMS
 from orientation_figures.moving import ConverterFigure, bundle
+from orientation_workbench.programs import FORMS, OTHER
+from orientation_workbench.programs import WITH_CODE as PROGRAMS
 
 NODE = Path(sys.executable).with_name("node")
 APPLY = """

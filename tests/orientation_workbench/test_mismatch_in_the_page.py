@@ -1,13 +1,15 @@
 """The search of the page and that of Python say the same of the same text."""
 
+import itertools
 import json
 import random
 import subprocess
 
 import numpy as np
 import pytest
+from more_threads import PASTED
 from places import REPOSITORY
-from test_mismatch import BAD, QUATERNIONS, SPELLINGS, both_sides, known, printed, random_chain
+from test_mismatch import BAD, QUATERNIONS, SPELLED, SPELLINGS, both_sides, known, printed, random_chain
 
 from notebook_pages.paths import NODE
 from orientation import quaternion_from_dcm, random_orientations, simple_dcm
@@ -19,9 +21,10 @@ PROGRAM = """
 import { readFileSync } from 'node:fs';
 import { explain, mendingLine } from '%s';
 const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
-console.log(JSON.stringify(cases.map(({ first, second, declared, noise }) => {
+console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs }) => {
   try {
-    const found = explain(first, second, table, { firstDeclared: declared[0], secondDeclared: declared[1], noise });
+    const found = explain(first, second, table, { firstDeclared: declared[0], secondDeclared: declared[1], noise,
+      firstProgram: programs[0], secondProgram: programs[1] });
     return { verdict: found.verdict, faults: found.faults, left: found.chains.length, residual: found.residual,
       further: found.furtherPose, mended: found.verdict === 'named' ? mendingLine(found.chains[0]) : '' };
   } catch (error) { return { error: error.message }; }
@@ -40,7 +43,8 @@ def in_the_page(cases):
 def in_python(case):
     try:
         found = explain(case["first"], case["second"], first_declared=case["declared"][0],
-                        second_declared=case["declared"][1], noise=case["noise"])  # fmt: skip
+                        second_declared=case["declared"][1], noise=case["noise"],
+                        first_program=case["programs"][0], second_program=case["programs"][1])  # fmt: skip
     except ValueError as error:
         return {"error": str(error)}
     return {"verdict": found.verdict, "faults": list(found.faults), "left": len(found.chains),
@@ -48,8 +52,8 @@ def in_python(case):
             "mended": mend.python_line(found.chains[0]) if found.verdict == "named" else ""}  # fmt: skip
 
 
-def case(first, second, declared=({}, {}), noise=0.0):
-    return {"first": first, "second": second, "declared": list(declared), "noise": noise}
+def case(first, second, declared=({}, {}), noise=0.0, programs=("", "")):
+    return {"first": first, "second": second, "declared": list(declared), "noise": noise, "programs": programs}
 
 
 def mixtures(count, seed):
@@ -71,6 +75,14 @@ def special():
     for spelling in QUATERNIONS.values():
         parts = dict(zip("wxyz", (f"{entry:.6f}" for entry in quaternion_from_dcm(dcm))))
         yield case(spelling.format(**parts), printed([dcm], 6))
+    for one in PASTED:
+        yield case(one["first"], one["second"], one["known"])
+    for text in SPELLED.values():
+        yield case(text, printed([dcm], 6))
+    for first, second in itertools.product(
+        ("ROS tf2 (C++)", "Unity", "COLMAP", "nerfstudio"), ("PX4", "Unreal", "COLMAP")
+    ):
+        yield case(printed(quaternion_from_dcm(poses[:2])), printed(poses[:2]), programs=(first, second))
     for text, _ in BAD.values():
         yield case(text, "1 0 0 0")
     yield case("roll: 0.1\npitch: 0.2\nyaw: 0.3", "0.3 0.2 0.1", ({}, {"sequence": "zyx"}))

@@ -1,11 +1,8 @@
 """The bench for recordings: what it must find, on simulated instruments with one thing wrong and on real ones."""
 
-import io
-import json
-import zipfile
-
 import numpy as np
 import pytest
+from formats import DEG, FORMS, GRAVITY, recording
 from places import REPOSITORY
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
@@ -14,9 +11,12 @@ from simulated_recordings import FAULTS, NAMES, as_text, faulty, simulate
 from orientation import MultiplicativeKalmanFilter, dcm_from_rotation_vector
 from orientation_workbench.command import main
 from orientation_workbench.recording import RecordingError, examine
+from orientation_workbench.recording.allan import allan_deviation, noise_of
 from orientation_workbench.recording.content import read_content
+from orientation_workbench.recording.field import fit_ellipsoid
 from orientation_workbench.recording.judged import chi_square_bounds
 from orientation_workbench.recording.motion import ASSIGNMENTS, dcm_of_quaternions, readings
+from orientation_workbench.recording.report import as_code
 from orientation_workbench.recording.table import read_tables
 
 DATA = REPOSITORY / "src" / "orientation_recordings" / "data"
@@ -134,114 +134,40 @@ def test_scrambled_conventions_are_found(ways):
 # --- reading ----------------------------------------------------------------------------------------
 
 
-def sensor_logger():
-    """A zip of one table for each sensor, z before y before x, beside settings: as Sensor Logger writes it."""
-    recording, content = simulate(4), io.BytesIO()
-    with zipfile.ZipFile(content, "w") as archive:
-        for file, kind in (
-            ("Gyroscope", "gyroscope"),
-            ("Accelerometer", "accelerometer"),
-            ("Magnetometer", "magnetometer"),
-        ):
-            rows = [
-                f"{1.7e18 + 1e9 * time:.0f},{time:.6f},{z:.6f},{y:.6f},{x:.6f}"
-                for time, (x, y, z) in zip(recording["time"], recording[kind], strict=True)
-            ]
-            archive.writestr(f"{file}.csv", "\n".join(["time,seconds_elapsed,z,y,x", *rows]))
-        archive.writestr("Metadata.csv", "version,device\n3,phone\n")
-    return content.getvalue()
-
-
-def phyphox():
-    """Blanks and units in the headings, semicolons and decimal commas."""
-    units = {"Gyroscope": "rad/s", "Acceleration": "m/s^2", "Magnetic field": "µT"}
-    names = ["Time (s)", *(f"{one} {axis} ({unit})" for one, unit in units.items() for axis in "xyz")]
-    text = as_text(simulate(4), names)
-    return text.replace(",", ";").replace(".", ",").encode()
-
-
-def drone():
-    """Lines of several kinds, each beginning with its name, as ArduPilot's logs are as text."""
-    recording = simulate(4)
-    lines = [
-        "FMT, 1, 2, IMU, Qffffff, TimeUS, GyrX, GyrY, GyrZ, AccX, AccY, AccZ",
-        "FMT, 1, 2, MAG, Qfff, TimeUS, MagX, MagY, MagZ",
-    ]
-    for time, gyr, acc, mag in zip(
-        *(recording[key] for key in ("time", "gyroscope", "accelerometer", "magnetometer")), strict=True
-    ):
-        lines.append(f"IMU, {1e6 * time:.0f}, " + ", ".join(f"{one:.6f}" for one in (*gyr, *acc)))
-        lines.append(f"MAG, {1e6 * time:.0f}, " + ", ".join(f"{10 * one:.2f}" for one in mag))
-    return "\n".join(lines).encode()
-
-
-def robot():
-    """As `rostopic echo -p` writes it: a percent sign, nanoseconds, a frame's name, and the orientation first."""
-    recording = simulate(4)
-    names = ["%time", "field.header.seq", "field.header.frame_id", *(f"field.orientation.{one}" for one in "xyzw")]
-    names += [f"field.{one}.{axis}" for one in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
-    lines = [",".join(names)]
-    for k, time in enumerate(recording["time"]):
-        numbers = [*np.roll(recording["quaternion"][k], -1), *recording["gyroscope"][k], *recording["accelerometer"][k]]
-        lines.append(f"{1.7e18 + 1e9 * time:.0f},{k},imu_link," + ",".join(f"{one:.7f}" for one in numbers))
-    return "\n".join(lines).encode()
-
-
-def no_headings():
-    return "\n".join(as_text(simulate(4), quaternion=True).replace(",", "\t").splitlines()[1:]).encode()
-
-
-def javascript():
-    recording, entries = simulate(4), []
-    for k, time in enumerate(recording["time"]):
-        for sensor in ("gyroscope", "accelerometer", "magnetometer"):
-            x, y, z = recording[sensor][k].round(6)
-            entries.append({"sensor": sensor, "seconds_elapsed": time, "x": x, "y": y, "z": z})
-    return json.dumps(entries).encode()
-
-
-def gravity_apart():
-    """As some telephones have it: acceleration without gravity, and gravity by itself; z before y before x."""
-    recording, names = simulate(4), ["seconds_elapsed"]
-    up = recording["truth"].inv().apply([0, 0, 9.80665])
-    for stem in ("gyroscope_", "gravity_", "accelerometer_"):
-        names += [stem + axis for axis in "zyx"]
-    names += ["orientation_qz", "orientation_qy", "orientation_qx", "orientation_qw"]
-    rows = np.column_stack(
-        [
-            recording["time"],
-            recording["gyroscope"][:, ::-1],
-            up[:, ::-1],
-            (recording["accelerometer"] - up)[:, ::-1],
-            recording["quaternion"][:, ::-1],
-        ]
-    )
-    return "\n".join([",".join(names), *(",".join(f"{one:.7f}" for one in row) for row in rows)]).encode()
-
-
-def shimmer():
-    """Three lines above the numbers: names with what they are at their ends, kinds, and units."""
-    recording = simulate(4)
-    names = [f"Shimmer_4F_{kind}_{axis}_CAL" for kind in ("Gyro", "Accel_LN", "Mag") for axis in "XYZ"]
-    head = ["sep=\t", "\t".join(["Shimmer_4F_Timestamp_CAL", *names]), "\t".join(["CAL"] * 10)]
-    head.append("\t".join(["ms", *["deg/s"] * 3, *["m/(s^2)"] * 3, *["local_flux"] * 3]))
-    scaled = recording | {"time": 1000 * recording["time"]}
-    return "\n".join([*head, *as_text(scaled).replace(",", "\t").splitlines()[1:]]).encode()
-
-
-FORMS = [sensor_logger, phyphox, drone, robot, no_headings, javascript, gravity_apart, shimmer]
-
-
 @pytest.mark.parametrize("form", FORMS)
 def test_many_forms_hold_one_recording(form):
-    recording = simulate(4)
-    found = read_content(form(), form.__name__)
-    expected = {"gyroscope", "accelerometer"} | ({"magnetometer"} if form not in (robot, gravity_apart) else set())
-    assert expected <= set(found.groups), found.groups.keys()
-    assert np.median(np.diff(found.groups["gyroscope"].time)) == pytest.approx(0.01, rel=1e-3)
-    for kind in expected:
-        scale = 10 if form is drone and kind == "magnetometer" else 1
-        assert np.abs(found.groups[kind].values / scale - recording[kind]).max() < 0.011, kind
+    """Loaded without a word to help, each sensor is the one that it is, along the right axes, sample by sample."""
+    given, true = form(), recording()
+    found = read_content(given.content, "recording")
+    assert set(found.groups) == set(given.scales), {kind: group.names for kind, group in found.groups.items()}
+    assert found.counted == given.counted
+    if not given.counted:
+        assert np.median(np.diff(found.groups["gyroscope"].time)) == pytest.approx(0.01, rel=1e-3)
+    for kind, allowed in (("gyroscope", 0.02), ("accelerometer", 0.02), ("magnetometer", 0.06)):
+        if kind in given.scales:
+            off = found.groups[kind].values / given.scales[kind] - true[kind]
+            assert np.abs(off).max() < allowed, (kind, found.groups[kind].names)
+    if "quaternion" in given.scales:
+        values = found.groups["quaternion"].values
+        first, last = (np.abs(np.roll(values, k, axis=1) - true["quaternion"]).max() for k in (0, 1))
+        assert min(first, last) < 1e-3
+
+
+UNITS = {DEG: "°/s", 1.0: "rad/s"}, {1: "m/s²", 1 / GRAVITY: "g"}
+
+
+@pytest.mark.sampled(4)
+@pytest.mark.parametrize("form", FORMS)
+def test_units_and_axes_of_many_forms_come_out_by_themselves(form):
+    given = form()
+    found = examine(given.content, "recording", None if not given.counted else 100, judged=False)
+    words = {verdict.about: verdict.words for verdict in found.verdicts}
+    of_rates, of_forces = (given.scales[kind] for kind in ("gyroscope", "accelerometer"))
+    assert words["unit of the gyroscope"].startswith(UNITS[0].get(of_rates, "counts"))
+    assert words["unit of the accelerometer"].startswith(UNITS[1].get(of_forces, "counts"))
+    assert words["axes of the gyroscope"] == "those of the accelerometer"
+    assert found.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.03)
+    assert not [verdict for verdict in found.verdicts if verdict.light == "wrong"], str(found)
 
 
 def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
@@ -279,6 +205,18 @@ def test_the_command_writes_report_and_corrected_recording(tmp_path, capsys):
     again = np.genfromtxt(tmp_path / "right.csv", delimiter=",", names=True)
     assert len(again) == len(simulate(4, poses=4)["time"]) and "qw" in again.dtype.names
     assert NAMES[0] == "time (s)"
+
+
+def test_the_code_of_the_report_corrects_the_file_as_the_bench_did():
+    given = simulate(6) | {}
+    given["gyroscope"] = np.degrees(given["gyroscope"])[:, [1, 0, 2]] * [1, -1, 1] / 1.3 + 2
+    given["magnetometer"] = given["magnetometer"] @ np.diag([0.8, 1, 1.2]) + [20, -10, 5]
+    found = examine(as_text(given, digits=9), judged=False)
+    names = {kind: given[kind] for kind in ("gyroscope", "accelerometer", "magnetometer")}
+    exec(as_code(found), names)
+    for name in ("rates", "forces", "field"):
+        assert np.allclose(names[name], getattr(found, name), atol=1e-6), name
+    assert np.abs(names["rates"] - simulate(6)["gyroscope"]).max() < np.radians(5)
 
 
 # --- numbers ----------------------------------------------------------------------------------------
@@ -329,6 +267,69 @@ def test_iron_is_refused_where_the_turns_do_not_suffice():
     }
     found = examine(as_text(recording), judged=False)
     assert found.light("offset of the magnetometer") == "cannot tell", str(found)
+
+
+def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused():
+    """As far as lengths can: up to a turn. Gravity, which stands beside it, tells that the dip is one then."""
+    for seed, poses in ((1, 9), (2, 9), (3, 3)):
+        given = spoilt_by_iron(seed, poses, np.random.default_rng(seed))
+        rows = np.column_stack([given["time"], given["accelerometer"], given["magnetometer"]])
+        names = ["time (s)", *NAMES[4:]]
+        lines = [",".join(f"{value:.5f}" for value in row) for row in rows]
+        found = examine("\n".join([",".join(names), *lines]), judged=False)
+        if poses < 9:
+            assert found.light("offset of the magnetometer") in ("cannot tell", "wrong")
+            continue
+        ups = given["truth"].inv().apply([0, 0, 1])
+        dips = np.degrees(np.arcsin((found.field * ups).sum(axis=1) / np.linalg.norm(found.field, axis=1)))
+        lengths = np.linalg.norm(found.field, axis=1)
+        assert lengths.std() < 0.02 and dips.std() < 2.5
+        assert found.light("axes of the magnetometer") == "cannot tell"
+
+
+@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.long)])
+def test_an_ellipsoid_is_found_up_to_a_turn_or_refused(count):
+    random = np.random.default_rng(count)
+    for seed in range(count):
+        turn = Rotation.random(random_state=seed).as_matrix()
+        soft = turn @ np.diag(random.uniform(0.7, 1.4, 3)) @ turn.T
+        ways = random.normal(size=(60, 3))
+        ways = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        values = 45 * ways @ soft.T + random.uniform(-60, 60, 3) + 0.2 * random.normal(size=(60, 3))
+        fit = fit_ellipsoid(values)
+        found = (values - fit.offset) @ fit.shape.T / fit.strength
+        off = np.linalg.norm(np.cross(found, ways), axis=1) / np.linalg.norm(found, axis=1)
+        assert np.degrees(np.arcsin(off)).max() < 2 and fit.uncertainty < 0.03
+        level = ways * [1, 1, 0.01]  # all the poses lie nearly in a plane
+        level = 45 * level / np.linalg.norm(level, axis=1, keepdims=True)
+        assert fit_ellipsoid(level @ soft.T + 20 + 0.2 * random.normal(size=(60, 3))) is None
+
+
+def test_allan_deviation_is_that_of_the_formulas():
+    """Of white noise, and of a random walk; against means over stretches taken one by one."""
+    random, step = np.random.default_rng(3), 0.02
+    white = random.normal(size=(20_000, 2))
+    times, deviations = allan_deviation(white, step)
+    few = times < 4
+    assert np.allclose(deviations[few], np.sqrt(step / times[few])[:, None], rtol=0.15)
+    walk = np.cumsum(random.normal(size=(40_000, 8)), axis=0) * np.sqrt(step)
+    times, deviations = allan_deviation(walk, step)
+    some = (times > 10 * step) & (times < 8)
+    assert np.allclose(np.sqrt((deviations[some] ** 2).mean(axis=1)), np.sqrt(times[some] / 3), rtol=0.2)
+    size = round(times[5] / step)
+    means = walk[: len(walk) // size * size].reshape(-1, size, 8).mean(axis=1)
+    plain = np.sqrt((np.diff(means, axis=0) ** 2).mean(axis=0) / 2)
+    assert np.allclose(plain, deviations[5], rtol=0.1)
+
+
+def test_noise_is_read_off_where_it_shows_and_not_where_a_hand_is():
+    random, step = np.random.default_rng(5), 0.01
+    time = step * np.arange(30_000)
+    white = 0.05 / np.sqrt(step) * random.normal(size=(len(time), 3))
+    noise = noise_of(*allan_deviation(white, step))
+    assert np.allclose(noise.angle_random_walk, 0.05, rtol=0.05) and np.isnan(noise.bias_instability).all()
+    hand = np.sin(2 * np.pi * 3 * time + random.normal(size=(3, 1))).T * 2
+    assert np.isnan(noise_of(*allan_deviation(white / 20 + hand, step)).angle_random_walk).all()
 
 
 def test_innovations_of_an_honest_filter_stay_within_their_bounds():

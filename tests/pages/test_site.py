@@ -361,7 +361,11 @@ def test_the_search_finds_what_engineers_call_it(browser, site):
             assert any("glossary" in address or "chapters/" in address for address in first), (name, first)
 
 
-WITH_RECORDINGS = ("chapters/orientation-from-sensors.html", "chapters/cases-from-practice.html")
+WITH_RECORDINGS = (
+    "chapters/orientation-from-sensors.html",
+    "chapters/orientation-filters.html",
+    "chapters/cases-from-practice.html",
+)
 
 
 def test_take_away_menu(browser, site):

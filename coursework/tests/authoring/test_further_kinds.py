@@ -1,6 +1,7 @@
 """Numbers with their units, orders, lists that are right in part, texts that a person reads, plots of Matplotlib."""
 
 import random
+from types import SimpleNamespace
 
 import nbformat
 import pytest
@@ -18,7 +19,7 @@ from coursework.checking import questions
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.units import PREFIXES, WITH_PREFIX, UnknownUnit, unit
 from coursework.grading.judging import marking
-from coursework.grading.review import Class, application
+from coursework.grading.review import Class
 
 KNOWN = {
     "kN m": 1000,
@@ -240,7 +241,8 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
 def test_the_rubric_stands_on_the_page_where_a_person_judges(tmp_path):
     graded = Class(tmp_path)
     graded.questions = {"trial/one": marking.about(make("free text", ESSAY, rubric=RUBRIC), b"any secret")}
-    assert list(application(graded, "ada", 8000).settings["rubrics"]["trial/one"]) == RUBRIC
+    lines = graded.lines(SimpleNamespace(question="trial/one"), {"marks": {"trial/one": {}}})
+    assert [line for line, *_ in lines] == RUBRIC
 
 
 # --- a plot as a figure ----------------------------------------------------------------------------

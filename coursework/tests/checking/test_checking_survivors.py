@@ -6,6 +6,7 @@ import sympy as sm
 from coursework.authoring.author import question
 from coursework.checking import evaluate
 from coursework.checking.plain import to_plain
+from coursework.checking.units import BASE, UnknownUnit, unit
 
 # ---- about three digits ------------------------------------------------------------------------
 
@@ -41,3 +42,34 @@ def test_complex_numbers_are_dearer(operation, count):
 
     assert not isinstance(last(["rational", "1", "2"]), Exception)
     assert isinstance(last(["constant", "ImaginaryUnit"]), evaluate.TooLarge)
+
+
+# ---- units ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "same"), [("\u03bcm", "\u00b5m"), ("um", "\u00b5m"), ("\u2126", "\u03a9"), ("k\u2126 A", "kV")]
+)
+def test_signs_that_look_alike_are_one_unit(text, same):
+    assert unit(text) == unit(same)
+
+
+@pytest.mark.parametrize(
+    ("text", "quoted"),
+    [
+        ("\u00b0C", "\u00b0C"),
+        ("2 \u00b0F", "2 \u00b0F"),
+        ("J/\u00b0F", "\u00b0F"),
+        ("m & s", " & s"),
+        ("furlong", "furlong"),
+    ],
+)
+def test_what_is_no_unit_is_quoted(text, quoted):
+    with pytest.raises(UnknownUnit) as error:
+        unit(text)
+    assert str(error.value) == quoted
+
+
+def test_an_angle_times_a_unit_is_no_temperature():
+    assert unit("\u00b0 C").exponents == unit("C").exponents
+    assert len(unit("rad").exponents) == len(BASE)

@@ -533,7 +533,7 @@ def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypa
     (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
     shown = io.StringIO()
     grade(course / "submissions", tmp_path / "out", solutions=course / "solutions", roster=tmp_path / "roster.csv",
-          only_list=True, show=shown)  # fmt: skip
+          dry_run=True, show=shown)  # fmt: skip
     said = shown.getvalue()
     assert "right <- right/turns.ipynb  (turns; the name of the folder)" in said
     assert "? <- endless/turns.ipynb: Nobody in the roster fits." in said and "1 handed in nothing: absent" in said
@@ -805,11 +805,11 @@ def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
     mine, other = Ledger(copied), Ledger(tmp_path / "other")
     mine.add(found, "turns/sum", 1, who="Ann")
     other.add(found, "turns/about-x", 1, who="Bea")
-    assert mine.merge(other.path) == (1, []) and mine.merge(other.path) == (0, [])
+    assert mine.merge(other.path) == (other.events, []) and mine.merge(other.path) == ([], [])
     assert {key[2]: one.who for key, one in mine.current().items()} == {"turns/sum": "Ann", "turns/about-x": "Bea"}
     other.add(found, "turns/sum", 0, who="Bea")
-    number, ((first, second),) = mine.merge(other.path)
-    assert (number, first.who, second.who) == (1, "Ann", "Bea")
+    new, ((first, second),) = mine.merge(other.path)
+    assert (len(new), first.who, second.who) == (1, "Ann", "Bea")
     other.path.write_text(other.path.read_text() + "{}\n")
     with pytest.raises(ValueError, match="line 3: this is no decision"):
         mine.merge(other.path)

@@ -16,6 +16,7 @@ from coursework.authoring.author import AuthorError
 from coursework.checking import evaluate
 from coursework.checking.plain import read_plain, to_plain
 from coursework.checking.variants import names_of_variants, numbers_of_variants, siblings_of, variant_of
+from coursework.grading import review
 from coursework.grading.execution import isolation
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import NothingToGrade, grade, regrade
@@ -341,6 +342,10 @@ def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, ou
         "student-0", graded.without_names("asked Student-03, student-030 and STUDENT-04").replace("student-030", "")
     )
     assert graded.without_names(None) is None
+    graded.records[0]["identity"] = {"name": "Mark O'Neill", "email": "m.oneill@uni.example"}
+    graded._know_names()
+    alias = graded.aliases[graded.records[0]["student"]]
+    assert graded.without_names("Mark, m.oneill and Neill mark") == f"{alias}, {alias} and {alias} mark"
 
 
 def test_what_holds_right_answers_is_read_by_nobody_else(out):
@@ -436,7 +441,7 @@ def test_who_handed_in_a_damaged_file_is_not_said_to_have_handed_in_nothing(begu
     (tmp_path / "in" / "cem").mkdir()
     (tmp_path / "in" / "cem" / "work.zip").write_bytes(b"PK damaged")
     (tmp_path / "roster.csv").write_text("student\nann\nben\ncem\ndora\n")
-    options = {"solutions": begun.place / "solutions", "roster": tmp_path / "roster.csv", "only_list": True}
+    options = {"solutions": begun.place / "solutions", "roster": tmp_path / "roster.csv", "dry_run": True}
     said = io.StringIO()
     grade(tmp_path / "in", tmp_path / "out", show=said, **options)
     assert "1 handed in nothing: dora." in said.getvalue()
@@ -587,3 +592,16 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
     assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
     assert out.read(STUDENTS[0], "beams")["marks"]["beams/twice"]["points"] == 3
+
+
+def test_the_figure_of_a_question_is_seen_in_the_review(tmp_path):
+    """It stands in the students' notebook as a picture, beside variants, too."""
+    made = beams(WEIGHTS)
+    figure = "from types import SimpleNamespace as S\nS(alt='A beam', picture=lambda: '<svg width=\"9\"></svg>')"
+    made.cells.insert(2, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
+    made.cells.insert(7, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
+    nbformat.write(made, tmp_path / "beams.ipynb")
+    found = questions_of(tmp_path / "beams.ipynb", b"any")
+    for about in (found[NAME], found["beams/twice"]):
+        assert '<img alt="A beam"' in review._as_asked(about)
+    assert "A beam carries 12 N" in review._as_asked(found[NAME]) or "N twice" in review._as_asked(found[NAME])

@@ -20,7 +20,7 @@ from coursework.grading import grade as grading
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import secret
-from coursework.grading.judging.ledger import Collision, Ledger
+from coursework.grading.judging.ledger import REJECTED, Collision, Ledger, with_decisions
 from coursework.grading.judging.term import read_rules
 from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.laboratory import Policies
@@ -248,6 +248,32 @@ def with_crashes(dice, monkeypatch, do):
     raise AssertionError("the last attempt has no crash")
 
 
+STORIES = (
+    "stays", "collides", "again", "taken back", "both, and the second taken back", "appeal waits", "appeal rejected",
+    "appeal accepted", "appeal accepted, and taken back",
+)  # fmt: skip
+
+
+def appeal_by_hand(ann, ben, record, name, decided, story):
+    """The student appeals against what Ann decided, and Ben settles it; Ann comes too late."""
+    raised = ann.appeal(record, name, "Look again.", who="Ann")
+    if story == "appeal waits":
+        return
+    ben.read()
+    (found,) = ben.standing().appeals[raised.key]
+    if story == "appeal rejected":
+        ben.appeal(record, name, "I did.", state=REJECTED, of=found, after=found.last, who="Ben")
+    else:
+        ben.append(
+            [ben.decision(record, name, 1, who="Ben", after=decided.id, appeal=found.id, comment="So it is.")],
+            collisions=True,
+        )
+    with pytest.raises(Collision):
+        ann.appeal(record, name, "No.", state=REJECTED, of=found, after=found.last, who="Ann")
+    if story == "appeal accepted, and taken back":
+        ben.take_back([record], name, "Ben")
+
+
 def judge_by_hand(term, store, dice):
     """Two people decide: on appeals, one upon the other's decision, and some take their own back."""
     ann, ben = Ledger(store.folder), Ledger(store.folder)
@@ -261,7 +287,11 @@ def judge_by_hand(term, store, dice):
         one = ann.decision(record, name, first, who="Ann")
         ann.append([one], collisions=True)
         term.decided[key] = first
-        story = dice.choice(["stays", "collides", "again", "taken back", "both, and the second taken back"])
+        story = dice.choice(STORIES)
+        if story.startswith("appeal"):
+            appeal_by_hand(ann, ben, record, name, one, story)
+            if story == "appeal accepted":
+                term.decided[key] = 1
         if story == "collides":
             with pytest.raises(Collision):
                 ben.append([ben.decision(record, name, second, who="Ben")], collisions=True)
@@ -310,10 +340,9 @@ def go_through(term, monkeypatch, cache):
     with_crashes(dice, monkeypatch, lambda: regrade(out, solutions=solutions, policies=policies, show=options["show"]))
     # Some hand in again, and all is graded once more.
     for (student, name), work in dice.sample(sorted(term.work.items(), key=lambda one: one[0]), 3):
+        if work.function != "twice":
+            term.decided.pop((student, name, "twice"), None)  # it belonged to the answer that was looked at
         work.function = "twice"
-        for key in [key for key in term.decided if key[:2] == (student, name)]:
-            if key[2] == "twice":
-                del term.decided[key]  # it belonged to the answer that was looked at
     rewrite(term)
     with_crashes(dice, monkeypatch, lambda: grade(place / "class", out, **options))
     judge_by_hand(term, Store(out), dice)
@@ -353,8 +382,9 @@ def final_marks(term, store):
 def decide_what_waits(store):
     """What no program could decide is decided in the end; nothing of it was right."""
     ledger = Ledger(store.folder)
+    standing = ledger.standing()
     for record in store.all():
-        for name, mark in record["marks"].items():
+        for name, mark in with_decisions(record, standing)["marks"].items():
             if mark["outcome"] == "undecided":
                 assert mark["note"] == "numbers of another edition", mark
                 ledger.add(record, name, 0, who="Ann")

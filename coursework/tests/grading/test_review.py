@@ -194,7 +194,7 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
     assert mark["messages"] == ["Copied?", "Half of it."] and mark["before"]["outcome"] == "wrong"
     assert regrade(out, solutions=graded / "solutions") == []
     page = (out / "feedback" / "was-copied" / "turns.html").read_text()
-    assert "Decided by a person" in page and "Half of it." in page and "appeal" not in page
+    assert "Decided by a person" in page and "Half of it." in page and "appeal" not in page.partition("<main>")[2]
     # It is judged, and can be found as such, and taken back.
     with Served(out) as served:
         assert first_of(served, "decided") == cluster.id
@@ -368,7 +368,7 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
         pages = [served.ask(f"/{served.secret}/answer/{one}")[1] for one in dict.fromkeys(answers)]
     assert len(pages) == 3
     for page in pages:
-        (student,) = re.findall(r"bends upwards, says (\w+)", page.partition("The code of")[0])
+        (student,) = re.findall(r"bends upwards, says (\w+)", page.partition("The cells of")[0])
         beside, _, code = page.partition("<form")
         assert beside.count('<img src="data:image/png;base64,') == (student != "eve") and "<img" not in code
         assert f'<p class="prose">It bends upwards, says {student}.</p>' in beside

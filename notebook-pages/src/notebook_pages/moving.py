@@ -4,11 +4,15 @@ A cell that ends in a moving figure of the book puts out a still, with the state
 a widget for Jupyter. The page shows the still, and one script for each kind of figure brings it to life.
 """
 
+import os
+import subprocess
+from hashlib import sha256
 from pathlib import Path
 
 from docutils import nodes
 
-from .paths import REGISTERED, named
+from .page import ESBUILD
+from .paths import NODE, NODE_MODULES, REGISTERED, named
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
 # On a narrow screen the drawing of a figure stays in view, under the bar at the top of the page.
@@ -47,16 +51,30 @@ def add_scripts(app, pagename, templatename, context, doctree):
     if not kinds:
         return
     bundle = named(REGISTERED["figures"])
-    texts = {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
-    texts |= {f"{kind}.js": bundle.script(kind) for kind in kinds}
-    later = {name: text for kind in kinds for name, text in bundle.beside(kind).items()}
     folder = Path(app.outdir) / "_static" / "moving"
     folder.mkdir(parents=True, exist_ok=True)
+    texts, later = {}, {}
+    if own := [kind for kind in kinds if kind not in bundle.BUILT]:
+        texts |= {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
+        texts |= {f"{kind}.js": bundle.script(kind) for kind in own}
+        later |= {name: text for kind in own for name, text in bundle.beside(kind).items()}
+    for kind in set(kinds) & set(bundle.BUILT):
+        script = built(bundle.BUILT[kind])
+        name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"  # no older page meets a newer world
+        later[name] = script
+        texts |= {f"{kind}.js": bundle.LOADER.replace("FILE", name), f"{kind}.css": bundle.built_style(kind)}
     for name, text in (texts | later).items():
         (folder / name).write_text(text, "utf8")
         if name.endswith(".js") and name not in later:
             app.add_js_file(f"moving/{name}", loading_method="defer")
-    context["styles"] = [*context["styles"], "moving/moving.css"]
+    context["styles"] = [*context["styles"], *(f"moving/{name}" for name in texts if name.endswith(".css"))]
+
+
+def built(script):
+    """The text of a script with all that it imports, those of npm's packages among it."""
+    command = [NODE, ESBUILD, "--bundle", "--minify", "--format=iife", "--log-level=warning", script]
+    environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
+    return subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
 def setup(app):

@@ -14,6 +14,23 @@ FOLDER = Path(__file__).parent
 SHARED = ("formulas", "mathematics", "glyphs", "model", "address", "shared")
 #: Modules that one figure alone needs, before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
+#: Figures that use packages of npm: what their page loads when they are seen is built from this script, and each has a
+#: style sheet of its own.
+BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
+#: Fetches that, when the page stands and the figure is in sight.
+LOADER = """(() => {
+const source = new URL('FILE', document.currentScript.src).href;
+const begin = () => {
+  const seen = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    seen.disconnect();
+    document.head.append(Object.assign(document.createElement('script'), { src: source }));
+  });
+  for (const figure of document.querySelectorAll('.world')) seen.observe(figure);
+};
+if (document.readyState === 'complete') begin(); else addEventListener('load', () => setTimeout(begin));
+})();
+"""
 IMPORT = re.compile(r"^(?:import|export) \{([^}]*)\} from .*;\n", re.MULTILINE)
 IMPORT_FROM = re.compile(r"^import \{([^}]*)\} from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
@@ -72,3 +89,8 @@ def beside(name):
 def style():
     """Return the style sheet of the controls; that of the drawings comes with each still."""
     return (FOLDER / "moving.css").read_text("utf8")
+
+
+def built_style(kind):
+    """Return the style sheet of a figure of ``BUILT``."""
+    return (BUILT[kind].parent.parent / "essay.css").read_text("utf8")

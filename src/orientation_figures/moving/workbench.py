@@ -5,11 +5,13 @@ import json
 import traitlets
 
 from orientation_workbench.mismatch.table import COUNTS, SEQUENCES, whole_table
+from orientation_workbench.programs import PROGRAMS
 
 from .figure import MovingFigure
 from .state import Numbers
 
 UNKNOWN = "not known"
+NOTHING_KNOWN = {"program": UNKNOWN, "kind": UNKNOWN, "sequence": UNKNOWN}
 #: Cases as they are met, each with what both programs gave: two poses of a camera in its gimbal.
 EXAMPLES = {
     "A quaternion, scalar last for scalar first": (
@@ -37,15 +39,15 @@ def _as_the_page_has_it(data):
 
 
 class Known(traitlets.TraitType):
-    """What is known of one side's numbers: a dictionary with a kind, and for Euler angles a sequence."""
+    """What is known of one side's numbers: a dictionary with a program, a kind, and for Euler angles a sequence."""
 
     def validate(self, obj, value):
-        if not isinstance(value, dict) or set(value) - {"kind", "sequence"}:
+        if not isinstance(value, dict) or set(value) - set(NOTHING_KNOWN):
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: a dictionary with 'kind' and 'sequence' was expected"
+                f"{self.name} is {value!r}: a dictionary with 'program', 'kind' and 'sequence' was expected"
             )
-        known = {"kind": UNKNOWN, "sequence": UNKNOWN} | value
-        for name, allowed in (("kind", COUNTS), ("sequence", SEQUENCES)):
+        known = NOTHING_KNOWN | value
+        for name, allowed in (("program", PROGRAMS), ("kind", COUNTS), ("sequence", SEQUENCES)):
             if known[name] != UNKNOWN and known[name] not in allowed:
                 raise traitlets.TraitError(f"{self.name} has {name} {known[name]!r}; there is {', '.join(allowed)}")
         return known
@@ -59,7 +61,7 @@ class WorkbenchFigure(MovingFigure):
     first, second : str
         What each program gave, as :func:`orientation_workbench.explain` reads it.
     first_is, second_is : dict
-        What is known of each: ``kind`` and ``sequence``, each ``'not known'`` at first.
+        What is known of each: ``program``, ``kind`` and ``sequence``, each ``'not known'`` at first.
     noise : float
         Degrees by which the two may differ besides rounding.
 
@@ -74,8 +76,8 @@ class WorkbenchFigure(MovingFigure):
     room = (800, 1010)
     first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(sync=True, state=True)
     second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(sync=True, state=True)
-    first_is = Known({"kind": UNKNOWN, "sequence": UNKNOWN}).tag(sync=True, state=True)
-    second_is = Known({"kind": UNKNOWN, "sequence": UNKNOWN}).tag(sync=True, state=True)
+    first_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)
+    second_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)
     noise = Numbers(0.0, (), 30.0, smallest=0.0).tag(sync=True, state=True)
     table = traitlets.Dict(_as_the_page_has_it(whole_table()), read_only=True).tag(sync=True, told=True)
     examples = traitlets.Dict(_as_the_page_has_it(EXAMPLES), read_only=True).tag(sync=True, told=True)

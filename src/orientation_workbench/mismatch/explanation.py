@@ -9,13 +9,15 @@ import numpy as np
 
 from orientation import dcm_from_axis_angle, nearest_dcm, random_orientations
 
+from ..programs import expected_of, program_named
 from . import search, table
 from .meaning import dcms_from_numbers, numbers_from_dcms
 from .mounting import mountings
 from .text import Poses, read_poses
 
-#: Of so many readings it is seen whether a further pose tells them apart; more are told apart by a pose of three turns.
-LOOKED_AT = 300
+#: Of so many chains, and of so many readings of the first side, it is seen whether a further pose tells the chains
+#: apart; more are told apart by a pose of three turns.
+LOOKED_AT, READ_AS = 300, 60
 
 
 class Explanation(NamedTuple):
@@ -44,6 +46,8 @@ def explain(
     *,
     first_declared: dict | None = None,
     second_declared: dict | None = None,
+    first_program: str | None = None,
+    second_program: str | None = None,
     noise: float = 0.0,
 ) -> Explanation:
     """Name the mix-up between two programs from the numbers that they give for the same poses.
@@ -56,6 +60,9 @@ def explain(
     first_declared, second_declared : dict, optional
         What is known of a program, such as ``{'kind': 'Euler angles', 'sequence': 'zyx'}``: the groups
         and choices of :data:`orientation_workbench.mismatch.table.KINDS`.
+    first_program, second_program : str, optional
+        Names of :data:`orientation_workbench.programs.PROGRAMS`, or a part of one. What a program's manual says of its
+        numbers is no mix-up then; if both are named, neither is what their manuals differ by.
     noise : float
         Radians by which the two may differ besides rounding.
 
@@ -66,7 +73,8 @@ def explain(
     Raises
     ------
     ValueError
-        If numbers cannot be read as orientations, or the two sides hold different numbers of poses.
+        If numbers cannot be read as orientations, the two sides hold different numbers of poses, or a program is not
+        known.
 
     Examples
     --------
@@ -74,10 +82,19 @@ def explain(
     >>> explain('0.7304 0.3604 0.2402 0.5284', '0.3604 0.2402 0.5284 0.7304').faults
     ('in the second numbers the scalar part stands last (x, y, z, w)',)
     """
-    sides = []
-    for name, given, declared in (("first", first, first_declared), ("second", second, second_declared)):
-        poses = given if isinstance(given, Poses) else read_poses(given, name, (declared or {}).get("kind"), noise)
-        sides.append((poses, declared or {}))
+    sides, programs = [], []
+    for name, given, declared, program in (
+        ("first", first, first_declared, first_program),
+        ("second", second, second_declared, second_program),
+    ):
+        declared = declared or {}
+        poses = given if isinstance(given, Poses) else read_poses(given, name, declared.get("kind"), noise)
+        manual = expected_of(program_named(program)) if program else None
+        if manual and "kind" not in declared and len(poses.kinds) == 2:
+            poses = poses._replace(kinds=(manual["three numbers"],))
+        programs.append(manual)
+        # What stands in the text goes before what the manual says, and what the reader says before both.
+        sides.append((poses, (manual["declared"] if manual else {}) | poses.declared | declared))
     counts = [len(poses.numbers) for poses, _ in sides]
     if sorted(counts) == [1, 3]:  # three rows that are no matrix were taken for three triples of angles
         side = counts.index(3)
@@ -88,15 +105,15 @@ def explain(
         raise ValueError(
             f"the first side holds {counts[0]} poses and the second {counts[1]}: they must be the same poses, in order"
         )
-    one, other = (
-        search.side(poses.kinds, poses.numbers, poses.half, poses.declared | declared) for poses, declared in sides
-    )
-    chains, tried = search.chains(one, other, noise)
+    one, other = (search.side(poses.kinds, poses.numbers, poses.half, declared) for poses, declared in sides)
+    expected = table.expected_relation(*programs, [poses.kinds[0] for poses, _ in sides])
+    chains, tried = search.chains(one, other, noise, expected)
     classes = _classes(chains, sides) or mountings(one, other, noise)[:1]
-    return _verdict(classes, one, other, sides, tried, noise)
+    readings = list({id(chain.first): chain.first for chain in chains}.values())
+    return _verdict(classes, readings, one, other, sides, tried, noise)
 
 
-def _verdict(classes, one, other, sides, tried, noise):
+def _verdict(classes, readings, one, other, sides, tried, noise):
     poses = len(sides[0][0].numbers)
     if not classes:
         return Explanation("unrelated", (), None, (), "", poses)
@@ -105,7 +122,7 @@ def _verdict(classes, one, other, sides, tried, noise):
     expected = tried * min(1.0, (1.5 * tolerance) ** 3 / (6 * math.pi)) ** poses
     decided = len(classes) == 1 and (best.faults == 0 or expected < search.BY_CHANCE)
     verdict = "same" if best.faults == 0 else "named" if decided else "undecided"
-    further = "" if decided else _further_pose(classes, sides)
+    further = "" if decided else _further_pose(classes, readings, sides)
     residual = math.degrees(2 * math.asin(min(1.0, best.residual / 2)))
     return Explanation(verdict, tuple(best.words()), residual, tuple(classes), further, poses)
 
@@ -182,14 +199,15 @@ def _generic_dcms():
 # --- the pose that decides --------------------------------------------------------------------------------
 
 
-def _further_pose(chains, sides):
+def _further_pose(chains, readings, sides):
     """Words for a pose, from the last one pasted, at which the chains that are left would disagree.
 
     Whichever chain is true, the thing is turned as the words say; what the first program then gives depends on
-    how its numbers are to be read. So the pose must decide by each reading of the first side that is left.
+    how its numbers are to be read. So the pose must decide by each reading of the first side that fits, also by those
+    that say the same as another.
     """
-    chains = chains[:LOOKED_AT]
-    readings = {id(chain.first): chain.first for chain in chains}.values()
+    if len(chains) > LOOKED_AT or len(readings) > READ_AS:
+        return table.FURTHER_POSES[-1][0]
     for words, turns in table.FURTHER_POSES:
         if all(_tells_apart(chains, _turned(reading, sides[0][0].numbers[-1:], turns)) for reading in readings):
             return words

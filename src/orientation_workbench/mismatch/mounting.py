@@ -5,14 +5,14 @@ import numpy as np
 from orientation import dcm_from_two_directions, nearest_dcm, rotation_vector_from_dcm
 
 from .search import SINGLE_PRECISION, Chain
-from .table import MOST_FAULTS, SAME_AXES
+from .table import MOST_FAULTS, SAME_AXES, of_both
 
 #: So many poses leave something over to check by, once a constant turn has been found from them.
 ON_ONE_SIDE, ON_BOTH_SIDES = 3, 4
 
 
 def mountings(first, second, noise):
-    """All chains with a constant turn on one side or on both that fit every pose, simplest first.
+    """All chains with a constant turn on one side or on both that fit every pose, cheapest first.
 
     From :math:`\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}` at three poses or more follow the constant
     turns :math:`\\mathbf{L}` and :math:`\\mathbf{R}`. What is found from some poses must hold at all of them.
@@ -22,8 +22,9 @@ def mountings(first, second, noise):
     found = []
     for i, reading in enumerate(first.readings):
         for j, other in enumerate(second.readings):
+            in_both, rarity, _ = of_both(reading, other)
             for inverse in (False, True):
-                faults = reading["faults"] + other["faults"] + inverse
+                faults = in_both + inverse
                 if faults >= MOST_FAULTS:
                     continue
                 start = np.swapaxes(first.dcms[i], -1, -2) if inverse else first.dcms[i]
@@ -35,10 +36,9 @@ def mountings(first, second, noise):
                     if gap <= tolerance and both <= MOST_FAULTS:
                         relation = {"inverse": inverse, "hand": False, "body": SAME_AXES, "world": SAME_AXES,
                                     "body turn": body, "world turn": world}  # fmt: skip
-                        rarity = reading["rarity"] + other["rarity"]
                         found.append(Chain(reading, other, relation, both, rarity, float(gap)))
                         break
-    return sorted(found, key=lambda chain: (chain.faults, chain.rarity))
+    return sorted(found, key=lambda chain: chain.cost)
 
 
 def _constant_turns(start, end):

@@ -27,20 +27,22 @@ class Chain(NamedTuple):
     rarity: float
     residual: float
 
+    @property
+    def cost(self):
+        """One for each fault, and how rare they are. Tenths: what addition leaves besides decides nothing."""
+        return round(self.faults + self.rarity, 6)
+
     def words(self):
         """The faults, each as a phrase."""
-        sides = [
-            f"in the {side} numbers {words}"
-            for side, reading in (("first", self.first), ("second", self.second))
-            for words in reading["words"]
-        ]
+        *_, sides = table.of_both(self.first, self.second)
         return sides + table.words_of(self.relation, (self.first["kind"], self.second["kind"]))
 
 
 @functools.cache
-def _relations(mirrored):
-    """The relations, and their two signed permutations as stacks."""
-    entries = table.relations(mirrored)
+def _relations(mirrored, expected):
+    """The relations, by how far each is from the expected one, and their two signed permutations as stacks."""
+    aside = table.left_handed(expected[1]) != table.left_handed(expected[2])
+    entries = [table.beyond(entry, expected) for entry in table.relations(mirrored != aside)]
     left = np.array([table.axes_matrix(entry["body"]) for entry in entries], float)
     right = np.array([np.transpose(table.axes_matrix(entry["world"])) for entry in entries], float)
     inverse = np.array([entry["inverse"] for entry in entries])
@@ -85,7 +87,7 @@ def side(kinds, numbers, half, declared):
 
 
 def _price(reading):
-    return reading["faults"], reading["rarity"]
+    return round(reading["faults"] + reading["rarity"], 6)
 
 
 def _reading_key(reading):
@@ -102,24 +104,29 @@ def _reading_key(reading):
     return reading["kind"], tuple(sorted(choices.items()))
 
 
-def chains(first, second, noise):
-    """All chains that fit every pose, simplest first; and how many were tried.
+def chains(first, second, noise, expected=table.expected_relation(None, None, ())):
+    """All chains that fit every pose, cheapest first; and how many were tried.
 
     Parameters
     ----------
     first, second : Side
     noise : float
         Radians by which the orientations may differ besides the rounding of what is printed.
+    expected : tuple
+        What the programs differ by in any case: :func:`orientation_workbench.mismatch.table.expected_relation`.
     """
     hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
-    relations, left, right, inverse, relation_faults = _relations(hands[0] != hands[1])
+    relations, left, right, inverse, relation_faults = _relations(hands[0] != hands[1], expected)
     left_first, fits, tried = np.swapaxes(first.dcms, -1, -2), [], 0
-    faults = [np.array([reading["faults"] for reading in one.readings]) for one in (first, second)]
+    faults, shared = (
+        [np.array([reading[what] for reading in one.readings]) for one in (first, second)]
+        for what in ("faults", "shared")
+    )
     # Signed permutations and the transpose leave the sum of fourth powers alone: most pairs fall here.
     fourth = [(one.dcms**4).sum(axis=(2, 3)) for one in (first, second)]
     for i, reading in enumerate(first.readings):
         tolerance = np.maximum(first.doubts[i] + second.doubts, SINGLE_PRECISION) + noise
-        left_over = table.MOST_FAULTS - faults[0][i] - faults[1]
+        left_over = table.MOST_FAULTS - faults[0][i] - faults[1] + 2 * np.bitwise_count(shared[0][i] & shared[1])
         tried += int(sum((relation_faults <= allowed).sum() for allowed in left_over[left_over >= 0]))
         near = (np.abs(fourth[0][i] - fourth[1]) <= 12 * tolerance[:, None]).all(axis=1) & (left_over >= 0)
         for budget in set(left_over[near].tolist()):
@@ -136,8 +143,8 @@ def chains(first, second, noise):
                     gap = np.abs(left[k] @ start @ right[k] - second.dcms[j]).max()
                     if gap <= tolerance[j]:
                         relation, other = relations[k], second.readings[j]
-                        total = [sum(one[what] for one in (reading, other, relation)) for what in ("faults", "rarity")]
+                        in_both, rare, _ = table.of_both(reading, other)
+                        total = in_both + relation["faults"], rare + relation["rarity"]
                         fits.append(Chain(reading, other, relation, *total, float(gap)))
-    # Rarities are tenths: what addition in another order leaves of them decides nothing. The words decide the rest.
-    fits.sort(key=lambda chain: (chain.faults, round(chain.rarity, 6), "; ".join(chain.words())))
+    fits.sort(key=lambda chain: (chain.cost, "; ".join(chain.words())))
     return fits, tried

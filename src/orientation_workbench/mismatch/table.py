@@ -11,14 +11,18 @@ A *reading* says what the numbers of one side mean: it is one choice from each g
 
 with signed permutations :math:`\\mathbf{P}` (axes of the body, which are the rows) and
 :math:`\\mathbf{Q}` (axes of the world, the columns). Each departure from what was to be expected is a
-*fault*. A chain with fewer faults comes first; among as many, ``rarity`` decides: what many programs do
-comes before what none is known to do. Page, command and Python read this table; nothing of it is said twice.
+*fault*. What both sides do alike, such as to write the scalar last, is none. A chain costs one for each fault and its
+``rarity`` besides, which is 0 for what many programs do and above 1 for what none is known to do; the cheapest chain
+comes first. Page, command and Python read this table; nothing of it is said twice.
 """
 
 import functools
 import itertools
 
 from orientation import PROPER_EULER, SEQUENCES
+
+from ..programs import PROGRAMS, expected_of
+from .spelling import whole_spelling
 
 #: The most faults that one chain may have.
 MOST_FAULTS = 3
@@ -31,7 +35,7 @@ def choice(value, words, rarity, faults=1):
 
 
 def _orders():
-    known = {"wxyz": 0.0, "xyzw": 0.0, "wzyx": 0.4, "zyxw": 0.4, "xywz": 0.5}
+    known = {"wxyz": 0.0, "xyzw": 0.0, "wzyx": 1.1, "zyxw": 1.1, "xywz": 1.0}
     words = {
         "wxyz": "the scalar part stands first (w, x, y, z)",
         "xyzw": "the scalar part stands last (x, y, z, w)",
@@ -39,7 +43,7 @@ def _orders():
     for letters in itertools.permutations("wxyz"):
         order = "".join(letters)
         yield choice(
-            order, words.get(order, f"the four numbers are stored as {', '.join(order)}"), known.get(order, 0.7)
+            order, words.get(order, f"the four numbers are stored as {', '.join(order)}"), known.get(order, 1.2)
         )
 
 
@@ -120,6 +124,9 @@ BOOK = {
     "unit": "radians",
     "place of the angle": "last",
 }
+
+#: Departures that are no mix-up between two programs if both make them.
+SHARED = (("order", "xyzw"), ("axes of the turns", "space fixed"), ("unit", "degrees"), ("place of the angle", "first"))
 
 #: The inverse orientation, in the words of what is pasted.
 INVERSE = {
@@ -203,18 +210,20 @@ def relations(mirrored=False):
     """
     best = {}
     all_axes = [(names, axes_choice(names, True), axes_choice(names, False)) for names, _ in signed_axes()]
-    hand = {names: _is_left_handed(names) for names, *_ in all_axes}
+    hand = {names: left_handed(names) for names, *_ in all_axes}
     for inverse in (False, True):
-        for body, body_choice, _ in all_axes:
-            for world, _, world_choice in all_axes:
+        for body, of_body, of_world in all_axes:
+            for world, *others in all_axes:
                 if (hand[body] != hand[world]) != mirrored:
                     continue
                 both_reversed = body == world and _reverses_one(body)
                 if both_reversed:
                     faults, rarity = 1, 0.1
                 else:
-                    faults = body_choice["faults"] + world_choice["faults"]
-                    rarity = body_choice["rarity"] + world_choice["rarity"]
+                    # The rows of an inverse are the world's axes: they are said of the world.
+                    two = (of_world, others[0]) if inverse else (of_body, others[1])
+                    faults = sum(one["faults"] for one in two)
+                    rarity = sum(one["rarity"] for one in two)
                 faults += inverse
                 if faults > MOST_FAULTS:
                     continue
@@ -228,7 +237,8 @@ def relations(mirrored=False):
     ]
 
 
-def _is_left_handed(names):
+def left_handed(names):
+    """Whether axes so named make a triad of the other hand."""
     order = "".join(name[-1] for name in names)
     odd = order not in ("xyz", "yzx", "zxy")
     return odd != (sum(name.startswith("-") for name in names) % 2 == 1)
@@ -249,9 +259,64 @@ def _opposite(name):
     return name[1:] if name.startswith("-") else f"-{name}"
 
 
+#: Directions and their opposites.
+OPPOSITES = {"forward": "back", "left": "right", "up": "down", "back": "forward", "right": "left", "down": "up"}
+
+
+def _axes_of(second, first):
+    """How one names its axes in the words of the other: ``('x', '-y', '-z')`` for FRD out of FLU."""
+    if not (first and second):
+        return SAME_AXES
+    return tuple(
+        "xyz"[first.index(way)] if way in first else "-" + "xyz"[first.index(OPPOSITES[way])] for way in second
+    )
+
+
+def expected_relation(first, second, kinds):
+    """What two programs differ by as their manuals have it.
+
+    A relation, as inverse and the axes of both sides, and whether the second program's rows are the world's axes.
+
+    Parameters
+    ----------
+    first, second : dict or None
+        As :func:`orientation_workbench.programs.expected_of` gives them; without both nothing is expected.
+    kinds : tuple of two str
+        What the numbers of each side are.
+    """
+    if not (first and second):
+        return False, SAME_AXES, SAME_AXES, False
+    axes = _axes_of(second["body"], first["body"]), _axes_of(second["world"], first["world"])
+    turned = [kind in side["inverse"] for kind, side in zip(kinds, (first, second))]
+    # The second program's matrix is the transpose of what is meant: then world and body change places.
+    return turned[0] != turned[1], *(axes[::-1] if turned[1] else axes), turned[1]
+
+
+def beyond(relation, expected):
+    """A relation that departs from the expected one as ``relation`` departs from none; its words are kept."""
+    inverse, body, world, rows_are_the_worlds = expected
+    if relation["inverse"]:
+        body, world = world, body
+    return relation | {
+        "inverse": relation["inverse"] != inverse,
+        "body": _after(relation["body"], body),
+        "world": _after(relation["world"], world),
+        "said": relation | {"rows are the world's": relation["inverse"] != rows_are_the_worlds},
+    }
+
+
+def _after(names, others):
+    """The axes that come of renaming twice: first as ``others`` says, then as ``names`` does."""
+    found = []
+    for name in names:
+        other = others["xyz".index(name[-1])]
+        found.append(_opposite(other) if name.startswith("-") else other)
+    return tuple(found)
+
+
 def words_of(relation, kinds):
     """The faults of a relation, each as a phrase."""
-    said = []
+    relation, said = relation.get("said", relation), []
     if relation["inverse"]:
         said.append(f"one is {INVERSE[kinds[1]]}")
     for whose in ("body", "world"):
@@ -260,7 +325,11 @@ def words_of(relation, kinds):
     if relation["hand"]:
         axis = next(name[-1] for name in relation["body"] if name.startswith("-"))
         return [*said, f"the other hand: {axis} is reversed in the world and on the body"]
-    for names, body in ((relation["body"], True), (relation["world"], False)):
+    swapped = relation.get("rows are the world's", relation["inverse"])
+    for names, body in (
+        (relation["world" if swapped else "body"], True),
+        (relation["body" if swapped else "world"], False),
+    ):
         if words := axes_choice(names, body)["words"]:
             said.append(words)
     return said
@@ -279,10 +348,10 @@ def readings(kind, declared, degrees_likely=False):
         A number is larger than a whole turn in radians: then degrees are to be expected.
     """
     base = BOOK | ({"unit": "degrees"} if degrees_likely else {}) | declared
-    partial = [({}, 0, 0.0, ())]
+    partial = [({}, 0, 0.0, (), ())]
     for group in KINDS[kind]:
         name, longer = group["group"], []
-        for chosen, faults, rarity, words in partial:
+        for chosen, faults, rarity, words, shared in partial:
             for option in group["choices"]:
                 usual = base.get(name) == option["value"]
                 free = name not in base
@@ -290,12 +359,37 @@ def readings(kind, declared, degrees_likely=False):
                 if faults + more > MOST_FAULTS:
                     continue
                 said = () if usual else (option["words"],)
+                like = (name, option["value"])
+                alike = (like,) if more and like in SHARED else ()
                 longer.append(
                     (chosen | {name: option["value"]}, faults + more, rarity + (0 if usual else option["rarity"]),
-                     words + said)
+                     words + said, shared + alike)
                 )  # fmt: skip
         partial = longer
-    return [{"kind": kind, "choices": c, "faults": f, "rarity": r, "words": list(w)} for c, f, r, w in partial]
+    return [
+        {"kind": kind, "choices": chosen, "faults": faults, "rarity": rarity, "words": list(words),
+         "shared": sum(1 << SHARED.index(like) for like in shared)}
+        for chosen, faults, rarity, words, shared in partial
+    ]  # fmt: skip
+
+
+def of_both(first, second):
+    """Faults, rarity and words of the readings of both sides; what both do alike is no fault."""
+    alike = first["shared"] & second["shared"]
+    faults = first["faults"] + second["faults"] - 2 * alike.bit_count()
+    common = [
+        option["words"] for bit, (group, value) in enumerate(SHARED) if alike >> bit & 1
+        for option in _choices(group) if option["value"] == value
+    ]  # fmt: skip
+    words = [
+        f"in the {side} numbers {said}"
+        for side, reading in (("first", first), ("second", second)) for said in reading["words"] if said not in common
+    ]  # fmt: skip
+    return faults, first["rarity"] + second["rarity"] + 0.1 * alike.bit_count(), words
+
+
+def _choices(group):
+    return next(one["choices"] for groups in KINDS.values() for one in groups if one["group"] == group)
 
 
 #: Turns that a reader can make with a thing in the hand: each the words, and the turns about the body's own axes.
@@ -334,6 +428,10 @@ def whole_table():
         "most faults": MOST_FAULTS,
         "kinds": KINDS,
         "book": BOOK,
+        "shared": SHARED,
+        "opposites": OPPOSITES,
+        "programs": {program: expected_of(program) for program in PROGRAMS},
+        "spelling": whole_spelling(),
         "inverse": INVERSE,
         "taught": TAUGHT,
         "further poses": [[words, [list(turn) for turn in turns]] for words, turns in FURTHER_POSES],

@@ -6,18 +6,40 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import spelling
 from .table import COUNTS
 
-NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?=[fFlL]?(?![\w.]))")
-_KEY = re.compile(r"""["']?([A-Za-z_]\w*)["']?\s*[:=]\s*(?=[-+.\d])""")
-_LEFT_OUT = re.compile(
-    r"""["']?\b(position|translation|header|stamp|location|covariance)\b["']?\s*[:=]\s*(\{[^}]*\}|\[[^\]]*\])?""",
-    re.IGNORECASE,
+_FLAGS = re.IGNORECASE | re.MULTILINE | re.ASCII
+_IN_PYTHON = re.compile(r"\$(\d)")
+
+
+def _pattern(text):
+    return re.compile(text, _FLAGS)
+
+
+def _replacing(entries):
+    return [(_pattern(pattern), _IN_PYTHON.sub(r"\\\1", replacement)) for pattern, replacement in entries]
+
+
+NUMBER = _pattern(spelling.NUMBER_IN_TEXT)
+_NAMED, _COMMENT = _pattern(spelling.NAMED), _pattern(spelling.COMMENT)
+_NOT_TURNS, _VALUE_OF_NO_TURN = _pattern(spelling.NOT_TURNS), _pattern(spelling.NOT_TURNS + spelling.VALUE)
+_INNERMOST = _pattern(spelling.INNERMOST)
+_NOT_A_NUMBER, _ARITHMETIC = _pattern(spelling.NOT_A_NUMBER), _pattern(spelling.ARITHMETIC)
+_DEGREES, _RADIANS = _pattern(spelling.DEGREES), _pattern(spelling.RADIANS)
+_ORDERS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_ANGLES]
+_SUM, _PART, _SCALAR = map(_pattern, (spelling.SUM, spelling.PART_OF_A_SUM, spelling.SCALAR_OF_A_SUM))
+_SIGNS, _CLEANING = _replacing(spelling.SIGNS_OF_A_SUM), _replacing(spelling.CLEANING)
+#: Names that numbers come with, in the order in which they are read, and what those names say.
+_NAMES = (
+    (dict(zip("wxyz", range(4))), {"order": "wxyz"}),
+    (
+        {"yaw": 0, "heading": 0, "psi": 0, "pitch": 1, "theta": 1, "roll": 2, "bank": 2, "phi": 2},
+        spelling.YAW_PITCH_ROLL,
+    ),
+    ({"y": 0, "p": 1, "r": 2}, spelling.YAW_PITCH_ROLL),
+    (dict(zip("xyz", range(3))), {}),
 )
-_DECLARATION = re.compile(r"^[^=\n]*\w\s*(\[\d*\]\s*)+=", re.MULTILINE)
-_NOT_A_NUMBER = re.compile(r"(?<![A-Za-z])[-+]?(nan|inf(?:inity)?)(?![A-Za-z])", re.IGNORECASE)
-_NAMES_OF_ANGLES = {"yaw": 0, "heading": 0, "psi": 0, "pitch": 1, "theta": 1, "roll": 2, "bank": 2, "phi": 2}
-WIDTHS = (3, 4, 7, 8, 9, 12, 16)
 
 #: How far the length of a quaternion, or of a row, may be from 1 besides rounding: more is another mistake.
 SLACK = 1e-4
@@ -60,7 +82,7 @@ def read_poses(given, name: str, kind: str | None = None, noise: float = 0.0) ->
         rows, half, declared = _rows_of_text(given, name)
     else:
         rows, half = _rows_of_array(given, name), 0.0
-    numbers = _poses(rows, name, kind)
+    numbers = _poses(rows, name, kind, half)
     if not np.isfinite(numbers).all():
         raise ValueError(f"the {name} side holds a number that is not finite")
     kinds = _kinds(numbers, kind, half + noise, name)
@@ -79,70 +101,91 @@ def _rows_of_array(given, name):
 
 
 def _rows_of_text(text, name):
-    text = text.replace("\u2212", "-").replace("\u2013", "-")
-    text = re.sub(r"(#|//|%).*", "", text)
-    text = _without_places(_DECLARATION.sub(" ", text))
+    for pattern, replacement in _CLEANING:
+        text = pattern.sub(replacement, text)
+    bare = _COMMENT.sub("", text)
+    if NUMBER.search(bare):  # what stands in comments alone was meant
+        text = bare
+    text = _without_places(_decimal_points(text))
     if found := _NOT_A_NUMBER.search(text):
         raise ValueError(f"the {name} side holds {found.group().strip()!r}, which is no number")
+    if found := _ARITHMETIC.search(text):
+        raise ValueError(f"the {name} side holds {found.group().strip()!r}: paste the numbers that it comes to")
+    text = _sums(text)
     if not NUMBER.search(text):
         shown = text.strip()[:40]
         raise ValueError(
             f"the {name} side holds no numbers: {shown!r}" if shown else f"the {name} side is empty: paste its numbers"
         )
-    declared = {"unit": "degrees"} if re.search(r"\u00b0|\bdeg(rees)?\b", text, re.IGNORECASE) else {}
+    declared = {"unit": "degrees"} if _DEGREES.search(text) else {"unit": "radians"} if _RADIANS.search(text) else {}
     half = _half(NUMBER.findall(text))
     labelled = _labelled(text)
     if labelled:
         rows, more = labelled
         return rows, half, declared | more
+    rows = [[float(number) for number in NUMBER.findall(group)] for group in _INNERMOST.findall(text)]
+    rows = [row for row in rows if row]
+    in_brackets = {len(row) for row in rows}
+    if in_brackets not in ({3}, {4}, {9}, {12}, {16}) or sum(map(len, rows)) != len(NUMBER.findall(text)):
+        rows = _rows_of_lines(text)
+    if all(len(row) == 3 for row in rows):
+        declared |= next((more for pattern, more in _ORDERS if pattern.search(text)), {})
+    return rows, half, declared
+
+
+def _rows_of_lines(text):
     rows = []
     for line in re.split(r"[\n;]", text):
         for piece in re.split(r"\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{", line):
             if found := NUMBER.findall(piece):
                 rows.append([float(number) for number in found])
-    return rows, half, declared
+    return rows
+
+
+def _decimal_points(text):
+    """The text with points where it has decimal commas: one in each of three numbers or more, and no point."""
+    groups = re.findall(r"\d[\d,]*\d|\d", text)
+    with_comma = [group for group in groups if "," in group]
+    if re.search(r"\d\.|\.\d", text) or len(with_comma) < 3 or any(group.count(",") > 1 for group in with_comma):
+        return text
+    return re.sub(r"(?<=\d),(?=\d)", ".", text)
+
+
+def _sums(text):
+    """The text with names in the place of i, j and k, where quaternions are written as sums."""
+    if not _SUM.search(text):
+        return text
+    for pattern, replacement in _SIGNS:
+        text = pattern.sub(replacement, text)
+    text = _PART.sub(lambda part: f" {'xyz'['ijk'.index(part[2].lower())]}={part[1]} ", text)
+    return _SCALAR.sub(r" w=\1 ", text)
 
 
 def _without_places(text):
     """The text without what says where or when: of a key that stands alone, also the lines set in below it."""
     kept, below = [], None
-    for line in text.splitlines():
+    for line in _VALUE_OF_NO_TURN.sub(" ", text).split("\n"):
         inset = len(line) - len(line.lstrip())
         if below is not None and line.strip() and inset > below:
             continue
-        below = inset if (found := _LEFT_OUT.search(line)) and not line[found.end() :].strip() else None
-        kept.append(_LEFT_OUT.sub(" ", line))
+        below = inset if (found := _NOT_TURNS.search(line)) and not line[found.end() :].strip() else None
+        kept.append(_NOT_TURNS.sub(" ", line))
     return "\n".join(kept)
 
 
 def _labelled(text):
     """Numbers that come with their names, ``w: 1, x: 0, ...`` or ``roll = ...``; None if they do not."""
-    pairs = [(match.group(1).lower(), NUMBER.match(text, match.end())) for match in _KEY.finditer(text)]
-    pairs = [(key.removeprefix("q").lstrip("_"), float(found.group())) for key, found in pairs if found]
-    keys = [key for key, _ in pairs]
-    for names, order, more in (
-        ("wxyz", "wxyz", {}),
-        (("yaw", "pitch", "roll"), None, {"sequence": "zyx"}),
-        ("xyz", "xyz", {}),
-    ):
-        if order:
-            kept = [(key, value) for key, value in pairs if key in names]
-            place = order.index
-        else:
-            kept = [(key, value) for key, value in pairs if key in _NAMES_OF_ANGLES]
-            place = _NAMES_OF_ANGLES.get
-        size = len(names)
-        if not kept or len(kept) % size or (len(names) == 3 and order and "w" in keys):
+    pairs = [(match[1].lower(), NUMBER.match(text, match.end())) for match in _NAMED.finditer(text)]
+    pairs = [(re.sub(r"^(.*[_.])?q?_*", "", key), float(found[0])) for key, found in pairs if found]
+    for place, more in _NAMES:
+        size = max(place.values()) + 1
+        kept = [(place[key], value) for key, value in pairs if key in place]
+        if not kept or len(kept) % size or (size == 3 and "x" in place and any(key == "w" for key, _ in pairs)):
             continue
-        rows = []
-        for start in range(0, len(kept), size):
-            row = [None] * size
-            for key, value in kept[start : start + size]:
-                row[place(key)] = value
-            if None in row:
-                break
-            rows.append(row)
-        else:
+        rows = [[None] * size for _ in range(len(kept) // size)]
+        for which, (where, value) in enumerate(kept):
+            rows[which // size][where] = value
+        if not any(None in row for row in rows):
             return rows, more
     return None
 
@@ -159,60 +202,65 @@ def _half(found):
     return 0.5 * 10.0**-decimals if decimals > 0 else 0.0
 
 
-def _poses(rows, name, kind):
+def _poses(rows, name, kind, half):
     """Rows of numbers as one array of poses, each of 3, 4 or 9 numbers."""
     widths = {len(row) for row in rows}
     total = sum(map(len, rows))
     width = widths.pop() if len(widths) == 1 else None
-    if width == 3 and kind in (None, "matrix") and len(rows) % 3 == 0 and (kind or _orthogonal(rows, 3)):
+    if width == 3 and kind in (None, "matrix") and len(rows) % 3 == 0 and (kind or _orthogonal(rows)):
         return np.array(rows, float).reshape(-1, 9)
     if width == 4 and kind in (None, "matrix"):
         if len(rows) % 4 == 0 and all(row == [0, 0, 0, 1] for row in rows[3::4]):
             return np.array(rows, float).reshape(-1, 4, 4)[:, :3, :3].reshape(-1, 9)
-        if len(rows) % 3 == 0 and _orthogonal([row[:3] for row in rows], 3):
+        if len(rows) % 3 == 0 and _orthogonal([row[:3] for row in rows]):
             return np.array(rows, float).reshape(-1, 3, 4)[:, :, :3].reshape(-1, 9)
-    if width in WIDTHS and not (width in (3, 4) and kind == "matrix"):
-        return np.array([_one(row, name) for row in rows])
+    if width in (3, 4) and kind != "matrix":
+        return np.array(rows)
+    if width and width > 4 and kind in (None, "quaternion") and (which := _quaternion_among(rows, half)) is not None:
+        return np.array(rows)[:, which : which + 4]
+    if width in (9, 12, 16):
+        return np.array([_nine(row) for row in rows])
     flat = [number for row in rows for number in row]
-    if total in WIDTHS:
-        return np.array([_one(flat, name)])
-    for size in (9, 16):
-        if total % size == 0:
-            return np.array([_one(flat[k : k + size], name) for k in range(0, total, size)])
+    for size in (9, 12, 16) if total > 8 else (3, 4):
+        if total % size == 0 and (size > 4 or total == size):
+            poses = [_nine(flat[k : k + size]) if size > 4 else flat for k in range(0, total, size)]
+            if size > 4 and total != size and not _orthogonal(np.reshape(poses, (-1, 3))):
+                continue
+            return np.array(poses)
+    if total > 4 and kind in (None, "quaternion") and (which := _quaternion_among([flat], half)) is not None:
+        return np.array([flat[which : which + 4]])
     where = "one line" if len(rows) == 1 else f"{len(rows)} lines"
     raise ValueError(
         f"the {name} side holds {total} number{'s' * (total != 1)} in {where}: a pose takes 3 (angles, or a rotation "
-        f"vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation)"
+        f"vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); "
+        f"beside a place, four that stand together and make length 1"
     )
 
 
-def _one(row, name):
-    """One pose without its place, if it has one."""
-    count = len(row)
-    if count in (3, 4, 9):
-        return row
-    if count == 16:
-        matrix = np.array(row).reshape(4, 4)
-        if row[12:] != [0, 0, 0, 1] and [row[3], row[7], row[11], row[15]] == [0, 0, 0, 1]:
-            matrix = matrix.T
-            # Columns are printed one after another; what was printed is what is read.
-            return matrix[:3, :3].T.ravel().tolist()
-        return matrix[:3, :3].ravel().tolist()
-    if count == 12:
-        return np.array(row).reshape(3, 4)[:, :3].ravel().tolist()
-    for part in (row[-4:], row[:4]):  # a place, or a time and a place, before or behind a quaternion
-        if abs(math.hypot(*part) - 1) < 0.01:
-            return part
-    raise ValueError(
-        f"the {name} side holds {count} numbers in a row, as of a place and a quaternion, but no four of them that "
-        f"stand together make length 1: the last four make {math.hypot(*row[-4:]):.4g}"
-    )
+def _nine(row):
+    """The nine entries of a matrix, as printed, out of those of one with a place."""
+    across = {9: 3, 12: 4, 16: 4}[len(row)]
+    return np.array(row).reshape(-1, across)[:3, :3].ravel().tolist()
 
 
-def _orthogonal(rows, size):
-    """Whether each block of rows might be a matrix: its rows of length 1, and at right angles."""
-    array = np.array(rows, float).reshape(-1, size, size)
-    return bool((np.abs(array @ np.swapaxes(array, 1, 2) - np.eye(size)).max(axis=(1, 2)) < 0.1).all())
+def _quaternion_among(rows, half):
+    """Where in each row four numbers of length 1 stand together: last, first, or in one place only."""
+    array = np.array(rows, float)
+    width = array.shape[1]
+    if width in (9, 12, 16) and _orthogonal(np.reshape([_nine(row) for row in rows], (-1, 3))):
+        return None
+    lengths = np.sqrt(np.lib.stride_tricks.sliding_window_view(array**2, 4, axis=1).sum(axis=2))
+    places = np.flatnonzero((np.abs(lengths - 1) < 10 * SLACK + 2 * half).all(axis=0)).tolist()
+    for place in (width - 4, 0):
+        if place in places:
+            return place
+    return places[0] if len(places) == 1 else None
+
+
+def _orthogonal(rows):
+    """Whether each three rows might be a matrix: each of length 1, and at right angles."""
+    array = np.array(rows, float).reshape(-1, 3, 3)
+    return bool((np.abs(array @ np.swapaxes(array, 1, 2) - np.eye(3)).max(axis=(1, 2)) < 0.1).all())
 
 
 def _kinds(numbers, kind, doubt, name):

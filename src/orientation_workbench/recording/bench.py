@@ -6,8 +6,9 @@ import numpy as np
 
 from orientation import dcm_from_body_fixed
 
+from .allan import allan_deviation, noise_of
 from .content import DEGREES, places_by_name, read_content, unit_of_field, unit_of_gravity
-from .field import fit_field
+from .field import FieldFit, fit_ellipsoid, fit_field
 from .judged import Noise, in_blocks, judge
 from .motion import (
     ASSIGNMENTS,
@@ -210,7 +211,10 @@ class _Bench:
                 if kind == "magnetometer":  # a constant part belongs to the instrument, not to the Earth
                     vectors[kind] = vectors[kind] - _centre(vectors[kind])
         units = [1.0] if self.content.counted else list(DEGREES.values())
+        counts = not said and bool((raw == raw.round()).all())
         grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units]))
+        if counts:  # as a chip has them
+            grid = np.radians(np.geomspace(0.002, 0.2, 24))
         if self.content.counted:
             grid = np.geomspace(1e-6, 0.3, 60)
         still = self._quiet(raw)
@@ -231,7 +235,7 @@ class _Bench:
         if fit is not None and fit.margin > 1.12 and fit.shares.min() < 0.9:
             unit = min(DEGREES.values(), key=lambda one: abs(np.log(fit.scale / one)))
             ratio = fit.scale / unit
-            if not 0.4 < ratio < 2.5:
+            if counts or not 0.4 < ratio < 2.5:
                 unit, ratio = fit.scale, 1.0
                 self.say("unit of the gyroscope", YELLOW, f"counts: one is {np.degrees(unit):.4g} °/s", {"rad/s": unit})
             elif said and DEGREES[said] != unit:
@@ -256,6 +260,7 @@ class _Bench:
                 "Turn it about all axes.",
             )
         self.unit = unit
+        self.facts["unit of the gyroscope"] = unit
         self._axes(fits, raw * unit, usual * unit)
 
     def _quiet(self, raw):
@@ -349,6 +354,7 @@ class _Bench:
         if lying:
             parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
             bias, spread = np.median(parts, axis=0), parts.std(axis=0) / np.sqrt(len(parts)) * 1.25
+            self._noise(max(lying, key=lambda one: one.last - one.first))
         poses = [one for one in self.still if one.last - one.first > 10]
         fitted = None
         if "accelerometer" in self.raw and len(poses) >= 3:
@@ -408,8 +414,32 @@ class _Bench:
             self.facts["bias of the gyroscope"] = bias
             self.rates = self.rates - bias
         self.rates = self.rates * scale
+        self.facts["multiplied"] = scale
         if scale != 1.0:
             self.still = stretches(self.time, self.rates)
+
+    def _noise(self, one):
+        """What the Allan deviation of the longest still stretch says."""
+        step = float(np.median(np.diff(self.time)))
+        times, deviations = allan_deviation(np.degrees(self.rates[one.first : one.last]), step)
+        noise = noise_of(times, deviations)
+        self.facts["Allan deviation"] = times, deviations
+        seconds = (one.last - one.first) * step
+        if np.isnan(noise.angle_random_walk).any():
+            words = f"the {seconds:.0f} s in which it lies still do not tell white noise from the rest"
+            self.say("noise of the gyroscope", UNKNOWN, words, {}, "Let it lie for some minutes.")
+            return
+        walk = float(noise.angle_random_walk.max())
+        words = f"angle random walk {walk:.2g} °/√s, {60 * walk:.2g} °/√h"
+        evidence = {"°/√s": noise.angle_random_walk.round(4).tolist()}
+        if np.isnan(noise.bias_instability).all():
+            words += f"; how steady its bias is, {seconds:.0f} s do not tell"
+        else:
+            worst = int(np.nanargmax(noise.bias_instability))
+            words += f"; bias instability {noise.bias_instability[worst]:.2g} °/s, at {noise.time[worst]:.2g} s"
+            evidence["bias instability (°/s)"] = noise.bias_instability.round(5).tolist()
+        self.facts["angle random walk"] = noise.angle_random_walk
+        self.say("noise of the gyroscope", GREEN, words, evidence)
 
     # --- the accelerometer ----------------------------------------------------------------------
 
@@ -421,6 +451,7 @@ class _Bench:
         quiet = np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
         unit, gravity, off = unit_of_gravity(quiet)
         self.forces = raw / gravity
+        self.facts["gravity"] = gravity
         self.say(
             "unit of the accelerometer",
             GREEN if unit[0] != "c" else YELLOW,
@@ -460,25 +491,22 @@ class _Bench:
             return
         raw = self.raw["magnetometer"]
         fit = fit_field(self.time, self.rates, raw) if self.rates is not None else None
-        unit, length = unit_of_field(raw)
-        if fit is None or not fit.uncertainty < 0.3:
-            self.say(
-                "unit of the magnetometer",
-                GREEN,
-                f"{unit}: its values are {length:.3g} long (median)",
-                {"length": round(length, 3)},
-            )
-            known = (
-                "" if fit is None else f": a direction would be uncertain by {np.degrees(min(fit.uncertainty, 3)):.0f}°"
-            )
-            self.say(
-                "offset of the magnetometer",
-                UNKNOWN,
-                f"the turns do not suffice for offset and shape{known}",
-                {},
-                "Turn it slowly through all directions, a figure of eight.",
-            )
+        known = ""
+        if fit is not None and not fit.uncertainty < 0.3:
+            known = f": a direction would be uncertain by {np.degrees(min(fit.uncertainty, 3)):.0f}°"
+            fit = None
+        by_lengths = fit is None
+        if by_lengths:
+            fit = _by_lengths(raw)
+        if fit is None:
+            unit, length = unit_of_field(raw)
+            words = f"{unit}: its values are {length:.3g} long (median)"
+            self.say("unit of the magnetometer", GREEN, words, {"length": round(length, 3)})
+            words = f"neither turns nor lengths suffice for offset and shape{known}"
+            advice = "Turn it slowly through all directions, a figure of eight."
+            self.say("offset of the magnetometer", UNKNOWN, words, {}, advice)
             self.field = raw / length
+            self.facts["strength of the field"] = length
             return
         unit, length = unit_of_field(fit.strength * np.array([[1.0, 0, 0]]))
         self.say(
@@ -489,7 +517,10 @@ class _Bench:
         plain = ASSIGNMENTS[np.argmax(np.einsum("kij,ij->k", ASSIGNMENTS, fit.axes))]
         aside = np.degrees(np.arccos(np.clip((np.trace(plain.T @ fit.axes) - 1) / 2, -1, 1)))
         reference = np.eye(3) if "accelerometer" in self.raw else self.facts.get("axes of the gyroscope", np.eye(3))
-        if np.allclose(plain, reference) or np.allclose(plain, -reference):
+        if by_lengths:
+            words = "lengths alone fit; whether its axes are those of the others they do not tell"
+            self.say("axes of the magnetometer", UNKNOWN, words, {}, "Turn it slowly about all three axes.")
+        elif np.allclose(plain, reference) or np.allclose(plain, -reference):
             self.say(
                 "axes of the magnetometer",
                 GREEN,
@@ -508,6 +539,7 @@ class _Bench:
             "axes of the magnetometer": plain,
             "offset of the magnetometer": fit.offset,
             "shape of the magnetometer": fit.shape,
+            "strength of the field": fit.strength,
         }
         hard = float(np.linalg.norm(fit.offset) / fit.strength)
         sure = fit.uncertainty < 0.1
@@ -535,19 +567,14 @@ class _Bench:
             {"matrix": fit.shape.round(3).tolist()},
             "" if light == GREEN else "Multiply by the matrix.",
         )
-        lengths = np.linalg.norm(fit.fields, axis=1)
-        own = np.linalg.norm(self.field, axis=1)
-        smooth = np.array(
-            [
-                np.median(part)
-                for part in np.array_split(own, max(4, len(own) // max(10, round(1 / np.median(np.diff(self.time))))))
-            ]
+        before, uneven = (
+            self._unevenness(values) for values in (raw / np.median(np.linalg.norm(raw, axis=1)), self.field)
         )
-        uneven = float(np.percentile(smooth, 97) - np.percentile(smooth, 3))
-        dips = self._dips()
-        evidence = {"length varies by": round(uneven, 3), "length by run": lengths.round(2).tolist()[:12]} | (
-            {"dip varies by (°)": round(dips[1], 1), "dip (°)": round(dips[0], 1)} if dips else {}
-        )
+        dips, dips_before = self._dips(self.field), self._dips(raw)
+        evidence = {"length varied by": round(before, 3), "corrected by": round(uneven, 3)}
+        if dips:
+            evidence |= {"dip (°)": round(dips[0], 1), "dip varied by (°)": round(dips_before[1], 1)}
+            evidence["corrected by (°)"] = round(dips[1], 1)
         light = (
             RED
             if uneven > 0.12 or (dips and dips[1] > 8)
@@ -555,8 +582,8 @@ class _Bench:
             if uneven > 0.06 or (dips and dips[1] > 4)
             else GREEN
         )
-        words = f"once corrected, its length varies by {uneven:.0%}" + (
-            f", its dip by {dips[1]:.0f}° about {dips[0]:.0f}°" if dips else ""
+        words = f"as it came its length varies by {before:.0%}, corrected by {uneven:.0%}" + (
+            f"; its dip by {dips_before[1]:.0f}°, corrected by {dips[1]:.0f}° about {dips[0]:.0f}°" if dips else ""
         )
         self.say(
             "field",
@@ -566,15 +593,22 @@ class _Bench:
             "" if light == GREEN else "Something of iron was near for a while: leave the field out then.",
         )
 
-    def _dips(self):
+    def _unevenness(self, field):
+        """By how much the length of a field varies, second by second, but for its wildest moments."""
+        own = np.linalg.norm(field, axis=1)
+        per_second = max(10, round(1 / np.median(np.diff(self.time))))
+        smooth = [np.median(part) for part in np.array_split(own, max(4, len(own) // per_second))]
+        return float(np.percentile(smooth, 97) - np.percentile(smooth, 3))
+
+    def _dips(self, values):
+        """Usual dip of a field in the still poses, and by how much it varies, degrees."""
         if self.forces is None or len(self.still) < 3:
             return None
         found = []
         for one in self.still:
-            up, field = (values[one.first : one.last].mean(axis=0) for values in (self.forces, self.field))
-            found.append(
-                np.degrees(np.arcsin(np.clip(-up @ field / np.linalg.norm(up) / np.linalg.norm(field), -1, 1)))
-            )
+            up, field = (each[one.first : one.last].mean(axis=0) for each in (self.forces, values))
+            sine = -up @ field / np.linalg.norm(up) / np.linalg.norm(field)
+            found.append(np.degrees(np.arcsin(np.clip(sine, -1, 1))))
         return float(np.median(found)), float(np.percentile(found, 95) - np.percentile(found, 5))
 
     # --- the orientation ------------------------------------------------------------------------
@@ -788,6 +822,20 @@ class _Bench:
             self.still,
             self.facts,
         )
+
+
+def _by_lengths(raw):
+    """A magnetometer's offset and shape from the lengths alone, if they are much the better for it."""
+    fit = fit_ellipsoid(raw[:: max(1, len(raw) // 4000)], most=0.05)
+    if fit is None:
+        return None
+    before, after = (np.linalg.norm(values, axis=1) for values in (raw, (raw - fit.offset) @ fit.shape.T))
+    if after.std() / after.mean() > 0.7 * before.std() / before.mean() + 0.01:
+        return None
+    sizes = np.linalg.eigvalsh(fit.shape)
+    return FieldFit(
+        fit.shape, fit.offset, fit.strength, fit.uncertainty, np.empty((0, 3)), np.eye(3), float(sizes[-1] / sizes[0])
+    )
 
 
 def _lasting(values):

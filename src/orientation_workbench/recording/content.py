@@ -5,18 +5,28 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .motion import fit_axes
 from .table import RecordingError, read_tables
 
 #: Of what a heading may say, the sign that it speaks of a sensor.
 HEADINGS = {
     "quaternion": r"quat|^q[0-3wxyz]?$|orientation|attitude|rotation.?vector|\bq\b",
-    "angles": r"roll|pitch|yaw|euler|heading|azimuth|^alpha|^beta|^gamma|\bphi\b|\btheta\b|\bpsi\b",
+    "angles": r"roll|pitch|yaw|euler|heading|azimuth|\balpha\b|\bbeta\b|\bgamma\b|\bphi\b|\btheta\b|\bpsi\b",
     "gravity": r"grav",
     "linear acceleration": r"^lin|user|without.?g",
     "magnetometer": r"mag|field|compass|^m$|^b$",
     "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
     "accelerometer": r"acc|force|^a\b|^fib|^f$",
+    "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset|gps|^axis [pid]",
 }
+#: What a unit says of a sensor, where the heading says nothing else.
+UNITS = {
+    "gyroscope": r"rad ?/ ?s|rad s\^-1|deg ?/ ?s|°/s|dps",
+    "accelerometer": r"m/s|m s\^-2|^m?g$",
+    "magnetometer": r"[uµμn]t$|gauss|^m?ga?$",
+}
+COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration"
+RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
 #: Lengths of what points one way only, in the units that are in use: standard gravity, and the Earth's field.
@@ -106,6 +116,7 @@ def read_content(source, name=None, rate=None):
         column, time, clock, counted = _time(table)
         clocks.append((clock, counted))
         found, left = _groups(table, column, time)
+        found = found if counted else _without_headings(found)
         groups += found
         unused += left
     chosen = _roles(groups)
@@ -120,9 +131,14 @@ def read_content(source, name=None, rate=None):
     unused += [", ".join(group.names) for group in groups if tuple(group.names) not in used]
     kinds = {kind: group._replace(kind=kind) for kind, group in chosen.items()}
     first = next(kinds[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in kinds)
-    clock, counted = next(
-        clock for table, clock in zip(tables, clocks, strict=True) if set(first.names) <= set(table.columns)
+    clock, counted, said = next(
+        (*clock, re.search(RATE, table.head, re.IGNORECASE))
+        for table, clock in zip(tables, clocks, strict=True)
+        if set(first.names) <= set(table.columns)
     )
+    if counted and said and not rate:
+        rate = float(said[1])
+        clock += f", at {rate:g} a second as the lines above the numbers say"
     if counted:  # the samples of the first instrument are the clock, one by one
         ticks = first.time
         kinds = {
@@ -143,6 +159,15 @@ def _unit(heading):
 def _time(table):
     """The column of the time, the time in seconds, in what words, and whether it is only counted."""
     candidates = []
+    for k, column in enumerate(table.columns):  # whole seconds, and beside them what is left of each
+        rest = [c for c, other in enumerate(table.columns) if re.search(r"n(?:ano)?secs?$", other.lower()) and c != k]
+        if (
+            rest
+            and re.search(r"(?<!n)(?<!nano)secs?$", column.lower())
+            and 0 <= table.values[:, rest[0]].max() < 1.0001e9
+        ):
+            time = table.values[:, k] - table.values[0, k] + 1e-9 * table.values[:, rest[0]]
+            return k, time, f"{column} with {table.columns[rest[0]]}, in s", False
     for k, column in enumerate(table.columns):
         values = table.values[:, k]
         if np.isnan(values).any() or len(values) < 3:
@@ -154,17 +179,14 @@ def _time(table):
             called = bool(re.search(TIME, column.lower()))
             if even > 0.6 or called:
                 precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
-                candidates.append((called + precise + 0.5 * even - 0.01 * k, k))
+                counts = bool(re.search(COUNTS, column.lower()))
+                candidates.append((called + precise + 0.5 * even - counts - 0.01 * k, k))
     if not candidates:
         return None, np.arange(len(table.values)), "there is no column of time", True
     k = max(candidates)[1]
     column, values = table.columns[k], table.values[:, k]
-    fine = [c for c, other in enumerate(table.columns) if re.search(r"nsec|nano", other.lower()) and c != k]
-    if fine and re.search(r"sec", column.lower()) and table.values[:, fine[0]].max() < 1.0001e9:
-        values = values + 1e-9 * table.values[:, fine[0]]
-        return k, values, f"{column} with {table.columns[fine[0]]}, in s", False
     step = np.median(np.diff(values)[np.diff(values) > 0])
-    if re.search(r"counter|packet|index|sample|frame", column.lower()) or (step == 1 and _unit(column) != "ms"):
+    if re.search(COUNTS, column.lower()) or (step == 1 and _unit(column) != "ms"):
         return k, values, f"{column}, which only counts", True
     named = UNITS_OF_TIME.get(_unit(column))
     by_size = next((scale for scale in (1.0, 1e-3, 1e-6, 1e-9) if 2e-4 < step * scale <= 0.5), None)
@@ -203,6 +225,10 @@ def _called(text):
     return next((kind for kind, pattern in HEADINGS.items() if re.search(pattern, text)), "")
 
 
+def _called_by_unit(heading):
+    return next((kind for kind, pattern in UNITS.items() if re.search(pattern, _unit(heading))), "")
+
+
 def _groups(table, time_column, time):
     """Columns that belong together, and the headings of those that are left."""
     groups, taken = [], {time_column}
@@ -223,7 +249,7 @@ def _groups(table, time_column, time):
             stems.setdefault(stem, []).append((axis, k))
     for stem, found in stems.items():
         axes = {axis: k for axis, k in found}
-        called = _called(stem) or _called(table.name.lower())
+        called = _called(stem) or _called_by_unit(table.columns[found[0][1]]) or _called(table.name.lower())
         columns = [k for _, k in found]
         if len(found) == 4 and _is_unit(table.values[:, columns]):
             letters = "".join(axis for axis, _ in found)
@@ -273,7 +299,11 @@ def places_by_name(names):
         ("alpha", "beta", "gamma"),
         ("psi", "theta", "phi"),
     ):
-        places = [next((k for k, name in enumerate(text) if word in name), None) for word in words]
+        # Beside an angle there may stand the one that was wanted: the shorter name is the angle's.
+        places = [
+            min((k for k, one in enumerate(text) if word in one), key=lambda k: len(text[k]), default=None)
+            for word in words
+        ]
         if None not in places and len(set(places)) == 3:
             return tuple(places)
     return None
@@ -282,7 +312,34 @@ def places_by_name(names):
 def _is_unit(values):
     values = values[np.isfinite(values).all(axis=1)]
     squares = (values**2).sum(axis=1)
+    off = np.median(np.abs(squares - 1))
+    if any(np.median(np.abs((part**2).sum(axis=1) - 1)) < 0.5 * off for part in (values[:, 1:], values[:, :-1])):
+        return False  # three of the four are a direction, and the other belongs elsewhere
     return len(values) > 8 and abs(np.median(squares) - 1) < 0.02 and np.mean(np.abs(squares - 1) < 0.05) > 0.98
+
+
+def _without_headings(groups):
+    """Name what no heading names and its length alone does not tell: gravity by itself, and what turns it."""
+    unnamed = [k for k, group in enumerate(groups) if group.kind == "vector" and not group.called]
+    alone = [k for k in unnamed if _has_length_one(groups[k].values)]
+    changing = [
+        k for k in unnamed if not points_one_way(groups[k].values) and np.ptp(groups[k].values, axis=0).max() > 0
+    ]
+    steady = alone or [k for k in unnamed if points_one_way(groups[k].values)]
+    if len(changing) < 2 or not steady or len(alone) > 2 or any(group.called == "gyroscope" for group in groups):
+        return groups
+    groups, fixed, units = list(groups), groups[steady[0]].values, np.array([1.0, np.pi / 180])
+    fits = {k: fit_axes(groups[k].time, groups[k].values, fixed, units, longest=20.0) for k in changing}
+    turns = min(fits, key=lambda k: fits[k].shares.min())
+    groups[turns] = groups[turns]._replace(called="gyroscope")
+    if alone and alone[0] + 1 in changing:
+        groups[alone[0]] = groups[alone[0]]._replace(called="gravity")
+        groups[alone[0] + 1] = groups[alone[0] + 1]._replace(called="linear acceleration")
+        for k in set(unnamed) - {turns, alone[0], alone[0] + 1}:
+            low, high = FIELD["µT"]
+            field = low < np.median(np.linalg.norm(groups[k].values, axis=1)) < high
+            groups[k] = groups[k]._replace(called="magnetometer" if field else "something else")
+    return groups
 
 
 def _with_gravity(chosen, groups):
@@ -334,6 +391,7 @@ def _roles(groups):
     vectors = [group for group in vectors if group.called != "linear acceleration"]
     # Without a name, vectors of length one are rows of a matrix.
     vectors = [group for group in vectors if group.called or not _has_length_one(group.values)]
+    vectors = [group for group in vectors if group.called != "something else"]
     for group in list(vectors):
         if group.called == "angles":
             angles.append(group)
@@ -353,9 +411,10 @@ def _roles(groups):
         return (group.called == "accelerometer") * 2 - (group.called == "magnetometer") * 2 + alone * (off < 0.06)
 
     if steady:
-        best = max(steady, key=lambda group: (as_gravity(group), _roughness(group.values)))
+        best = max(steady, key=lambda group: (as_gravity(group), not group.called and _roughness(group.values)))
         others = [group for group in steady if group is not best]
-        if as_gravity(best) > 0 or len(steady) > 1 or best.called == "accelerometer":
+        like_a_field = best.called == "magnetometer" or any(low < length(best) < high for low, high in FIELD.values())
+        if as_gravity(best) > 0 or len(steady) > 1 or not like_a_field:
             chosen["accelerometer"] = best
         else:
             chosen["magnetometer"] = best

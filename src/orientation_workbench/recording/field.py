@@ -1,4 +1,4 @@
-"""A magnetometer's offset, shape and axes: the field must stay where it is while the gyroscope says it turns."""
+"""A magnetometer's offset, shape and axes: the field keeps its length, and stays while the gyroscope says it turns."""
 
 from typing import NamedTuple
 
@@ -35,6 +35,101 @@ class FieldFit(NamedTuple):
     fields: np.ndarray
     axes: np.ndarray
     stretch: float
+
+
+class EllipsoidFit(NamedTuple):
+    """What gives a field one length in all poses: ``shape @ (measured - offset)``.
+
+    Attributes
+    ----------
+    shape : array of shape ``(3, 3)``
+        Symmetric, of determinant 1: lengths do not tell a turn.
+    offset : array of shape ``(3,)``
+    strength : float
+        Length of the field that is left.
+    uncertainty : float
+        Standard deviation of a direction that is computed with it, radians, where it is known worst.
+    """
+
+    shape: np.ndarray
+    offset: np.ndarray
+    strength: float
+    uncertainty: float
+
+
+def fit_ellipsoid(values, most=0.1):
+    """Fit offset and shape of a magnetometer to the lengths alone, without a gyroscope.
+
+    First the ten coefficients of the quadric nearest to the values (in the book :eq:`equation-ellipsoid`), then the
+    lengths themselves by least squares.
+
+    Parameters
+    ----------
+    values : array of shape ``(n, 3)``
+    most : float
+        Radians: a fit less certain than that is refused.
+
+    Returns
+    -------
+    EllipsoidFit or None
+        None where the poses do not suffice.
+
+    Examples
+    --------
+    >>> ways = np.random.default_rng(1).normal(size=(40, 3))
+    >>> fit = fit_ellipsoid(ways / np.linalg.norm(ways, axis=1, keepdims=True) * [40, 50, 60] + [5, 0, 0])
+    >>> fit.offset.round(6) + 0.0, np.diag(fit.shape).round(3)
+    (array([5., 0., 0.]), array([1.233, 0.986, 0.822]))
+    """
+    if len(values) < 12:
+        return None
+    middle, scale = np.median(values, axis=0), np.linalg.norm(values - np.median(values, axis=0), axis=1).max()
+    if scale == 0:
+        return None
+    x, y, z = scaled = (values - middle).T / scale
+    columns = [x * x, y * y, z * z, 2 * y * z, 2 * x * z, 2 * x * y, 2 * x, 2 * y, 2 * z, np.ones_like(x)]
+    v = np.linalg.svd(np.stack(columns, axis=1), full_matrices=False)[2][-1]
+    quadric, linear = np.array([[v[0], v[5], v[4]], [v[5], v[1], v[3]], [v[4], v[3], v[2]]]), v[6:9]
+    sizes, axes = np.linalg.eigh(quadric)
+    if np.abs(sizes).min() < 1e-6 * np.abs(sizes).max():
+        return None
+    centre = -np.linalg.solve(quadric, linear)
+    sizes = sizes / (centre @ quadric @ centre - v[9])
+    if sizes.min() <= 0:  # a hyperboloid fits better: the poses cover too little
+        return None
+    shape = axes * np.sqrt(sizes) @ axes.T
+    places = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
+    for _ in range(20):
+        away = scaled.T - centre
+        seen = away @ shape
+        lengths = np.linalg.norm(seen, axis=1)
+        ways = seen / lengths[:, None]
+        slopes = [ways[:, i] * away[:, j] + (i != j) * ways[:, j] * away[:, i] for i, j in places]
+        slopes = np.column_stack([*slopes, -ways @ shape])
+        change, _, rank, _ = np.linalg.lstsq(slopes, 1 - lengths, rcond=1e-9)
+        if rank < 9:
+            return None
+        for (i, j), part in zip(places, change[:6], strict=True):
+            shape[i, j] += part
+            shape[j, i] = shape[i, j]
+        centre = centre + change[6:]
+        if np.abs(change).max() < 1e-10:
+            break
+    left = 1 - lengths
+    alike = 0.0 if left.std() == 0 else float(np.clip(np.corrcoef(left[1:], left[:-1])[0, 1], 0, 0.99))
+    # What neighbours say together counts once.
+    noise = left.std() * np.sqrt(len(left) / (len(left) - 9) * (1 + alike) / (1 - alike))
+    covariance = noise**2 * np.linalg.inv(slopes.T @ slopes)
+    in_shape = np.linalg.eigvalsh(covariance[:6, :6])[-1] / np.linalg.eigvalsh(shape)[0] ** 2
+    in_offset = np.linalg.eigvalsh(shape @ covariance[6:, 6:] @ shape)[-1]
+    uncertainty = float(np.sqrt(in_shape + in_offset))
+    if np.linalg.eigvalsh(np.cov(ways.T))[0] < 0.005:  # noise bends what lies in a plane
+        return None
+    stretches = np.linalg.eigvalsh(shape)
+    if not uncertainty < most or stretches[0] <= 0 or stretches[-1] > 3 * stretches[0]:
+        return None
+    size = float(np.linalg.det(shape) ** (1 / 3))
+    return EllipsoidFit(shape / size, middle + scale * centre, float(scale / size), uncertainty)
 
 
 def fit_field(time, rates, field, seconds=0.25):

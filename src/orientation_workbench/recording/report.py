@@ -7,7 +7,9 @@ from textwrap import wrap
 
 import numpy as np
 
-WIDTH = 88  # of a line of the text
+from .allan import noise_of
+
+WIDTH = 76  # of a line of the text
 LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
 #: Ways to write an orientation down, by what the command calls them.
 CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
@@ -81,10 +83,43 @@ def as_csv(examined, convention="wxyz"):
     return "\n".join([",".join(names), *lines]) + "\n"
 
 
-def as_html(examined):
-    """The report as one page that needs nothing else: verdicts, evidence and plots."""
+def as_code(examined):
+    """Lines of NumPy that correct a recording of the same instrument as this one was.
+
+    They take ``gyroscope``, ``accelerometer`` and ``magnetometer``, arrays of shape ``(n, 3)`` as the file has them,
+    and give ``rates`` in radians per second, ``forces`` in multiples of gravity and ``field`` in multiples of its
+    length.
+    """
+    facts, lines = examined.facts, ["import numpy as np", ""]
+
+    def array(values):
+        return f"np.array({np.asarray(values, float).tolist()})"
+
+    if examined.rates is not None and "unit of the gyroscope" in facts:
+        lines.append(f"rates = gyroscope * {float(facts['unit of the gyroscope'])!r}")
+        if "axes of the gyroscope" in facts:
+            lines.append(f"rates = rates @ {array(facts['axes of the gyroscope'])}.T")
+        if "bias of the gyroscope" in facts:
+            lines.append(f"rates = rates - {array(facts['bias of the gyroscope'])}")
+        lines.append(f"rates = rates * {float(facts.get('multiplied', 1))!r}")
+    if examined.forces is not None:
+        lines.append(f"forces = accelerometer / {float(facts['gravity'])!r}")
+        if "offset of the accelerometer" in facts:
+            lines.append(f"forces = forces - {array(facts['offset of the accelerometer'] / facts['gravity'])}")
+    if examined.field is not None:
+        lines.append("field = magnetometer")
+        if "offset of the magnetometer" in facts:
+            lines.append(f"field = field - {array(facts['offset of the magnetometer'])}")
+            lines.append(f"field = field @ {array(facts['shape of the magnetometer'])}.T")
+        lines.append(f"field = field / {float(facts['strength of the field'])!r}")
+    return "\n".join(lines)
+
+
+def as_fragment(examined):
+    """The report for a page of another's: verdicts, evidence, plots and code."""
     rows = "".join(
-        f'<tr class="{verdict.light.replace(" ", "-")}"><td>{verdict.light}</td><th>{escape(verdict.about)}</th>'
+        f'<tr class="{verdict.light.replace(" ", "-")}"><td>{verdict.light}</td>'
+        f'<th scope="row">{escape(verdict.about)}</th>'
         f"<td>{escape(verdict.words)}"
         + (f"<p><b>{escape(verdict.advice)}</b></p>" if verdict.advice else "")
         + (
@@ -100,32 +135,45 @@ def as_html(examined):
     pictures = "".join(
         f"<figure>{picture}<figcaption>{escape(words)}</figcaption></figure>" for picture, words in plots(examined)
     )
-    code = (
-        "from orientation_workbench.recording import examine\n\n"
-        f"found = examine({examined.name!r})\nprint(found)\nfound.rates, found.forces, found.field   # corrected"
-    )
     return (
-        f'<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
-        f"<title>{escape(examined.name)} on the bench</title><style>{STYLE}</style>"
-        f"<h1>{escape(examined.name)}</h1><table>{rows}</table>{pictures}"
-        f"<h2>The code that made it</h2><pre>{escape(code)}</pre></html>\n"
+        f'<div class="on-the-bench"><style>{STYLE}</style><table>{rows}</table>{pictures}'
+        f"<details><summary>The code that corrects it</summary><pre>{escape(as_code(examined))}</pre></details></div>"
     )
 
 
-STYLE = """
+def as_html(examined, fragment=None):
+    """The report as one page that needs nothing else, and can be kept; ``fragment`` is its body where it is made."""
+    name = escape(examined.name)
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+        f"<title>{name} on the bench</title><style>{PAGE}</style><h1>{name}</h1>"
+        f"{fragment or as_fragment(examined)}</html>\n"
+    )
+
+
+PAGE = """
 :root { color-scheme: light dark; font: 16px/1.45 system-ui, sans-serif; }
 body { max-width: 60rem; margin: 1rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; width: 100%; }
-td, th { text-align: left; vertical-align: top; padding: .35rem .6rem .35rem 0;
-border-top: 1px solid #8886; overflow-wrap: anywhere; } th { font-weight: 600; min-width: 8rem; } p { margin: .2rem 0; }
-tr > td:first-child { white-space: nowrap; } tr.wrong > td:first-child { color: #c62828; font-weight: 700; }
-tr.look > td:first-child { color: #a66300; font-weight: 700; } tr.cannot-tell > td:first-child { color: #777; }
-@media (prefers-color-scheme: dark) { tr.wrong > td:first-child { color: #ff8a80; }
-tr.look > td:first-child { color: #ffb74d; } }
-figure { margin: 1rem 0; background: #fff; color: #222; border-radius: 4px; } figure svg { width: 100%; height: auto; }
-figcaption { padding: 0 .8rem .6rem; } pre { overflow-x: auto; } summary { cursor: pointer; opacity: .75; }
-@media (max-width: 40rem) { table, tbody, tr, td, th { display: block; } td, th { border: 0; padding: .1rem 0; }
-tr { border-top: 1px solid #8886; padding: .3rem 0; } }
+"""
+STYLE = """
+.on-the-bench table { border-collapse: collapse; width: 100%; }
+.on-the-bench td, .on-the-bench th { text-align: left; vertical-align: top; padding: .35rem .6rem .35rem 0;
+border: 0; border-top: 1px solid #8886; overflow-wrap: anywhere; }
+.on-the-bench th { font-weight: 600; min-width: 8rem; } .on-the-bench p { margin: .2rem 0; }
+.on-the-bench tr > td:first-child { white-space: nowrap; }
+.on-the-bench tr.wrong > td:first-child { color: #c62828; font-weight: 700; }
+.on-the-bench tr.look > td:first-child { color: #8a5200; font-weight: 700; }
+.on-the-bench figure { margin: 1rem 0; background: #fff; color: #222; border-radius: 4px; }
+.on-the-bench figure svg { width: 100%; height: auto; }
+.on-the-bench figcaption { padding: 0 .8rem .6rem; color: #222; }
+.on-the-bench pre { overflow-x: auto; } .on-the-bench summary { cursor: pointer; }
+@media (prefers-color-scheme: dark) { :root:not([data-theme=light]) .on-the-bench tr.wrong > td:first-child
+{ color: #ff8a80; } :root:not([data-theme=light]) .on-the-bench tr.look > td:first-child { color: #ffb74d; } }
+[data-theme=dark] .on-the-bench tr.wrong > td:first-child { color: #ff8a80; }
+[data-theme=dark] .on-the-bench tr.look > td:first-child { color: #ffb74d; }
+@media (max-width: 40rem) { .on-the-bench :is(table, tbody, tr, td, th) { display: block; }
+.on-the-bench :is(td, th) { border: 0; padding: .1rem 0; }
+.on-the-bench tr { border-top: 1px solid #8886; padding: .3rem 0; } }
 """
 
 
@@ -169,18 +217,40 @@ def plots(examined):
             f"How fast it turns. Shaded: {still} stretches in which it lies still, "
             f"{len(examined.still) - still} in which it is held.",
         )
-        times, deviations = allan_deviation(examined)
-        if len(times):
-            figure, axes = drawing(3)
-            for values, letter, style in zip(np.degrees(deviations).T, "xyz", ("-", "--", ":"), strict=True):
-                axes.loglog(times, values, style, label=letter)
-            axes.set(xlabel="averaged over (s)", ylabel="Allan deviation (°/s)")
-            axes.legend()
-            kept(
-                figure,
-                "Allan deviation of the gyroscope in its longest still stretch. Where it falls by half for four times "
-                "the time, it is noise; its lowest point is the instability of its bias.",
-            )
+    if "Allan deviation" in examined.facts:
+        times, deviations = examined.facts["Allan deviation"]
+        noise = noise_of(times, deviations)
+        figure, axes = drawing(3.2)
+        for values, letter, style in zip(deviations.T, "xyz", ("-", "--", ":"), strict=True):
+            axes.loglog(times, values, style, label=letter)
+        walk, lowest = noise.angle_random_walk.max(), noise.bias_instability
+        if np.isfinite(walk):
+            axes.loglog(times, walk / np.sqrt(times), linewidth=0.6, color="#777")
+            axes.plot(1, walk, "o", color="#c62828")
+            axes.annotate(f"angle random walk {walk:.2g} °/√s", (1, walk), (6, 6), textcoords="offset points")
+        if np.isfinite(lowest).any():
+            worst = int(np.nanargmax(lowest))
+            place = (noise.time[worst], lowest[worst])
+            axes.plot(*place, "s", color="#c62828")
+            axes.annotate(f"bias instability {lowest[worst]:.2g} °/s", place, (6, -12), textcoords="offset points")
+        axes.set(xlabel="averaged over (s)", ylabel="Allan deviation (°/s)")
+        axes.legend()
+        kept(
+            figure,
+            "Allan deviation of the gyroscope in its longest still stretch. Where it falls by half for four times the "
+            "time, it is noise; what that line says at one second is the angle random walk, and the lowest point is "
+            "the instability of the bias, if the stretch is long enough to have one.",
+        )
+    if examined.field is not None and "offset of the magnetometer" in examined.facts:
+        facts = examined.facts
+        inverse = np.linalg.inv(facts["shape of the magnetometer"])
+        strength = facts["strength of the field"]
+        before = examined.field[few] * strength @ inverse.T + facts["offset of the magnetometer"]
+        figure, axes = drawing(2.4)
+        axes.plot(examined.time[few], np.linalg.norm(before, axis=1) / strength, "--", linewidth=0.8, color="#c62828")
+        axes.plot(examined.time[few], np.linalg.norm(examined.field[few], axis=1), linewidth=0.8, color="#1f5fbf")
+        axes.set(xlabel="time (s)", ylabel="length of the field", ylim=(0, None))
+        kept(figure, "Length of the magnetic field, as a share of its usual one. Dashed: as it came; solid: corrected.")
     if examined.judgements:
         figure, axes = drawing(2.6)
         for one in examined.judgements:
@@ -193,29 +263,3 @@ def plots(examined):
             "their own claims.",
         )
     return found
-
-
-def allan_deviation(examined):
-    """Allan deviation of the angular velocity in the longest still stretch.
-
-    Parameters
-    ----------
-    examined : Examined
-
-    Returns
-    -------
-    times of shape ``(k,)`` in seconds, deviations of shape ``(k, 3)`` in radians per second
-        Empty without a still stretch of two seconds and more.
-    """
-    still = [one for one in examined.still if one.still]
-    step = float(np.median(np.diff(examined.time)))
-    longest = max(still, key=lambda one: one.last - one.first, default=None)
-    if longest is None or (longest.last - longest.first) * step < 2:
-        return np.empty(0), np.empty((0, 3))
-    path = np.concatenate([np.zeros((1, 3)), np.cumsum(examined.rates[longest.first : longest.last], axis=0)])
-    sizes = np.unique(np.geomspace(1, (len(path) - 1) // 4, 24).astype(int))
-    deviations = []
-    for size in sizes:  # overlapping: every beginning there is
-        change = path[2 * size :] - 2 * path[size:-size] + path[: -2 * size]
-        deviations.append(np.sqrt((change**2).mean(axis=0) / 2) / size)
-    return sizes * step, np.array(deviations)

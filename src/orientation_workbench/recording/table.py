@@ -39,12 +39,15 @@ class Table(NamedTuple):
         Missing ones are NaN.
     remarks : list of str
         What did not fit, with lines and columns.
+    head : str
+        What stands above the numbers.
     """
 
     name: str
     columns: list
     values: np.ndarray
     remarks: list
+    head: str = ""
 
 
 def read_tables(source, name=None):
@@ -124,6 +127,8 @@ def _from_text(text, name):
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
     lines = text.splitlines()
+    if sum(line.startswith("---") for line in lines) > 8:
+        return _from_blocks(lines, name)
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
     rows = [_split(line, delimiter) for line in lines]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
@@ -131,7 +136,20 @@ def _from_text(text, name):
     keys = {row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None}
     if len(words) > 20 and sum(words) > 0.9 * len(words) and len(keys) < 0.2 * len(words):
         return _from_log(rows, name, comma)
-    return [_table(rows, name, comma)]
+    return [_scaled(_table(rows, name, comma))]
+
+
+def _scaled(table):
+    """Counts, where the lines above them name their scales, as cameras that steady a picture write them."""
+    scales = {letter: float(value) for letter, value in re.findall(r"^([tgam])scale\W+([\d.eE+-]+)$", table.head, re.M)}
+    if not scales:
+        return table
+    units = {"t": "s", "g": "rad/s", "a": "g", "m": "gauss"}
+    columns, values = list(table.columns), table.values.copy()
+    for k, name in enumerate(table.columns):
+        if name[0] in scales and name[1:] in ("", "x", "y", "z"):
+            columns[k], values[:, k] = f"{name} [{units[name[0]]}]", values[:, k] * scales[name[0]]
+    return table._replace(columns=columns, values=values)
 
 
 def _split(line, delimiter):
@@ -228,12 +246,14 @@ def _table(rows, name, comma, numbers=None, columns=None):
     if len(broken) > max(2, MOST_BROKEN * (len(kept) + len(broken))):
         raise RecordingError(f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}")
     remarks = [f"{len(broken)} rows are left out: {told}"] if broken else []
-    return Table(name, [columns[k] for k in numeric], np.array(kept), remarks)
+    head = "\n".join(",".join(row) for _, row in rows[:begin])
+    return Table(name, [columns[k] for k in numeric], np.array(kept), remarks, head)
 
 
 def _names(head, width):
     """Names of the columns: of the last line above the numbers that has as many, with the units below it."""
     head = [[re.sub(r"^[#%/\s\"']+|[\"']+$", "", field) for field in row] for row in head]
+    head = [row[1:] if len(row) == width + 1 and not row[0] else row for row in head]  # a sign that stands alone
     head = [
         row for row in head if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", one) for one in row)
     ]
@@ -258,12 +278,16 @@ def _from_log(rows, name, comma):
         if row[0] == "FMT" and len(row) > 5:  # of ArduPilot: type, length, name, formats, names of the columns
             names[row[3]] = row[5:]
         else:
-            lines.setdefault(row[0], []).append((number, row[1:]))
+            # Of several instruments of one kind each is a table of its own.
+            columns = names.get(row[0], [])
+            which = columns.index("I") + 1 if "I" in columns else len(row)
+            key = row[0] if which >= len(row) or row[which] == "0" else f"{row[0]} {row[which]}"
+            lines.setdefault(key, []).append((number, row[1:]))
     tables = []
     for key, found in lines.items():
         if len(found) < 8:
             continue
-        columns = names.get(key)
+        columns = names.get(key.partition(" ")[0])
         width = Counter(len(row) for _, row in found).most_common(1)[0][0]
         try:
             tables.append(
@@ -289,12 +313,17 @@ def _from_json(text, name):
         raise RecordingError(
             f"{name} begins like JSON but is not: line {error.lineno}, column {error.colno}: {error.msg}"
         ) from None
-    if isinstance(content, dict):
-        content = next((value for value in content.values() if isinstance(value, list)), [])
+    lists = content if isinstance(content, dict) else {name: content}
     kinds = {}
-    for entry in content:
-        if isinstance(entry, dict):
-            kinds.setdefault(str(entry.get("sensor", name)), []).append(_flat(entry))
+    for key, entries in lists.items():
+        for entry in entries if isinstance(entries, list) else []:
+            if isinstance(entry, dict):
+                kinds.setdefault(str(entry.get("sensor", key)), []).append(_flat(entry))
+    return _from_entries(kinds, f"{name} is JSON without a list of measurements in it")
+
+
+def _from_entries(kinds, otherwise):
+    """Tables out of dictionaries, by what they hold."""
     tables = []
     for kind, entries in kinds.items():
         columns = list(dict.fromkeys(key for entry in entries for key in entry))
@@ -304,8 +333,25 @@ def _from_json(text, name):
         except RecordingError:
             continue
     if not tables:
-        raise RecordingError(f"{name} is JSON without a list of measurements in it")
+        raise RecordingError(otherwise)
     return tables
+
+
+def _from_blocks(lines, name):
+    """Messages one after another, parted by hyphens, as robots print them; indented lines belong to the one above."""
+    entries, entry, path = [], {}, []
+    for line in [*lines, "---"]:
+        if line.startswith("---"):
+            if entry:
+                entries.append(entry)
+            entry, path = {}, []
+            continue
+        found = re.fullmatch(r"(\s*)(\w+):\s*(\S*)\s*", line)
+        if found:
+            path = [(indent, key) for indent, key in path if indent < len(found[1])] + [(len(found[1]), found[2])]
+            if found[3]:
+                entry[".".join(key for _, key in path)] = found[3]
+    return _from_entries({name: entries}, f"{name} holds messages, but no table of numbers comes of them")
 
 
 def _flat(entry, before=""):

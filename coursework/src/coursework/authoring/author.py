@@ -128,8 +128,8 @@ class Question:
         Share of the worth for a mistake, by its note.
     partial : bool
         Whether an answer in several words earns the share of them that is right, beyond what a guess would earn.
-    rubric : list of str
-        What a person looks for who reads the answers.
+    rubric : list of str, or dict
+        What a person looks for who reads the answers; with the points that each line is worth.
     entries : dict
         :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
     no_mistakes : list of str
@@ -165,7 +165,7 @@ class Question:
             dict(credit or {}),
             title or name.partition("/")[2].replace("-", " "),
         )
-        self.partial, self.rubric = partial, list(rubric or [])
+        self.partial, self.rubric = partial, dict(rubric) if isinstance(rubric, dict) else list(rubric or [])
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
         self.ladder = ladder_of(public, ladder, turns)
         self.turns, self.turned = list(turns), turned
@@ -545,6 +545,18 @@ def _demand_forms(name, mistakes, hints, credit, worth):
         raise AuthorError(f"{name}: `worth` is a number of points, and this is {worth!r}.")
 
 
+def _demand_rubric(name, rubric, worth):
+    """Where the lines of a rubric have points, all points can be earned by them."""
+    if not isinstance(rubric, dict):
+        return
+    for line, points in rubric.items():
+        if not _is_number(points) or abs(points) > worth:
+            raise AuthorError(f"{name}: the line {line!r} of the rubric is worth {points!r}, of {worth} points.")
+    earned = sum(points for points in rubric.values() if points > 0)
+    if earned < worth:
+        raise AuthorError(f"{name}: the lines of its rubric come to {earned} of {worth} points: nobody could have all.")
+
+
 def _demand_tolerance(name, tolerance, relative):
     """What an answer may be off by is more than nothing: the last digits differ from machine to machine."""
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
@@ -617,6 +629,7 @@ def question(
         ) from None
     if rest.get("rubric") and not known.by_a_person:
         raise AuthorError(f"{name}: a rubric is for answers that a person reads, of the kind 'free text'.")
+    _demand_rubric(name, rest.get("rubric"), rest.get("worth", 1))
     if rest.get("partial") and kind not in PARTS:
         raise AuthorError(f"{name}: only answers of the kinds {', '.join(PARTS)} are right in part.")
     if isinstance(symbols, str):

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
-from coursework.checking.variants import Given, names_of_variants, packed, shown
+from coursework.checking.variants import Given, image, names_of_variants, packed, shown
 
 from . import author
 from .course import gives_by_name
@@ -209,7 +209,11 @@ def read_source(path, variant=0, edition="", only=None, pictures=None):
         identities.append(identity)
 
     namespace = {"__name__": "__main__", "question": record_question, "draw": draw, "drawing": Drawing}
-    needed = range(len(notebook.cells)) if only is None else cells_needed(notebook, only)
+    # A figure is nobody's answer: it is drawn where pictures are asked for, and once for all variants.
+    drawn = [number for number, cell in enumerate(notebook.cells) if "figure" in cell.metadata.get("tags", [])]
+    needed = range(len(notebook.cells))
+    if only is not None:
+        needed = cells_needed(notebook, only, drawn if pictures and not variant else ())
     said = {"check": record_check, "student": record_identity, "me": record_identity}
     with contextlib.ExitStack() as replaced:
         for name, record in said.items():
@@ -348,11 +352,16 @@ def _said(drawn, text):
     }
 
 
-def texts_of_questions(notebook):
-    """The text of each question as it stands in the source: the Markdown between the check before it and its own."""
+def texts_of_questions(notebook, figures=None):
+    """The text of each question as it stands in the source: the Markdown between the check before it and its own.
+
+    ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
+    """
     texts, above = {}, []
-    for cell in notebook.cells:
-        if cell.cell_type == "markdown":
+    for number, cell in enumerate(notebook.cells):
+        if number in (figures or {}):
+            above.append(image(figures[number].picture(), figures[number].alt))
+        elif cell.cell_type == "markdown":
             above.append(cell.source)
         elif cell.cell_type == "code":
             found = checked_names(type(notebook)(cells=[cell]))
@@ -390,14 +399,14 @@ def _run(source, namespace, where):
     return None
 
 
-def cells_needed(notebook, names):
+def cells_needed(notebook, names, also=()):
     """The numbers of the code cells that some questions of a notebook need: by the names that cells bind and use.
 
     What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than too few: which of
     several values a name has when a function is called is not followed.
     """
     uses = {number: _Uses(cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"}
-    needed = {number for number, cell in uses.items() if cell.texts & set(names)}
+    needed = {number for number, cell in uses.items() if cell.texts & set(names) or number in also}
     while True:
         # What a function uses it may use as late as it is called.
         anywhere = set().union(*(uses[number].in_functions for number in needed))

@@ -1,6 +1,7 @@
 """The commands of instructors, from ``coursework grade`` to ``coursework sample-class``."""
 
 import contextlib
+import io
 import re
 import sys
 
@@ -23,7 +24,10 @@ def add_commands(commands):
     )
     grade.add_argument("--student", help="the one student who handed all of it in")
     grade.add_argument(
-        "--only-list", action="store_true", help="say whose each file is and how that is known; run nothing"
+        "--dry-run",
+        "--only-list",  # what it was called
+        action="store_true",
+        help="say whose each file is, how that is known, and how many would be run; run nothing",
     )
     grade.add_argument("--workers", type=int, help="how many notebooks are run at a time (one for each processor)")
     grade.add_argument(
@@ -45,6 +49,7 @@ def add_commands(commands):
     )
     regrade.add_argument("out", metavar="DIR")
     regrade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    regrade.add_argument("--dry-run", action="store_true", help="say which marks would move, and move none")
     regrade.add_argument("--yes", action="store_true", help="go on without asking, whoever gains or loses")
     regrade.add_argument(
         "--never-lower", action="append", default=[], metavar="QUESTION", help="nobody loses by this question's mending"
@@ -70,6 +75,7 @@ def add_commands(commands):
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
     merge.add_argument("out", metavar="DIR")
     merge.add_argument("ledgers", nargs="+", metavar="ledger.jsonl")
+    merge.add_argument("--dry-run", action="store_true", help="say what would be taken in, and take in nothing")
     term = commands.add_parser("term", help="what a whole course comes to: due dates, weights, statistics")
     term.add_argument("out", metavar="DIR")
     term.add_argument(
@@ -198,11 +204,11 @@ def grade(assignment, **options):
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped. The same command goes on from here.")
-    if not options["only_list"]:
+    if not options["dry_run"]:
         print(f"The report: {options['out']}/report.html")
 
 
-def regrade(out, solutions, yes, never_lower, full_credit, void):
+def regrade(out, solutions, dry_run, yes, never_lower, full_credit, void):
     from .reporting.laboratory import PAGE, Policies
     from .store import InUse
 
@@ -210,11 +216,17 @@ def regrade(out, solutions, yes, never_lower, full_credit, void):
     try:
         with _on_linux():
             from .grade import regrade as regrade_class
-        laboratory = regrade_class(out, solutions=solutions, policies=policies, dry_run=True)
+        # What a table of decisions says wrongly is said once.
+        unheard = None if dry_run else io.StringIO()
+        laboratory = regrade_class(out, solutions=solutions, policies=policies, dry_run=True, show=unheard)
         for line in laboratory.lines():
             print(line)
-        if laboratory.changes and not yes:
+        if laboratory.changes and (dry_run or not yes):
             print(f"Each of them: {out}/{PAGE}")
+        if dry_run:
+            _say_moved(laboratory.by_people)
+            return
+        if laboratory.changes and not yes:
             if not sys.stdin.isatty() or input("Shall these marks move? yes or no: ").strip().casefold() != "yes":
                 sys.exit("No mark has moved. To go on, say --yes.")
         _say_moved(regrade_class(out, solutions=solutions, policies=policies))
@@ -261,14 +273,14 @@ def review(out, grader, share, hide_names, port):
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 
-def merge(out, ledgers):
+def merge(out, ledgers, dry_run):
     from pathlib import Path
 
-    from .judging.ledger import Ledger
+    from .judging.ledger import Decision, Ledger
     from .store import Store
     from .tables import in_a_line
 
-    ledger, store = Ledger(Path(out)), Store(out)
+    ledger, store = Ledger(Path(out), dry_run), Store(out)
     missing = [path for path in ledgers if not Path(path).is_file()]
     if missing:
         sys.exit(
@@ -279,8 +291,10 @@ def merge(out, ledgers):
             new, differing = ledger.merge(Path(path))
         except (OSError, ValueError) as error:
             sys.exit(f"coursework merge: {error}")
-        print(f"{new} decisions from {path}.")
-        foreign = [one for one in ledger.decisions[len(ledger.decisions) - new :] if not _is_here(store, one)]
+        decisions = [one for one in new if isinstance(one, Decision)]
+        others = f", and {len(new) - len(decisions)} on appeals and rubrics" if len(new) > len(decisions) else ""
+        print(f"{len(decisions)} decisions{others} from {path}{' would be taken in' if dry_run else ''}.")
+        foreign = [one for one in decisions if not _is_here(store, one)]
         if foreign:
             whose = ", ".join(in_a_line(name, 60) for name in dict.fromkeys(one.student for one in foreign))
             print(f"  {len(foreign)} of them are on answers that are not here: {whose}. They change no mark.")

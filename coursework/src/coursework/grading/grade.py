@@ -23,9 +23,9 @@ from ..checking.plugins import kinds
 from .execution.cluster_keys import demand_keys
 from .judging import marking
 from .judging import secret as in_secret
-from .judging.cases import Contracts, variants_of
+from .judging.cases import Contracts, changed_since, variants_of
 from .judging.judge import Judge
-from .judging.ledger import DECISIONS, Ledger, with_decisions
+from .judging.ledger import APPEALS, DECISIONS, Ledger, Standing, appeals_open, with_decisions
 from .judging.secret import secret_beside
 from .reporting.laboratory import Laboratory, Policies
 from .store import FORMAT, REFUSED, Store, as_text, write
@@ -156,7 +156,7 @@ def grade(
     assignments=None,
     roster=None,
     student=None,
-    only_list=False,
+    dry_run=False,
     workers=None,
     scheduler=None,
     keys=None,
@@ -178,8 +178,8 @@ def grade(
         Who is in the course; then nothing else says whose a notebook is.
     student : str, optional
         The one student who handed all of it in.
-    only_list : bool
-        Say whose each file is, and run nothing.
+    dry_run : bool
+        Say whose each file is, and how many would be run; run nothing, and leave every record as it is.
     workers : int, optional
         How many notebooks run at a time; as many as there are processors if it is not said.
     scheduler : str, optional
@@ -229,22 +229,21 @@ def grade(
         work = sort_work(notebooks, course, refused)
         _say_whose(work, refused, roster, store, show)
         foreign = _say_foreign(work, course, show)
-        if roster:
-            write(store.folder / ROSTER, as_text(sorted(roster.people)))
-        if only_list:
-            return {"graded": 0, "kept": 0, "refused": len(refused)}
         _demand_a_class(work, roster, student)
         questions = course.questions(sorted({one.assignment for one in work}), store.folder / "questions")
         if not as_listed:
             _demand_own_numbers(work, questions, foreign, roster)
-        known = _read(store.folder / COURSE)
-        write(store.folder / COURSE, as_text({**known, **course.assignments}))
         ledger = Ledger(store.folder)
-        for line in _put_renamed_aside(store, work, ledger):
+        for line in _put_renamed_aside(store, work, ledger, dry_run):
             print(line, file=show)
-        _take_in_decisions(ledger, store, show)
+        if not dry_run:
+            if roster:
+                write(store.folder / ROSTER, as_text(sorted(roster.people)))
+            known = _read(store.folder / COURSE)
+            write(store.folder / COURSE, as_text({**known, **course.assignments}))
+            _take_in_decisions(ledger, store, show)
 
-        decisions, contracts, policies = ledger.current(), Contracts(store.folder), Policies.of(store.folder)
+        standing, contracts, policies = ledger.standing(), Contracts(store.folder), Policies.of(store.folder)
 
         def before(one):
             """The record of the same student before, from which it is known which variants are whose."""
@@ -262,6 +261,8 @@ def grade(
             f"{len(work)} to grade, {len(work) - len(waiting)} of them graded before, {len(refused)} files refused.",
             file=show,
         )
+        if dry_run:
+            return {"graded": 0, "kept": len(kept), "refused": len(refused)}
         store.log(f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on {platform.node()}")
         jobs = _Jobs(waiting, questions, store, contracts, before)
         judge = closing.enter_context(Judge(questions, contracts, store.log))
@@ -277,7 +278,7 @@ def grade(
             marks = old["marks"] if old else {}
             record["marks"] = {name: mark for name, mark in marks.items() if _is_same(old, record, name)}
             record["cases"] = {name: case.answered(of_student[name]).as_json() for name, case in cases.items()}
-            store.save(marked(record, judge, decisions, policies))
+            store.save(marked(record, judge, standing, policies))
             return order, record["notebooks"][0]["isolation"]
 
         progress = _Progress(len(waiting), show)
@@ -292,13 +293,15 @@ def grade(
         # What was kept may have been decided on since.
         for one in kept:
             record = store.read(one.student, one.assignment)
-            again = marked(record, judge, decisions, policies)
+            again = marked(record, judge, standing, policies)
             if again != record:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
         store.log("end")
+    for line in said_of_people(store, standing):
+        print(line, file=show)
     _say_guessable(questions, show)
     _say_other_numbers(store, work, questions, show)
     return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
@@ -415,7 +418,7 @@ def _demand_a_class(work, roster, student):
         )
 
 
-def _put_renamed_aside(store, work, ledger):
+def _put_renamed_aside(store, work, ledger, dry_run=False):
     """Move the record of a student away whose very notebooks are now another's: the folder was renamed.
 
     What people decided on the answers is entered for the new name too.
@@ -438,13 +441,15 @@ def _put_renamed_aside(store, work, ledger):
         there = [one for one in fitting if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}]
         names = [one.student for one in there or fitting]
         if names:
+            said = f"{student!r} is now {' or '.join(map(repr, names))}: "
+            if dry_run:
+                yield f"{said}the record of {assignment} would be moved."
+                continue
             place = store.put_aside(student, assignment)
-            said = (
-                f"{student!r} is now {' or '.join(map(repr, names))}: the record of {assignment} was moved to {place}."
-            )
+            said += f"the record of {assignment} was moved to {place}."
             decisions = ledger.of(student, assignment)
             if decisions and len(names) == 1:
-                ledger.hand_on(decisions, names[0])
+                ledger.hand_on(student, assignment, names[0])
                 said += f" So were {len(decisions)} of the decisions, to the new name."
             elif decisions:
                 said += f" Whose are the {len(decisions)} decisions? They count for nobody now."
@@ -456,6 +461,31 @@ def _take_in_decisions(ledger, store, show):
         print(said, file=show)
     for line in ledger.take_in_table(store.folder / DECISIONS, store.all()):
         print(f"{DECISIONS}, not used: {line}.", file=show)
+    for line in ledger.take_in_appeals(store.folder / APPEALS, store.all()):
+        print(f"{APPEALS}, not used: {line}.", file=show)
+
+
+def said_of_people(store, standing):
+    """What waits for people beside undecided answers: appeals, and decisions on what has changed since."""
+    contracts, appeals, changed = Contracts(store.folder), [], []
+    for record in store.all():
+        appeals += [record["student"]] * len(appeals_open(record))
+        for name in record["marks"]:
+            decided = standing.decisions.get((record["student"], record["assignment"], name))
+            if changed_since(decided, record, contracts):
+                changed.append(record["student"])
+    for names, what, shown in (
+        (appeals, ("appeal is open", "appeals are open"), "with an open appeal"),
+        (
+            changed,
+            ("decision is on an answer or a question that has", "decisions are on answers or questions that have"),
+            "decided, and changed since",
+        ),
+    ):
+        if names:
+            since = " changed since" if names is changed else ""
+            whose = ", ".join(in_a_line(name, 60) for name in list(dict.fromkeys(names))[:MOST_SHOWN])
+            yield f"{len(names)} {what[len(names) > 1]}{since} ({whose}): coursework review {store.folder}, {shown!r}."
 
 
 def _say_guessable(questions, show):
@@ -679,7 +709,7 @@ def _says_little(answer):
     )
 
 
-def marked(record, judge, decisions=None, policies=None):
+def marked(record, judge, standing=None, policies=None):
     """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
     questions = judge.questions[record["assignment"]]
     own, cases = marking.of_student(judge.questions[record["assignment"]], record["student"], record, judge.contracts)
@@ -694,9 +724,11 @@ def marked(record, judge, decisions=None, policies=None):
         old = old and {**old, **old.get("before", {})}
         taken_out = cases[name].own.variant not in variants_of(questions[name])
         mark = (policies or Policies()).applied(name, found[name], old, cases[name], taken_out)
-        marks[name] = {**mark, "title": question["title"]}
+        # What the lines of a rubric are worth, where its author said so.
+        rubric = {"rubric": question["rubric"]} if isinstance(question.get("rubric"), dict) else {}
+        marks[name] = {**mark, "title": question["title"], **rubric}
     cases = {name: case.as_json() for name, case in cases.items()}
-    return with_decisions({**record, "format": FORMAT, "cases": cases, "marks": marks}, decisions or {})
+    return with_decisions({**record, "format": FORMAT, "cases": cases, "marks": marks}, standing or Standing())
 
 
 class _Progress:
@@ -762,6 +794,7 @@ def regrade(out, *, solutions=None, policies=None, dry_run=False, show=None):
     Returns
     -------
     list of Moved
+        For a dry run a :class:`Laboratory`.
 
     Nothing is run. A question that was added since has no answers in the records; grade again for that.
     """
@@ -784,26 +817,29 @@ def regrade(out, *, solutions=None, policies=None, dry_run=False, show=None):
         questions = course.questions(names, store.folder / "questions")
         policies = Policies.of(store.folder).and_also(policies or Policies())
         policies.demand(name for asked in questions.values() for name in asked)
-        ledger, laboratory, moved = Ledger(store.folder), Laboratory(), []
+        ledger, laboratory, moved = Ledger(store.folder, dry_run), Laboratory(), []
+        _take_in_decisions(ledger, store, show or sys.stderr)
         if not dry_run:
-            _take_in_decisions(ledger, store, show or sys.stderr)
             policies.keep(store.folder)
-        decisions = ledger.current()
+        standing = ledger.standing()
         judge = closing.enter_context(Judge(questions, Contracts(store.folder), store.log))
         for record in store.all():
-            again = marked(record, judge, decisions, policies)
+            again = marked(record, judge, standing, policies)
             if again == record:
                 continue
             # What people decided is their own doing, and asks for nobody's yes.
-            laboratory.add(with_decisions(record, decisions), again)
+            by_people = with_decisions(record, standing)
+            laboratory.add(by_people, again)
+            laboratory.by_people += moved_in(record, by_people)
             if not dry_run:
                 store.save(again)
-            if changed := changed_in(record, again):
-                moved.append(Moved(record["student"], record["assignment"], record["points"], again["points"], changed))
+            moved += moved_in(record, again)
         if dry_run:
             laboratory.write(store.folder)
             return laboratory
         store.log(f"graded again: {len(moved)} moved")
+        for line in said_of_people(store, standing):
+            print(line, file=show or sys.stderr)
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
     return moved
@@ -819,6 +855,13 @@ def changed_in(record, again):
     ]
 
 
+def moved_in(record, again):
+    """What moved from one record to another, if anything did."""
+    changed = changed_in(record, again)
+    points = record["points"], again["points"]
+    return [Moved(record["student"], record["assignment"], *points, changed)] if changed else []
+
+
 def bring_in_decisions(out, *, show=None):
     """Bring what people decided into marks and pages; nothing is judged anew.
 
@@ -832,13 +875,14 @@ def bring_in_decisions(out, *, show=None):
     with store.locked():
         ledger, moved = Ledger(store.folder), []
         _take_in_decisions(ledger, store, show or sys.stderr)
-        decisions = ledger.current()
+        standing = ledger.standing()
         for record in store.all():
-            again = with_decisions(record, decisions)
+            again = with_decisions(record, standing)
             if again != record:
                 store.save(again)
-                changed = changed_in(record, again)
-                moved.append(Moved(record["student"], record["assignment"], record["points"], again["points"], changed))
+                moved += moved_in(record, again)
         store.log(f"decisions brought in: {len(moved)} moved")
+        for line in said_of_people(store, standing):
+            print(line, file=show or sys.stderr)
         reports.write_all(store)
     return moved

@@ -1,6 +1,7 @@
 """A file that one process at a time has for itself, until it closes it: on Linux, on macOS and on Windows."""
 
 import time
+from typing import IO, Any
 
 try:
     import fcntl
@@ -12,7 +13,7 @@ BEYOND = 1 << 40
 PAUSE = 0.05  # seconds between two tries, where the system knows no longer wait
 
 
-def lock(file, wait=True):
+def lock(file: IO[Any], wait: bool = True) -> None:
     """Have an open file for oneself until it is closed.
 
     Raises

@@ -21,15 +21,25 @@ from tornado import httpserver, ioloop, netutil, web
 from ..authoring.author import to_page
 from ..checking.identity import plain_identity
 from ..checking.variants import text_of
-from .judging.cases import Contracts
-from .judging.ledger import Collision, Ledger, digest_of_answer
+from .judging.cases import Contracts, changed_since
+from .judging.ledger import (
+    LONGEST_WORDS,
+    REJECTED,
+    UNDER_REVIEW,
+    Appeal,
+    Collision,
+    Decision,
+    Ledger,
+    Worth,
+    digest_of_answer,
+)
 from .reporting import pages
 from .reporting.mathematics import answer_as_mathematics
 from .reporting.reports import deed
 from .reporting.templates_of_pages import ENVIRONMENT
 from .store import Store
 from .submissions.intake import SAYS
-from .tables import readable
+from .tables import number, readable
 
 ALONE = "127.0.0.1"
 POLICY = (
@@ -51,10 +61,11 @@ SHOWN = {
     "invalid": "not in the form asked for",
     "not attempted": "not attempted",
     "decided": "decided by a person",
+    "appeals": "with an open appeal",
+    "earlier": "decided, and changed since",
     "hints": "with a hint",
     "all": "all",
 }
-LONGEST_COMMENT = 4_000
 MOST_ABOVE = 4  # cells above the one of an answer that are shown first
 #: Code that fewer share is worth a look; code that more share is what everybody writes.
 FEW = 0.05
@@ -105,6 +116,7 @@ class Class:
     def __init__(self, folder, share=(1, 1)):
         self.store = Store(folder)
         self.ledger = Ledger(self.store.folder)
+        self.standing = self.ledger.standing()
         self.questions = {
             name: about
             for path in sorted(
@@ -143,60 +155,109 @@ class Class:
         if not text:
             return text
         said = SAYS.sub(lambda found: found[0].replace(found["who"], self._alias(found["who"])), text)
-        return self._names.sub(lambda found: self._alias(found[0]), said) if self._names else said
+        return self._names.sub(lambda found: self._alias(found[0]), said)
 
     def _alias(self, name):
         return self._known.get(plain_identity(name), "somebody")
 
     def _know_names(self):
         """All that students are called, in records and by themselves."""
-        self._known = {}
+        self._known, parts = {}, {}
         for record in self.records:
             identity = record["identity"]
-            called = [record["student"], *(identity.get(kind, "") for kind in ("name", "email", "canvas", "moodle"))]
-            for name in [*called, *identity.get("own", ()), *record.get("says", ())]:
+            email = identity.get("email", "")
+            called = [record["student"], *(identity.get(kind, "") for kind in ("name", "canvas", "moodle"))]
+            called += [email, email.partition("@")[0], *identity.get("own", ()), *record.get("says", ())]
+            for name in called:
                 if len(name) >= SHORTEST_NAME:
                     self._known.setdefault(plain_identity(name), self.aliases[record["student"]])
-        longest_first = sorted(self._known, key=len, reverse=True)
-        joined = "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first)
-        self._names = re.compile(rf"(?<!\w)(?:{joined})(?!\w)", re.I) if joined else None
+            # A first name alone, written as a name: `mark` is a word, and Mark is somebody.
+            for part in re.findall(r"\w+", identity.get("name", "")):
+                if len(part) >= SHORTEST_NAME and part[0].isupper():
+                    parts.setdefault(part, self.aliases[record["student"]])
+
+        def any_of(names):
+            longest_first = sorted(names, key=len, reverse=True)
+            return "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first) or "(?!)"
+
+        self._names = re.compile(rf"(?<!\w)(?:(?i:{any_of(self._known)})|{any_of(parts)})(?!\w)")
+        for part, alias in parts.items():
+            self._known.setdefault(plain_identity(part), alias)
 
     def _shuffled(self):
         """The students in an order that follows from their names, and does not tell them."""
         students = {record["student"] for record in self.records}
         return sorted(students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest())
 
-    def outcome(self, cluster, current):
+    def read(self):
+        """Read what was decided in the meantime."""
+        self.ledger.read()
+        self.standing = self.ledger.standing()
+
+    def outcome(self, cluster):
         """What counts for a cluster now, and who decided: decided only if all of it is."""
-        decided = [self.decision(cluster, record, current) for record in cluster.members]
+        decided = [self.standing.decision(record, cluster.question) for record in cluster.members]
         if all(decided):
             return "decided", sorted({one.who for one in decided})
         return cluster.mark.get("before", cluster.mark)["outcome"], []
 
-    @staticmethod
-    def decision(cluster, record, current):
-        found = current.get((record["student"], cluster.assignment, cluster.question))
-        return found if found and found.answer == digest_of_answer(record, cluster.question) else None
-
-    @staticmethod
-    def decision_on(cluster, record, current):
+    def decision_on(self, cluster, record):
         """What was decided last, be it on this answer or on one that was handed in before it."""
-        return current.get((record["student"], cluster.assignment, cluster.question))
+        return self.standing.decisions.get((record["student"], cluster.assignment, cluster.question))
+
+    def earlier(self, cluster, record):
+        """What has changed since a person decided: ``"answer"``, ``"question"`` or nothing."""
+        return changed_since(self.decision_on(cluster, record), record, self.contracts)
+
+    def appeals(self, cluster, record):
+        """The appeals against a mark, the first one first."""
+        return self.standing.appeals.get((record["student"], cluster.assignment, cluster.question), ())
+
+    def waits(self, cluster):
+        """How many of a cluster wait for a person: of an open appeal, too."""
+        undecided = cluster.mark.get("before", cluster.mark)["outcome"] == "undecided"
+        return sum(
+            undecided
+            and not self.standing.decision(record, cluster.question)
+            or any(one.is_open for one in self.appeals(cluster, record))
+            for record in cluster.members
+        )
+
+    def is_shown(self, cluster, what):
+        if what in ("appeals", "earlier"):
+            about = {"appeals": lambda one: any(each.is_open for each in self.appeals(cluster, one))}.get(
+                what, lambda one: self.earlier(cluster, one)
+            )
+            return any(map(about, cluster.members))
+        if what == "waiting":
+            return self.waits(cluster) > 0
+        return what in ("all", self.outcome(cluster)[0]) or (what == "hints" and cluster.hints)
+
+    def lines(self, cluster, record):
+        """The lines of the rubric of a question: what each is worth now, what the source says, how many used it."""
+        source = record["marks"][cluster.question].get("rubric", {})
+        found = dict.fromkeys(self.questions.get(cluster.question, {}).get("rubric", ()))
+        found |= dict.fromkeys(source)
+        used = Counter()
+        for one in self.ledger.decisions:
+            if one.question == cluster.question:
+                found |= dict.fromkeys(one.rubric)
+        for one in self.standing.decisions.values():
+            if one.question == cluster.question:
+                used.update(set(one.rubric))
+        found |= {line: None for question, line in self.standing.worths if question == cluster.question}
+        return [
+            (line, self.standing.worth(cluster.question, line, source.get(line)), source.get(line), used[line])
+            for line in found
+        ]
 
     def chosen(self, filters, hide_names=False):
         """The clusters that a grader wants to see, the largest of each question first."""
-        current, text = self.ledger.current(), filters.get("search", "").casefold()
+        text = filters.get("search", "").casefold()
         orders = {name: order for order, name in enumerate(self.questions)}
         found = []
         for cluster in self.clusters.values():
-            outcome, _ = self.outcome(cluster, current)
-            shown = filters.get("show", "waiting")
-            if not (
-                shown == "all"
-                or shown == outcome
-                or (shown == "waiting" and outcome == "undecided")
-                or (shown == "hints" and cluster.hints)
-            ):
+            if not self.is_shown(cluster, filters.get("show", "waiting")):
                 continue
             if filters.get("question") and filters["question"] != cluster.question:
                 continue
@@ -289,10 +350,10 @@ def _note_shared_tries(found, tried):
             for other in same - {one}:
                 together[one, other] += 1
                 where[one, other].add(question)
-    for (one, other), number in together.items():
-        if number > 1:
+    for (one, other), many in together.items():
+        if many > 1:
             for question in sorted(where[one, other]):
-                said = f"{number} unusual wrong answers were tried on the way that one other tried, too"
+                said = f"{many} unusual wrong answers were tried on the way that one other tried, too"
                 if said not in found[one, question]:
                     found[one, question].append(said)
 
@@ -360,21 +421,19 @@ class _Page(web.RequestHandler):
 class _Overview(_Page):
     def get(self, secret):
         filters, graded = self.filters(), self.graded
-        graded.ledger.read()
-        current = graded.ledger.current()
+        graded.read()
         found = graded.chosen(filters, self.settings["hide_names"])
-        outcomes = {cluster.id: graded.outcome(cluster, current) for cluster in found}
-        left = [one for one in graded.chosen({"show": "waiting"})]
-        worth = Counter()
+        outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
         guessable = {name: about for name, about in graded.questions.items() if about["guessable"] is not None}
-        for about in graded.questions.values():
-            worth["all"] += about["worth"]
+        clusters = graded.clusters.values()
         self.show(
             "overview.html",
             filters=filters,
             clusters=found,
             outcomes=outcomes,
-            left=sum(len(one.members) for one in left),
+            left=sum(map(graded.waits, clusters)),
+            appeals={one.id for one in clusters if graded.is_shown(one, "appeals")},
+            earlier=sum(graded.is_shown(one, "earlier") for one in clusters),
             titles={one.question: one.mark["title"] for one in graded.clusters.values()},
             text=lambda cluster: pages.answer_as_text(cluster.answer.get("plain"), 120),
             guessable=guessable,
@@ -390,17 +449,19 @@ class _Answer(_Page):
 
     def show_cluster(self, cluster, filters, collision=None, comment="", why=""):
         graded, name = self.graded, cluster.id
-        graded.ledger.read()
-        current = graded.ledger.current()
+        graded.read()
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         place = order.index(name) if name in order else None
         about = graded.contract(cluster)
         chosen = self.get_argument("member", "")
-        place_of = {str(number): one for number, one in enumerate(cluster.members)}
-        record = place_of.get(chosen, cluster.members[0])
-        seen = [graded.decision_on(cluster, one, current) for one in cluster.members]
+        number = int(chosen) if chosen.isdecimal() and int(chosen) < len(cluster.members) else 0
+        record = cluster.members[number]
+        seen = [graded.decision_on(cluster, one) for one in cluster.members]
         cells, near, pictures = graded.cells(cluster, record)
         judged = cluster.mark.get("before", cluster.mark)
+        students = {member["student"] for member in cluster.members}
+        lines = graded.lines(cluster, record)
+        worths = graded.standing.worths
         self.show(
             "answer.html",
             cluster=cluster,
@@ -412,6 +473,7 @@ class _Answer(_Page):
             if judged["outcome"] == "wrong" and judged["note"] not in ("", "authored")
             else "",
             record=record,
+            number=number,
             cells=cells,
             near=near,
             pictures=pictures,
@@ -419,14 +481,20 @@ class _Answer(_Page):
             seen=" ".join(one.id if one else NONE for one in seen),
             comment=comment,
             why=why,
-            decisions={one["student"]: graded.decision(cluster, one, current) for one in cluster.members},
-            history=[
-                one
-                for one in graded.ledger.decisions
-                if (one.assignment, one.question) == (cluster.assignment, cluster.question)
-                and one.student in {member["student"] for member in cluster.members}
+            decisions={one["student"]: graded.standing.decision(one, cluster.question) for one in cluster.members},
+            points_of=lambda one: graded.standing.points(one, cluster.mark),
+            earlier={one["student"]: graded.earlier(cluster, one) for one in cluster.members},
+            before={one["student"]: graded.decision_on(cluster, one) for one in cluster.members},
+            appeals=[
+                (place, one, appeal)
+                for place, one in enumerate(cluster.members)
+                for appeal in graded.appeals(cluster, one)
             ],
+            history=_history(graded.ledger.events, cluster, students),
             asked=Markup(_as_asked(about)),
+            given=about.get("public", {}).get("given", {}),
+            calls=about.get("public", {}).get("calls") or [],
+            case=record.get("cases", {}).get(cluster.question),
             right=Markup(answer_as_mathematics(about.get("plain"))),
             right_text=pages.answer_as_text(about.get("plain"), 2_000),
             answer=Markup(answer_as_mathematics(cluster.answer.get("plain"))),
@@ -438,7 +506,11 @@ class _Answer(_Page):
             total=len(order),
             following=order[place + 1] if place is not None and place + 1 < len(order) else None,
             previous=order[place - 1] if place else None,
-            rubric=self.settings["rubrics"][cluster.question],
+            rubric=[
+                (line, worth, used, worths[key].id if (key := (cluster.question, line)) in worths else NONE)
+                for line, worth, _, used in lines
+            ],
+            by_rubric=any(worth is not None for _, worth, *_ in lines),
         )
 
     def post(self, secret, name):
@@ -446,54 +518,143 @@ class _Answer(_Page):
         cluster = graded.clusters.get(name)
         if cluster is None:
             raise web.HTTPError(404)
+        graded.read()
+        deed_of_form = {"decision": self.decide, "appeal": self.appeal, "worths": self.change_worths}
+        if self.get_argument("form", "decision") not in deed_of_form:
+            raise web.HTTPError(400, "no such form")
+        comment, why = (self.get_argument(one, "")[:LONGEST_WORDS].strip() for one in ("comment", "why"))
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
-        taken_back = self.get_argument("credit") == "back"
         try:
-            points = None if taken_back else float(self.get_argument("credit").replace(",", "."))
-        except ValueError:
-            raise web.HTTPError(400, "no number") from None
-        worth = cluster.mark["worth"]
-        if points is not None and not 0 <= points <= worth:
-            raise web.HTTPError(400, "no such credit")
-        credit = None if points is None else points / worth if worth else 0.0
-        only, who = self.get_argument("only", ""), self.settings["grader"]
-        seen = dict(zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False))
-        members = [(place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))]
-        if not members:
-            raise web.HTTPError(400, "no such student")
-        rubric = [line.strip() for line in self.get_arguments("rubric") if line.strip()]
-        why = self.get_argument("why", "")[:LONGEST_COMMENT].strip()
-        comment = self.get_argument("comment", "")[:LONGEST_COMMENT].strip()
-        try:
-            if taken_back:
-                graded.ledger.take_back([record for _, record in members], cluster.question, who, why)
-            else:
-                graded.ledger.append(
-                    [
-                        graded.ledger.decision(
-                            record,
-                            cluster.question,
-                            credit,
-                            who=who,
-                            comment=comment,
-                            rubric=rubric,
-                            why=why,
-                            after=seen.get(place, NONE).removeprefix(NONE),
-                        )
-                        for place, record in members
-                    ],
-                    collisions=True,
-                )
+            stays = deed_of_form[self.get_argument("form", "decision")](cluster, comment, why)
         except Collision as error:
             self.set_status(409)
             self.show_cluster(cluster, filters, collision=error, comment=comment, why=why)
             return
-        self.settings["rubrics"][cluster.question].update(dict.fromkeys(rubric))
         # On to the one that came next, though the list may be shorter now.
         later = order[order.index(name) + 1 :] if name in order else []
-        target = later[0] if later and not only else name
+        target = later[0] if later and not stays else name
         query = urlencode({key: value for key, value in filters.items() if value})
         self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
+
+    def decide(self, cluster, comment, why):
+        """Enter a decision on all of a cluster or one of it, or take it back; say whether to stay at it."""
+        graded, who, said = self.graded, self.settings["grader"], self.get_argument("credit")
+        worth, only = cluster.mark["worth"], self.get_argument("only", "")
+        seen = dict(zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False))
+        members = [(place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))]
+        if not members:
+            raise web.HTTPError(400, "no such student")
+        if said == "back":
+            graded.ledger.take_back([record for _, record in members], cluster.question, who, why)
+            return bool(only)
+        rubric = list(dict.fromkeys(line.strip() for line in self.get_arguments("rubric") if line.strip()))
+        lines = {line: points for line, points, *_ in graded.lines(cluster, cluster.members[0])}
+        made = []
+        if new := self.get_argument("new", "").strip()[:LONGEST_WORDS]:
+            rubric.append(new)
+            if self.get_argument("new_points", "").strip():
+                lines[new] = self.points_said(self.get_argument("new_points"), worth)
+                change = {new: (lines[new], self.worth_in_force(cluster, new))}
+                made += graded.ledger.worths(cluster.question, change, self.source_of(cluster), who)
+        points = [lines.get(line) for line in rubric] if said == "rubric" else None
+        if points is None:
+            all_points = self.points_said(said, worth, least=0)
+        else:
+            all_points = min(worth, max(0, sum(one or 0 for one in points)))
+        accepts = self.get_argument("accepts", "") == "yes"
+        for place, record in members:
+            waiting = [one.id for one in graded.appeals(cluster, record) if one.is_open and accepts]
+            made.append(
+                graded.ledger.decision(
+                    record,
+                    cluster.question,
+                    all_points / worth if worth else 0.0,
+                    who=who,
+                    comment=comment,
+                    rubric=rubric,
+                    why=why,
+                    after=seen.get(place, NONE).removeprefix(NONE),
+                    points=points,
+                    appeal=waiting[0] if waiting else "",
+                )
+            )
+        graded.ledger.append(made, collisions=True)
+        return bool(only)
+
+    def appeal(self, cluster, comment, why):
+        """Raise an appeal, take it up, or reject it."""
+        number = self.get_argument("only", "")
+        if not number.isdecimal() or int(number) >= len(cluster.members):
+            raise web.HTTPError(400, "no such student")
+        record, state = cluster.members[int(number)], self.get_argument("state")
+        of = {one.id: one for one in self.graded.appeals(cluster, record)}.get(self.get_argument("of", ""))
+        words = self.get_argument("words", "")
+        more = {"state": state, "of": of, "after": self.get_argument("step", "")} if of else {}
+        if bool(of) != (state in (UNDER_REVIEW, REJECTED)):
+            raise web.HTTPError(400, "no such step")
+        try:
+            self.graded.ledger.appeal(record, cluster.question, words, who=self.settings["grader"], **more)
+        except Collision:
+            raise
+        except ValueError as error:
+            raise Collision(str(error)) from None
+        return True
+
+    def change_worths(self, cluster, comment, why):
+        """Say what lines of the rubric are worth; all that used them is scored anew."""
+        changes = {}
+        now = {line: points for line, points, *_ in self.graded.lines(cluster, cluster.members[0])}
+        for line, said, step in zip(*map(self.get_arguments, ("line", "points", "step")), strict=False):
+            if line not in now:
+                raise web.HTTPError(400, "no such line")
+            if said.strip():
+                points = self.points_said(said, cluster.mark["worth"])
+                if points != now[line]:
+                    changes[line] = points, step.removeprefix(NONE)
+        if changes:
+            made = self.graded.ledger.worths(
+                cluster.question, changes, self.source_of(cluster), self.settings["grader"]
+            )
+            self.graded.ledger.append(made, collisions=True)
+        return True
+
+    def points_said(self, said, worth, least=None):
+        try:
+            points = float(said.replace(",", "."))
+        except ValueError:
+            raise web.HTTPError(400, "no number") from None
+        # A line of a rubric may take points away.
+        if not (-worth if least is None else least) <= points <= worth:
+            raise web.HTTPError(400, "no such credit")
+        return points
+
+    def worth_in_force(self, cluster, line):
+        found = self.graded.standing.worths.get((cluster.question, line))
+        return found.id if found else ""
+
+    @staticmethod
+    def source_of(cluster):
+        return {line: points for line, points in cluster.mark.get("rubric", {}).items() if points is not None}
+
+
+def _history(events, cluster, students):
+    """What was decided on the answers of a cluster, said of them, and said of its rubric, in words."""
+    said = []
+    for one in events:
+        if isinstance(one, Worth):
+            if one.question == cluster.question:
+                said.append((one.when, one.who, "", f"“{one.line}” is worth {number(one.points)}", ""))
+        elif (one.assignment, one.question) == (cluster.assignment, cluster.question) and one.student in students:
+            if isinstance(one, Appeal):
+                said.append((one.when, one.who, one.student, f"appeal {one.state}", one.words))
+            elif isinstance(one, Decision) and one.credit is None:
+                words = "took an own decision back" if one.undoes else "taken back"
+                said.append((one.when, one.who, one.student, words, one.why))
+            else:
+                words = f"{number(one.credit * cluster.mark['worth'])} points"
+                words += " by the rubric" * (one.points is not None) + ", appeal accepted" * bool(one.appeal)
+                said.append((one.when, one.who, one.student, words, one.why))
+    return said
 
 
 #: What the page says in place of a decision where there is none.
@@ -504,7 +665,7 @@ def _as_asked(about):
     """The text of a question as these students saw it, with their numbers; its author is trusted."""
     if not about:
         return ""
-    return to_page(text_of(about["public"]) or about.get("text", ""), pages.formula)
+    return to_page("\n\n".join([about.get("text", ""), text_of(about["public"])]), pages.formula)
 
 
 def _prose(plain):
@@ -527,11 +688,6 @@ def application(graded, grader, port, hide_names=False):
     """The pages, as an application of Tornado."""
     secret = secrets.token_urlsafe(24)
     hosts = (f"{ALONE}:{port}", f"localhost:{port}")
-    rubrics = defaultdict(dict)
-    for name, about in graded.questions.items():
-        rubrics[name].update(dict.fromkeys(about.get("rubric", ())))
-    for one in graded.ledger.decisions:
-        rubrics[one.question].update(dict.fromkeys(one.rubric))
     return web.Application(
         [
             (r"/([^/]+)/", _Overview),
@@ -545,7 +701,6 @@ def application(graded, grader, port, hide_names=False):
             "hide_names": hide_names,
             "hosts": hosts,
             "origins": tuple(f"http://{host}" for host in hosts),
-            "rubrics": rubrics,
         },
     )
 

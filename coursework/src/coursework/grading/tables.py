@@ -23,7 +23,7 @@ def as_cell(value):
     return f"'{text}" if starts.startswith(STARTS_A_FORMULA) or str(value).startswith(STARTS_A_FORMULA) else text
 
 
-def as_written(cell):
+def as_written(cell: str) -> str:
     """The text that :func:`as_cell` marked."""
     plain = cell.removeprefix("'")
     return plain if plain != cell and unicodedata.normalize("NFKC", plain[:1]).startswith(STARTS_A_FORMULA) else cell

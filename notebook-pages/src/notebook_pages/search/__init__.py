@@ -1,7 +1,7 @@
 """The search: an index of places, made from the built pages, and the palette that asks it (``js``).
 
-Nothing is written for it but ``synonyms.yml``, the words of readers for what the book calls otherwise: the places, with
-their numbers, first sentences and characteristic words, are those of the pages.
+Nothing is written for it but ``synonyms.yml``, the words of readers for what the book calls otherwise, and what else
+they type for a place: the places, with their numbers, first sentences and characteristic words, are those of the pages.
 """
 
 import json
@@ -23,10 +23,12 @@ ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
 WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
 WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
-FIELDS = ("kind", "page", "anchor", "number", "title", "about", "tex", "weight")
+FIELDS = ("kind", "page", "anchor", "number", "title", "about", "weight", "asked")
+KINDS = ("page", "section", "term", "function", "exercise", "example", "equation")
 SYNONYMS = Path("synonyms.yml")
 LONGEST_SENTENCE = 100
 LITTLE = 0.5  # what counts no more than this, is found by its title alone
+ASKED = 0.8  # what a place counts at least that readers ask for in words of their own
 #: Sections of every chapter: nobody looks for them by their name.
 EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
 REST = "script, style, svg, pre, .eqno, table, .admonition-title"
@@ -96,8 +98,8 @@ def entries_of_page(page, article):
         for box in section.select("div.math[id]"):
             if box.find_parent("section") is section and box["id"] in numbers:
                 number = numbers[box["id"]]
-                called = {"kind": "equation", "title": f"Equation {number}: {title}", "number": number}
-                yield called | {"anchor": box["id"], "tex": tex[box["id"]]}
+                # Its title is its section's: the palette puts the two together.
+                yield {"kind": "equation", "title": "", "number": number, "anchor": box["id"], "tex": tex[box["id"]]}
     for exercise in article.select(".admonition.exercise[id]"):
         number, _, title = text_of(exercise.select_one(".admonition-title")).partition("(")
         body = exercise.select_one("section, div") or exercise
@@ -134,12 +136,14 @@ def weight_of(page):
         return 0.3
     if page.startswith("exercises/"):
         return LITTLE
-    return 0.8 if page.startswith("appendix/reference") else 1
+    return 0.9 if page.startswith("appendix/reference") else 1
 
 
 def index(site):
-    """What the palette asks: pages, places and synonyms, as plain data; and the words of each place's text."""
+    """What the palette asks: pages, places and synonyms, as plain data; and, for later, each place's words and TeX."""
     caption, pages, entries = captions(), [], []
+    synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else {}
+    asked = synonyms.pop("places", {})
     for path in pages_of(site):
         page = path.relative_to(site).with_suffix("").as_posix()
         if page in ("search", "404", "appendix/subject-index"):
@@ -153,20 +157,35 @@ def index(site):
             continue
         pages.append([page, found[0]["title"], caption.get(page, "")])
         weight = weight_of(page)
+        phrases = asked.pop(page, {})
         for entry in found:
-            entries.append(entry | {"page": len(pages) - 1} | ({"weight": weight} if weight != 1 else {}))
+            asked_here = phrases.pop(entry["anchor"], "")
+            counts = max(weight, ASKED) if asked_here else weight
+            entries.append(
+                entry | {"page": len(pages) - 1, "asked": asked_here} | ({"weight": counts} if counts != 1 else {})
+            )
+        if phrases:
+            raise KeyError(f"{SYNONYMS}: {page} has no {', '.join(map(repr, phrases))}")
+    if asked:
+        raise KeyError(f"{SYNONYMS}: there is no page {', '.join(map(repr, asked))}")
     words = [words_of(entry) if entry.get("weight", 1) > LITTLE else "" for entry in entries]
     for entry in entries:
         if entry.get("weight", 1) <= LITTLE:
             entry["about"] = ""
-    synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else []
-    found = {"pages": pages, "fields": FIELDS, "entries": [row(one) for one in entries], "synonyms": synonyms}
-    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), words
+    later = {"words": words, "tex": [[k, one["tex"]] for k, one in enumerate(entries) if "tex" in one]}
+    found = {
+        "pages": pages,
+        "fields": FIELDS,
+        "kinds": KINDS,
+        "entries": [row(one) for one in entries],
+        "synonyms": synonyms,
+    }
+    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), later
 
 
 def row(entry):
     """An entry without the names of its fields, and without what is empty at its end."""
-    values = [entry.get(field, "") for field in FIELDS]
+    values = [KINDS.index(entry["kind"]), *(entry.get(field, "") for field in FIELDS[1:])]
     while values[-1] == "":
         values.pop()
     return values
@@ -175,14 +194,14 @@ def row(entry):
 def write(site):
     """Write the palette with its index as one script: it answers from a disk, too, where pages may fetch nothing.
 
-    The words of the text, which weigh more than all the rest, come after the first answer, as another script.
+    The words of the text and the formulas, which weigh more than all the rest, come after it, as another script.
     """
     flags = ["--bundle", "--minify", "--format=iife", "--legal-comments=none", "--log-level=warning"]
     command = [NODE, ESBUILD, HERE / "js" / "palette.js", *flags]
     environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
     done = subprocess.run(command, check=True, env=environment, stdout=subprocess.PIPE)
-    found, words = index(site)
-    text = f"self.searchWords={json.dumps(words, ensure_ascii=False, separators=(',', ':'))};"
+    found, later = index(site)
+    text = f"self.searchWords={json.dumps(later, ensure_ascii=False, separators=(',', ':'))};"
     (site / WORDS).write_text(text, "utf8")
     found["words"] = f"{WORDS.as_posix()}?v={sha256(text.encode()).hexdigest()[:8]}"
     data = json.dumps(found, ensure_ascii=False, separators=(",", ":"))

@@ -5,85 +5,111 @@
 import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed, dcmFromQuaternion, determinant,
   dot, length, multiply, nearestDcm, quaternionFromDcm, scale, times, transpose, unit } from './mathematics.js';
 
-const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, SLACK = 1e-4;
+const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, READ_AS = 60, SLACK = 1e-4;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
-const WIDTHS = [3, 4, 7, 8, 9, 12, 16];
 const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
 // ---- what is pasted ------------------------------------------------------------------------------------
 
-const NUMBERS = /(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?=[fFlL]?(?![\w.]))/g;
-const KEYS = /["']?([A-Za-z_]\w*)["']?\s*[:=]\s*(?=[-+.\d])/g;
-const LEFT_OUT = /["']?\b(position|translation|header|stamp|location|covariance)\b["']?\s*[:=]\s*(\{[^}]*\}|\[[^\]]*\])?/gi;
-const DECLARATION = /^[^=\n]*\w\s*(\[\d*\]\s*)+=/gm;
-const NO_NUMBER = /(?<![A-Za-z])[-+]?(nan|inf(?:inity)?)(?![A-Za-z])/i;
+// The patterns of orientation_workbench.mismatch.spelling, made ready once for each table.
+const READY = new WeakMap();
+function spellingOf(table) {
+  if (!READY.has(table)) {
+    const said = table.spelling, made = (pattern, flags = 'gim') => new RegExp(pattern, flags);
+    const pairs = (entries) => entries.map(([pattern, replacement]) => [made(pattern), replacement]);
+    READY.set(table, { ...Object.fromEntries(Object.entries(said).filter(([, pattern]) => typeof pattern === 'string')
+      .map(([name, pattern]) => [name, made(pattern)])), cleaning: pairs(said.cleaning), signs: pairs(said['signs of a sum']),
+    orders: said['orders of angles'].map(([pattern, more]) => [made(pattern, 'im'), more]), value: made(said['not turns'] + said.value),
+    names: [[{ w: 0, x: 1, y: 2, z: 3 }, { order: 'wxyz' }], [PLACE_OF_ANGLE, said['yaw pitch roll']], [{ y: 0, p: 1, r: 2 }, said['yaw pitch roll']],
+      [{ x: 0, y: 1, z: 2 }, {}]] });
+  }
+  return READY.get(table);
+}
 const PLACE_OF_ANGLE = { yaw: 0, heading: 0, psi: 0, pitch: 1, theta: 1, roll: 2, bank: 2, phi: 2 };
+// Whether there is a match; the pattern is a global one.
+const has = (pattern, text) => text.search(pattern) >= 0;
+const firstOf = (pattern, text) => text.match(pattern)?.[0].trim();
 
 // The poses in a text: what kinds they may be of, their numbers, half a unit of the last digit; an Error tells what
 // was read and what is missing.
-export function readPoses(given, name, kind = null, noise = 0) {
-  const { rows, half, declared } = rowsOf(given, name);
-  const numbers = posesOf(rows, name, kind);
+export function readPoses(given, name, table, kind = null, noise = 0) {
+  const { rows, half, declared } = rowsOf(given, name, spellingOf(table));
+  const numbers = posesOf(rows, name, kind, half);
   if (numbers.some((pose) => pose.some((value) => !Number.isFinite(value)))) throw new Error(`the ${name} side holds a number that is not finite`);
   const kinds = kindsOf(numbers, kind, half + noise, name);
   return { kinds, numbers, half, declared, large: numbers.flat().some((value) => Math.abs(value) > 2 * Math.PI + 0.01) };
 }
 
-function rowsOf(given, name) {
-  let text = given.replace(/[\u2212\u2013]/g, '-').replace(/(#|\/\/|%).*/g, '');
-  text = withoutPlaces(text.replace(DECLARATION, ' '));
-  const wrong = NO_NUMBER.exec(text);
-  if (wrong) throw new Error(`the ${name} side holds '${wrong[0].trim()}', which is no number`);
-  const found = text.match(NUMBERS);
+function rowsOf(given, name, spelling) {
+  let text = spelling.cleaning.reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given);
+  const bare = text.replace(spelling.comment, '');
+  if (has(spelling.number, bare)) text = bare;   // what stands in comments alone was meant
+  text = withoutPlaces(decimalPoints(text), spelling);
+  const wrong = firstOf(spelling['not a number'], text), arithmetic = firstOf(spelling.arithmetic, text);
+  if (wrong) throw new Error(`the ${name} side holds '${wrong}', which is no number`);
+  if (arithmetic) throw new Error(`the ${name} side holds '${arithmetic}': paste the numbers that it comes to`);
+  text = sums(text, spelling);
+  const found = text.match(spelling.number);
   if (!found) {
     const start = text.trim().slice(0, 40);
     throw new Error(start ? `the ${name} side holds no numbers: '${start}'` : `the ${name} side is empty: paste its numbers`);
   }
-  const declared = /\u00b0|\bdeg(rees)?\b/i.test(text) ? { unit: 'degrees' } : {};
-  const half = halfUnit(found), named = labelled(text);
+  const declared = has(spelling.degrees, text) ? { unit: 'degrees' } : has(spelling.radians, text) ? { unit: 'radians' } : {};
+  const half = halfUnit(found), named = labelled(text, spelling);
   if (named) return { rows: named.rows, half, declared: { ...declared, ...named.more } };
-  const rows = [];
-  for (const line of text.split(/[\n;]/)) {
-    for (const piece of line.split(/\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/)) {
-      const row = piece.match(NUMBERS);
-      if (row) rows.push(row.map(Number));
-    }
-  }
-  return { rows, half, declared };
+  let rows = [...text.matchAll(spelling.innermost)].map(([, group]) => (group.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
+  const inBrackets = [3, 4, 9, 12, 16].includes(rows[0]?.length) && rows.every((row) => row.length === rows[0].length);
+  if (!inBrackets || rows.flat().length !== found.length) rows = rowsOfLines(text, spelling);
+  const said = rows.every((row) => row.length === 3) && spelling.orders.find(([pattern]) => pattern.test(text));
+  return { rows, half, declared: said ? { ...declared, ...said[1] } : declared };
 }
 
-function withoutPlaces(text) {
+function rowsOfLines(text, spelling) {
+  return text.split(/[\n;]/).flatMap((line) => line.split(/\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/))
+    .map((piece) => (piece.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
+}
+
+// Points where there are decimal commas: one in each of three numbers or more, and no point.
+function decimalPoints(text) {
+  const groups = (text.match(/\d[\d,]*\d|\d/g) ?? []).filter((group) => group.includes(','));
+  if (/\d\.|\.\d/.test(text) || groups.length < 3 || groups.some((group) => group.split(',').length > 2)) return text;
+  return text.replace(/(?<=\d),(?=\d)/g, '.');
+}
+
+// Names in the place of i, j and k, where quaternions are written as sums.
+function sums(text, spelling) {
+  if (!has(spelling.sum, text)) return text;
+  const joined = spelling.signs.reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), text);
+  return joined.replace(spelling['part of a sum'], (_, number, part) => ` ${'xyz'['ijk'.indexOf(part.toLowerCase())]}=${number} `)
+    .replace(spelling['scalar of a sum'], ' w=$1 ');
+}
+
+function withoutPlaces(text, spelling) {
   const kept = [];
   let below = null;
-  for (const line of text.split('\n')) {
+  for (const line of text.replace(spelling.value, ' ').split('\n')) {
     const inset = line.length - line.trimStart().length;
     if (below !== null && line.trim() && inset > below) continue;
-    const found = [...line.matchAll(LEFT_OUT)][0];
+    const found = [...line.matchAll(spelling['not turns'])][0];
     below = found && !line.slice(found.index + found[0].length).trim() ? inset : null;
-    kept.push(line.replace(LEFT_OUT, ' '));
+    kept.push(line.replace(spelling['not turns'], ' '));
   }
   return kept.join('\n');
 }
 
-function labelled(text) {
+function labelled(text, spelling) {
   const pairs = [];
-  for (const match of text.matchAll(KEYS)) {
-    const behind = new RegExp(NUMBERS.source, 'y');
+  for (const match of text.matchAll(spelling.named)) {
+    const behind = new RegExp(spelling.number.source, 'yi');
     behind.lastIndex = match.index + match[0].length;
     const number = behind.exec(text);
-    if (number) pairs.push([match[1].toLowerCase().replace(/^q/, '').replace(/^_+/, ''), Number(number[0])]);
+    if (number) pairs.push([match[1].toLowerCase().replace(/^(.*[_.])?q?_*/, ''), Number.parseFloat(number[0])]);
   }
-  const hasScalar = pairs.some(([key]) => key === 'w');
-  for (const [size, placeOf, more] of [[4, (key) => 'wxyz'.indexOf(key), {}], [3, (key) => PLACE_OF_ANGLE[key] ?? -1, { sequence: 'zyx' }],
-    [3, (key) => 'xyz'.indexOf(key), {}]]) {
-    const own = pairs.map(([key, value]) => [key.length === 1 || more.sequence ? placeOf(key) : -1, value]).filter(([place]) => place >= 0);
-    if (!own.length || own.length % size || (size === 3 && !more.sequence && hasScalar)) continue;
-    const rows = [];
-    for (let start = 0; start < own.length; start += size) {
-      const row = Array(size).fill(null);
-      for (const [place, value] of own.slice(start, start + size)) row[place] = value;
-      rows.push(row);
-    }
+  for (const [place, more] of spelling.names) {
+    const size = Math.max(...Object.values(place)) + 1, kept = pairs.filter(([key]) => Object.hasOwn(place, key));
+    if (!kept.length || kept.length % size || (size === 3 && 'x' in place && pairs.some(([key]) => key === 'w'))) continue;
+    const rows = blocks(Array(kept.length).fill(null), size);
+    kept.forEach(([key, value], which) => { rows[Math.floor(which / size)][place[key]] = value; });
     if (!rows.flat().includes(null)) return { rows, more };
   }
   return null;
@@ -105,9 +131,9 @@ const rowsOfNine = (numbers) => [0, 3, 6].map((k) => numbers.slice(k, k + 3));
 const gapsOf = (dcm) => dcm.map((row, i) => dcm.map((other, j) => Math.abs(dot(row, other) - (i === j ? 1 : 0))));
 const orthogonal = (rows) => blocks(rows, 3).every((dcm) => gapsOf(dcm).flat().every((gap) => gap < 0.1));
 
-function posesOf(rows, name, kind) {
-  const width = rows.every((row) => row.length === rows[0].length) ? rows[0].length : 0, flat = rows.flat();
-  const free = kind === null || kind === 'matrix';
+function posesOf(rows, name, kind, half) {
+  const width = rows.every((row) => row.length === rows[0].length) ? rows[0].length : 0, flat = rows.flat(), total = flat.length;
+  const free = kind === null || kind === 'matrix', four = kind === null || kind === 'quaternion';
   if (width === 3 && free && rows.length % 3 === 0 && (kind || orthogonal(rows))) return blocks(flat, 9);
   if (width === 4 && free) {
     if (rows.length % 4 === 0 && rows.every((row, k) => k % 4 < 3 || String(row) === '0,0,0,1')) {
@@ -116,21 +142,34 @@ function posesOf(rows, name, kind) {
     const turns = rows.map((row) => row.slice(0, 3));
     if (rows.length % 3 === 0 && orthogonal(turns)) return blocks(turns, 3).map((matrix) => matrix.flat());
   }
-  if (WIDTHS.includes(width) && !(width < 5 && kind === 'matrix')) return rows.map((row) => onePose(row, name));
-  if (WIDTHS.includes(flat.length)) return [onePose(flat, name)];
-  for (const size of [9, 16]) if (flat.length % size === 0) return blocks(flat, size).map((row) => onePose(row, name));
+  if ((width === 3 || width === 4) && kind !== 'matrix') return rows;
+  const among = width > 4 && four ? quaternionAmong(rows, half) : null;
+  if (among !== null) return rows.map((row) => row.slice(among, among + 4));
+  if ([9, 12, 16].includes(width)) return rows.map(nineOf);
+  for (const size of total > 8 ? [9, 12, 16] : [3, 4]) {
+    if (total % size || (size < 5 && total !== size)) continue;
+    const poses = blocks(flat, size).map((row) => (size > 4 ? nineOf(row) : row));
+    if (size > 4 && total !== size && !orthogonal(blocks(poses.flat(), 3))) continue;
+    return poses;
+  }
+  const place = total > 4 && four ? quaternionAmong([flat], half) : null;
+  if (place !== null) return [flat.slice(place, place + 4)];
   const where = rows.length === 1 ? 'one line' : `${rows.length} lines`;
-  throw new Error(`the ${name} side holds ${flat.length} number${flat.length === 1 ? '' : 's'} in ${where}: a pose takes 3 (angles, or a rotation `
-    + 'vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation)');
+  throw new Error(`the ${name} side holds ${total} number${total === 1 ? '' : 's'} in ${where}: a pose takes 3 (angles, or a rotation `
+    + 'vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); '
+    + 'beside a place, four that stand together and make length 1');
 }
 
-function onePose(row, name) {
-  if ([3, 4, 9].includes(row.length)) return row;
-  if (row.length === 16) return [0, 4, 8].flatMap((k) => row.slice(k, k + 3));
-  if (row.length === 12) return [0, 4, 8].flatMap((k) => row.slice(k, k + 3));
-  for (const part of [row.slice(-4), row.slice(0, 4)]) if (Math.abs(length(part) - 1) < 0.01) return part;
-  throw new Error(`the ${name} side holds ${row.length} numbers in a row, as of a place and a quaternion, but no four of them that `
-    + `stand together make length 1: the last four make ${short(length(row.slice(-4)), 4)}`);
+// The nine entries of a matrix, as printed, out of those of one with a place.
+const nineOf = (row) => (row.length === 9 ? row : [0, 4, 8].flatMap((k) => row.slice(k, k + 3)));
+
+// Where in each row four numbers of length 1 stand together: last, first, or in one place only.
+function quaternionAmong(rows, half) {
+  const width = rows[0].length;
+  if ([9, 12, 16].includes(width) && orthogonal(blocks(rows.flatMap(nineOf), 3))) return null;
+  const places = Array.from({ length: width - 3 }, (_, k) => k).filter((k) => rows.every((row) => Math.abs(length(row.slice(k, k + 4)) - 1) < 10 * SLACK + 2 * half));
+  if (places.includes(width - 4)) return width - 4;
+  return places.length === 1 || places[0] === 0 ? places[0] : null;
 }
 
 const short = (value, digits = 6) => String(Number(value.toPrecision(digits)));
@@ -235,6 +274,33 @@ function axesChoice(names, body, table) {
   return { words: `the ${whose}'s axes x, y, z are called ${parts.join(', ')} by the other program`, rarity: 0.6, faults: 1 };
 }
 
+// What two programs differ by as their manuals have it: as expected_relation of the table in Python.
+function expectedRelation(programs, kinds, table) {
+  if (!programs[0] || !programs[1]) return { inverse: false, body: SAME_AXES, world: SAME_AXES, rowsAreTheWorlds: false };
+  const axes = ['body', 'world'].map((what) => {
+    const [one, other] = programs.map((program) => program[what]);
+    if (!one || !other) return SAME_AXES;
+    return other.map((way) => (one.includes(way) ? AXES[one.indexOf(way)] : `-${AXES[one.indexOf(table.opposites[way])]}`)).join(' ');
+  });
+  const turned = programs.map((program, k) => program.inverse.includes(kinds[k]));
+  if (turned[1]) axes.reverse();
+  return { inverse: turned[0] !== turned[1], body: axes[0], world: axes[1], rowsAreTheWorlds: turned[1] };
+}
+
+// The axes that come of renaming twice: first as others says, then as names does.
+const after = (names, others) => names.split(' ').map((name) => {
+  const other = others.split(' ')['xyz'.indexOf(name.at(-1))];
+  return name.length > 1 ? opposite(other) : other;
+}).join(' ');
+
+// A relation that departs from the expected one as this one departs from none; its words stay what they were.
+function beyond(relation, expected) {
+  const [body, world] = relation.inverse ? [expected.world, expected.body] : [expected.body, expected.world];
+  const names = { body: after(relation.body, body), world: after(relation.world, world) };
+  return { ...relation, ...names, inverse: relation.inverse !== expected.inverse, left: axesMatrix(names.body),
+    right: transpose(axesMatrix(names.world)), said: { ...relation, swapped: relation.inverse !== expected.rowsAreTheWorlds } };
+}
+
 export function relationsOf(mirrored, table) {
   const best = new Map(), axes = SIGNED_AXES.map((names) => ({ names, body: axesChoice(names, true, table), world: axesChoice(names, false, table),
     left: determinant(axesMatrix(names)) < 0 }));
@@ -243,7 +309,9 @@ export function relationsOf(mirrored, table) {
       for (const world of axes) {
         if ((body.left !== world.left) !== mirrored) continue;
         const hand = body.names === world.names && body.names.replaceAll('-', '') === SAME_AXES && body.names.split('-').length === 2;
-        const faults = (hand ? 1 : body.body.faults + world.world.faults) + inverse, rarity = hand ? 0.1 : body.body.rarity + world.world.rarity;
+        // The rows of an inverse are the world's axes: they are said of the world.
+        const [one, other] = inverse ? [body.world, world.body] : [body.body, world.world];
+        const faults = (hand ? 1 : one.faults + other.faults) + inverse, rarity = hand ? 0.1 : one.rarity + other.rarity;
         if (faults > table['most faults']) continue;
         const turned = body.names.startsWith('-');
         const key = [inverse, turned ? opposite(body.names) : body.names, turned ? opposite(world.names) : world.names].join();
@@ -258,9 +326,19 @@ export function relationsOf(mirrored, table) {
   return [...best.values()].sort((one, other) => one.faults - other.faults || one.rarity - other.rarity || one.inverse - other.inverse);
 }
 
+const isShared = (group, value, table) => table.shared.some(([own, one]) => own === group && one === value);
+
+// Faults, rarity and words of the readings of both sides; what both do alike is no fault.
+function ofBoth(first, second) {
+  const alike = first.shared.filter((words) => second.shared.includes(words));
+  return { faults: first.faults + second.faults - 2 * alike.length, rarity: first.rarity + second.rarity + 0.1 * alike.length,
+    words: [['first', first], ['second', second]].flatMap(([side, { words }]) => words.filter((one) => !alike.includes(one))
+      .map((one) => `in the ${side} numbers ${one}`)) };
+}
+
 function readingsOf(kind, declared, large, table) {
   const base = { ...table.book, ...(large ? { unit: 'degrees' } : {}), ...declared };
-  let partial = [{ kind, choices: {}, faults: 0, rarity: 0, words: [] }];
+  let partial = [{ kind, choices: {}, faults: 0, rarity: 0, words: [], shared: [] }];
   for (const { group, choices } of table.kinds[kind]) {
     const longer = [];
     for (const chosen of partial) {
@@ -268,7 +346,8 @@ function readingsOf(kind, declared, large, table) {
         const usual = base[group] === option.value, more = usual || !(group in base) ? 0 : option.faults || 1;
         if (chosen.faults + more > table['most faults']) continue;
         longer.push({ kind, choices: { ...chosen.choices, [group]: option.value }, faults: chosen.faults + more,
-          rarity: chosen.rarity + (usual ? 0 : option.rarity), words: usual ? chosen.words : [...chosen.words, option.words] });
+          rarity: chosen.rarity + (usual ? 0 : option.rarity), words: usual ? chosen.words : [...chosen.words, option.words],
+          shared: more && isShared(group, option.value, table) ? [...chosen.shared, option.words] : chosen.shared });
       }
     }
     partial = longer;
@@ -286,14 +365,14 @@ function readingKey({ kind, choices }) {
 // ---- the search ----------------------------------------------------------------------------------------
 
 const fourthPowers = (dcm) => dcm.flat().reduce((sum, entry) => sum + entry ** 4, 0);
-const price = (one, other) => one.faults - other.faults || one.rarity - other.rarity;
+const costOf = ({ faults, rarity }) => Math.round((faults + rarity) * 1e6), price = (one, other) => costOf(one) - costOf(other);
 
 function sideOf(poses, declared, table) {
   const cheapest = new Map();
   for (const kind of poses.kinds) {
     const angles = kind === 'Euler angles' || kind === 'rotation vector' ? poses.numbers.flat() : poses.numbers.map((pose) => pose.at(-1));
     const large = kind !== 'quaternion' && angles.some((value) => Math.abs(value) > 2 * Math.PI + 0.01);
-    for (const reading of readingsOf(kind, { ...poses.declared, ...declared }, large, table)) {
+    for (const reading of readingsOf(kind, declared, large, table)) {
       const key = readingKey(reading), held = cheapest.get(key);
       if (!held || price(reading, held) < 0) cheapest.set(key, reading);
     }
@@ -315,15 +394,17 @@ function gapOf(relation, first, second) {
   return gap;
 }
 
-function chainsOf(first, second, noise, table) {
+function chainsOf(first, second, noise, table, expected) {
   const mirrored = (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
-  const relations = relationsOf(mirrored, table), within = [0, 1, 2, 3].map((most) => relations.filter(({ faults }) => faults <= most));
+  const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
+  const relations = relationsOf(mirrored !== aside, table).map((relation) => beyond(relation, expected)), within = [0, 1, 2, 3].map((most) => relations.filter(({ faults }) => faults <= most));
   const fits = [];
   let tried = 0;
   for (const one of first) {
     let turned = null;
     for (const other of second) {
-      const budget = table['most faults'] - one.reading.faults - other.reading.faults;
+      const shared = one.reading.shared.length && other.reading.shared.length;
+      const faults = shared ? ofBoth(one.reading, other.reading).faults : one.reading.faults + other.reading.faults, budget = table['most faults'] - faults;
       if (budget < 0) continue;
       tried += within[budget].length;
       const tolerance = Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise;
@@ -336,16 +417,14 @@ function chainsOf(first, second, noise, table) {
         if (!near) continue;
         const relation = relations[k], residual = gapOf(relation, one.dcms, other.dcms);
         if (residual <= tolerance) {
-          fits.push({ first: one.reading, second: other.reading, relation, residual,
-            faults: one.reading.faults + other.reading.faults + relation.faults,
-            rarity: one.reading.rarity + other.reading.rarity + relation.rarity });
+          fits.push({ first: one.reading, second: other.reading, relation, residual, faults: faults + relation.faults,
+            rarity: ofBoth(one.reading, other.reading).rarity + relation.rarity });
         }
       }
     }
   }
   for (const chain of fits) chain.words = wordsOf(chain, table).join('; ');
-  const tenths = ({ rarity }) => Math.round(rarity * 1e6);
-  fits.sort((a, b) => a.faults - b.faults || tenths(a) - tenths(b) || (a.words < b.words ? -1 : Number(a.words > b.words)));
+  fits.sort((a, b) => price(a, b) || (a.words < b.words ? -1 : Number(a.words > b.words)));
   return { fits, tried };
 }
 
@@ -355,8 +434,9 @@ function mountingsOf(first, second, noise, table) {
   const found = [];
   for (const one of first) {
     for (const other of second) {
+      const both = ofBoth(one.reading, other.reading);
       for (const inverse of [false, true]) {
-        const faults = one.reading.faults + other.reading.faults + inverse;
+        const faults = both.faults + inverse;
         if (faults >= table['most faults']) continue;
         const start = inverse ? one.dcms.map(transpose) : one.dcms, end = other.dcms;
         const tolerance = 3 * (Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise);
@@ -365,8 +445,7 @@ function mountingsOf(first, second, noise, table) {
             left: body ?? axesMatrix(SAME_AXES), right: world ?? axesMatrix(SAME_AXES) };
           const residual = gapOf({ ...relation, inverse: false }, start, end), total = faults + (body !== null) + (world !== null);
           if (residual <= tolerance && total <= table['most faults']) {
-            found.push({ first: one.reading, second: other.reading, relation, residual, faults: total,
-              rarity: one.reading.rarity + other.reading.rarity });
+            found.push({ first: one.reading, second: other.reading, relation, residual, faults: total, rarity: both.rarity });
             break;
           }
         }
@@ -441,8 +520,8 @@ function turnedNumbers(reading, numbers, turns) {
   return numbersFromDcm(reading, dcm.map((row) => scale(hand, row)))[0];
 }
 
-function furtherPose(all, poses, table) {
-  const chains = all.slice(0, LOOKED_AT), readings = [...new Set(chains.map(({ first }) => first))];
+function furtherPose(chains, readings, poses, table) {
+  if (chains.length > LOOKED_AT || readings.length > READ_AS) return table['further poses'].at(-1)[0];
   const decides = ([, turns]) => readings.every((reading) => {
     const own = chains.filter(({ first }) => first.kind === reading.kind);
     const keys = predictionsOf(own, { [reading.kind]: [turnedNumbers(reading, poses.numbers.at(-1), turns)] }, 2, table);
@@ -453,40 +532,46 @@ function furtherPose(all, poses, table) {
 
 // ---- the answer ----------------------------------------------------------------------------------------
 
-export function wordsOf({ first, second, relation }, table) {
-  const said = [['first', first], ['second', second]].flatMap(([side, { words }]) => words.map((one) => `in the ${side} numbers ${one}`));
+export function wordsOf({ first, second, relation: whole }, table) {
+  const said = ofBoth(first, second).words, relation = whole.said ?? whole;
   if (relation.inverse) said.push(`one is ${table.inverse[second.kind]}`);
   for (const whose of ['body', 'world']) {
     if (relation[`${whose} turn`]) said.push(`a constant turn on the ${whose}'s side, as of an instrument that is mounted askew`);
   }
   if (relation.hand) return [...said, `the other hand: ${/-(.)/.exec(relation.body)[1]} is reversed in the world and on the body`];
-  return [...said, axesChoice(relation.body, true, table).words, axesChoice(relation.world, false, table).words].filter(Boolean);
+  const [body, world] = (relation.swapped ?? relation.inverse) ? [relation.world, relation.body] : [relation.body, relation.world];
+  return [...said, axesChoice(body, true, table).words, axesChoice(world, false, table).words].filter(Boolean);
 }
 
 // As orientation_workbench.explain: { verdict, faults, residual, chains, furtherPose, poses } and the poses as read.
-export function explain(first, second, table, { firstDeclared = {}, secondDeclared = {}, noise = 0 } = {}) {
+export function explain(first, second, table, { firstDeclared = {}, secondDeclared = {}, firstProgram = '', secondProgram = '', noise = 0 } = {}) {
   const given = [[first, 'first', firstDeclared], [second, 'second', secondDeclared]];
-  const sides = given.map(([text, name, declared]) => readPoses(text, name, declared.kind ?? null, noise));
+  const programs = [firstProgram, secondProgram].map((program) => table.programs[program]), asTheirManualsSay = programs.every(Boolean);
+  const sides = given.map(([text, name, declared], k) => {
+    const poses = readPoses(text, name, table, declared.kind ?? null, noise);
+    return programs[k] && !declared.kind && poses.kinds.length === 2 ? { ...poses, kinds: [programs[k]['three numbers']] } : poses;
+  });
   const counts = sides.map(({ numbers }) => numbers.length);
   if (Math.min(...counts) === 1 && Math.max(...counts) === 3) {   // three rows that are no matrix were taken for three triples
     const which = counts.indexOf(3);
-    sides[which] = readPoses(given[which][0], given[which][1], 'matrix', noise);
+    sides[which] = readPoses(given[which][0], given[which][1], table, 'matrix', noise);
     counts[which] = 1;
   }
   if (counts[0] !== counts[1]) {
     throw new Error(`the first side holds ${counts[0]} poses and the second ${counts[1]}: they must be the same poses, in order`);
   }
-  const [one, other] = sides.map((poses, k) => sideOf(poses, given[k][2], table));
-  const { fits, tried } = chainsOf(one, other, noise, table);
+  // What stands in the text goes before what the manual says, and what the reader says before both.
+  const [one, other] = sides.map((poses, k) => sideOf(poses, { ...programs[k]?.declared, ...poses.declared, ...given[k][2] }, table));
+  const { fits, tried } = chainsOf(one, other, noise, table, expectedRelation(programs, sides.map(({ kinds }) => kinds[0]), table));
   let chains = classesOf(fits, sides[0], table);
   if (!chains.length) chains = mountingsOf(one, other, noise, table).slice(0, 1);
-  if (!chains.length) return { verdict: 'unrelated', faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
+  if (!chains.length) return { verdict: 'unrelated', asTheirManualsSay, faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
   const [best] = chains, tolerance = Math.max(one[0].doubt + other[0].doubt, SINGLE_PRECISION) + noise;
   const expected = tried * Math.min(1, (1.5 * tolerance) ** 3 / (6 * Math.PI)) ** counts[0];
   const decided = chains.length === 1 && (best.faults === 0 || expected < BY_CHANCE);
-  return { verdict: best.faults === 0 ? 'same' : decided ? 'named' : 'undecided', faults: wordsOf(best, table), chains, sides, poses: counts[0],
+  return { asTheirManualsSay, verdict: best.faults === 0 ? 'same' : decided ? 'named' : 'undecided', faults: wordsOf(best, table), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,
-    furtherPose: decided ? '' : furtherPose(chains, sides[0], table) };
+    furtherPose: decided ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], table) };
 }
 
 // The orientations of both sides at one pose, as the simplest chain reads them: what is drawn.
@@ -498,10 +583,11 @@ export function drawnDcms(explanation, table, pose) {
 }
 
 // For each of the words of a chain the page of the book that teaches it: [address, title].
-export function taughtBy({ first, second, relation }, table) {
-  const links = [];
-  for (const { kind, words } of [first, second]) {
-    for (const said of words) {
+export function taughtBy({ first, second, relation: whole }, table) {
+  const links = [], relation = whole.said ?? whole;
+  for (const { kind, words, shared } of [first, second]) {
+    const other = kind === first.kind && words === first.words ? second : first;
+    for (const said of words.filter((one) => !(shared.includes(one) && other.shared.includes(one)))) {
       const own = table.kinds[kind].find(({ choices }) => choices.some((option) => option.words === said));
       links.push(table.taught[own?.group] ?? null);
     }

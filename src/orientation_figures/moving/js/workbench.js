@@ -11,27 +11,31 @@ const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector
 const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers cannot decide.',
   unrelated: 'These are not the same motion.' };
 
+const AS_THE_MANUALS_SAY = { same: 'Both give what their manuals say.', named: 'They differ by more than their manuals say:' };
+
 const PLACE = 'workbench', STATE = ['first', 'second', 'first_is', 'second_is', 'noise'], LONGEST = 5000;
 
 // What an address carries to here, as far as a reader could have entered it: it may come from anybody.
-export function takenUp(content) {
+export function takenUp(content, programs = []) {
   const state = {};
   for (const side of ['first', 'second']) {
     if (typeof content[side] === 'string' && content[side].length <= LONGEST) state[side] = content[side];
-    const { kind = UNKNOWN, sequence = UNKNOWN } = content[`${side}_is`] ?? {};
-    if (KINDS.includes(kind) && [UNKNOWN, ...SEQUENCES].includes(sequence)) state[`${side}_is`] = { kind, sequence };
+    const { program = UNKNOWN, kind = UNKNOWN, sequence = UNKNOWN } = content[`${side}_is`] ?? {};
+    const known = KINDS.includes(kind) && [UNKNOWN, ...SEQUENCES].includes(sequence) && (program === UNKNOWN || programs.includes(program));
+    if (known) state[`${side}_is`] = { program, kind, sequence };
   }
   if (content.noise >= 0 && content.noise <= 30) state.noise = content.noise;
   // Numbers that were brought alone wait for the other program's.
   return 'first' in state && !('second' in state) ? { ...state, second: '' } : state;
 }
 
-const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN
+const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN };
+const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
   && (name === 'kind' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
 const several = (count, one) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
 export function render({ model, el }) {
-  const table = model.get('table'), examples = model.get('examples');
+  const table = model.get('table'), examples = model.get('examples'), programs = Object.keys(table.programs);
   let found = null, fault = '', shown = [IDENTITY, IDENTITY], stop = () => {};
   const sheet = new Sheet({ bounds: [-330, -172, 330, 172], size: SIZE, changed: () => redraw(),
     name: 'The frames of both programs, each beside the frame N.' });
@@ -40,14 +44,18 @@ export function render({ model, el }) {
   const sides = ['first', 'second'].map((side, k) => {
     const field = element('textarea', { rows: 5, spellcheck: 'false', 'aria-label': `What the ${side} program gives`,
       input: () => change(model, { [side]: field.value }) });
+    const read = element('p', { class: 'read' });
     const is = (name) => model.get(`${side}_is`)[name];
     const set = (values) => change(model, { [`${side}_is`]: { ...model.get(`${side}_is`), ...values } });
     const kind = choice({ name: `The ${side} numbers are`, options: KINDS, hidden: true, change: (value) => set({ kind: value }) });
     const sequence = choice({ name: `Sequence of the ${side} angles`, options: [[UNKNOWN, 'sequence not known'], ...SEQUENCES.map((one) => [one, [...one].join('-')])],
       hidden: true, change: (value) => set({ sequence: value }) });
+    const program = choice({ name: `The ${side} program`, options: [[UNKNOWN, 'program not known'], ...programs.map((one) => [one, one])], hidden: true,
+      change: (value) => set({ program: value }) });
     const title = ['The first program gives', 'The second program gives'][k];
-    return { field, box: group(title, 'side', element('div', { class: 'title' }, title),
-      element('div', { class: 'row-of-controls' }, kind.element, sequence.element), field), show() {
+    return { field, read, box: group(title, 'side', element('div', { class: 'title' }, title),
+      element('div', { class: 'row-of-controls' }, program.element, kind.element, sequence.element), field, read), show() {
+      program.show(is('program'));
       if (document.activeElement !== field && field.value !== model.get(side)) field.value = model.get(side);
       kind.show(is('kind'));
       sequence.show(is('sequence'));
@@ -59,7 +67,7 @@ export function render({ model, el }) {
       if (!name) return;
       const [first, second] = examples[name];
       for (const side of sides) side.field.blur();
-      change(model, { first, second, noise: 0, first_is: { kind: UNKNOWN, sequence: UNKNOWN }, second_is: { kind: UNKNOWN, sequence: UNKNOWN } });
+      change(model, { first, second, noise: 0, first_is: NOTHING_KNOWN, second_is: NOTHING_KNOWN });
     } });
   const noise = numberField({ name: 'They may differ by, in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
   const verdict = element('div', { class: 'controls answer' });
@@ -107,11 +115,15 @@ export function render({ model, el }) {
     found = null;
     try {
       found = explain(model.get('first'), model.get('second'), table, { firstDeclared: knownOf(model.get('first_is')),
-        secondDeclared: knownOf(model.get('second_is')), noise: model.get('noise') * Math.PI / 180 });
+        secondDeclared: knownOf(model.get('second_is')), firstProgram: model.get('first_is').program,
+        secondProgram: model.get('second_is').program, noise: model.get('noise') * Math.PI / 180 });
     } catch (error) {
       fault = error.message;
     }
-    sides.forEach((side, k) => put(side.field, 'aria-invalid', String(fault.includes(`the ${['first', 'second'][k]} side`))));
+    sides.forEach((side, k) => {
+      put(side.field, 'aria-invalid', String(fault.includes(`the ${['first', 'second'][k]} side`)));
+      write(side.read, found ? wasRead(found, k, table) : '');
+    });
     verdict.replaceChildren(...(found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'),
       element('p', {}, `${fault[0].toUpperCase()}${fault.slice(1)}.`)]));
     const line = found?.verdict === 'named' ? mendingLine(found.chains[0]) : '';
@@ -135,7 +147,7 @@ export function render({ model, el }) {
   function takeUp() {
     try {
       const carried = carriedBy(globalThis.location?.hash ?? '');
-      if (carried?.place === PLACE) change(model, takenUp(carried.content));
+      if (carried?.place === PLACE) change(model, takenUp(carried.content, programs));
     } catch (error) {
       words.say(error.message);
     }
@@ -152,9 +164,19 @@ export function render({ model, el }) {
   };
 }
 
+// What the numbers of one side were taken for.
+function wasRead(found, k, table) {
+  const { kinds, numbers } = found.sides[k], reading = found.chains[0]?.[k ? 'second' : 'first'], choices = reading?.choices ?? {};
+  const how = reading ? table.kinds[reading.kind].map(({ group }) => told(group, choices[group])).filter(Boolean).join(', ') : '';
+  return `Read as ${several(numbers.length, 'pose')}: ${reading?.kind ?? kinds.join(' or ')}${how && `, ${how}`}.`;
+}
+
+const told = (group, value) => ({ order: () => [...value].join(' '), sequence: () => [...value].join('-'), places: () => (value === '123' ? '' : `printed ${[...value].join(', ')}`),
+  signs: () => (value === '+++' ? '' : `signs ${[...value].join(' ')}`), 'place of the angle': () => `angle ${value}` }[group] ?? (() => value))();
+
 // The answer as the reader sees it; every fault leads to where the book teaches it.
 function answer(found, table) {
-  const best = found.chains[0], parts = [element('p', { class: 'heading' }, HEADINGS[found.verdict])];
+  const best = found.chains[0], parts = [element('p', { class: 'heading' }, found.asTheirManualsSay ? AS_THE_MANUALS_SAY[found.verdict] ?? HEADINGS[found.verdict] : HEADINGS[found.verdict])];
   if (found.verdict === 'unrelated') {
     const poses = found.poses === 1 ? 'this pose' : `these ${found.poses} poses`;
     return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.`)];

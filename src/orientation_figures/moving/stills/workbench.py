@@ -16,8 +16,15 @@ def drawing(figure):
         {name: value for name, value in side.items() if value != "not known"}
         for side in (figure.first_is, figure.second_is)
     ]
+    programs = [side.pop("program", None) for side in known]
     found = explain(
-        figure.first, figure.second, first_declared=known[0], second_declared=known[1], noise=np.radians(figure.noise)
+        figure.first,
+        figure.second,
+        first_declared=known[0],
+        second_declared=known[1],
+        first_program=programs[0],
+        second_program=programs[1],
+        noise=np.radians(figure.noise),
     )
     said = " ".join(str(found).splitlines())
     drawing = Drawing(

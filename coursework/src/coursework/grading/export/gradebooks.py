@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...checking.reply import plain_text
-from ..judging.ledger import Ledger, with_decisions
+from ..judging.ledger import Ledger, appeals_open, with_decisions
 from ..judging.term import EXCUSED, results_of, say_what_marked_costs
 from ..store import REFUSED, as_text, file_name, write
 from ..submissions.identity import local_parts
@@ -64,11 +64,11 @@ class Marks:
 
     def __init__(self, store, assignment=None, rules=None, as_of=None):
         self.store, self.rules = store, rules
-        decisions = Ledger(store.folder).current(as_of)
+        standing = Ledger(store.folder).standing(as_of)
         self.behind, self.records = 0, []
         for record in store.all():
             if assignment in (None, record["assignment"]):
-                decided = with_decisions(record, decisions)
+                decided = with_decisions(record, standing)
                 self.behind += decided != record
                 self.records.append(decided)
         if not self.records:
@@ -117,6 +117,10 @@ class Marks:
 
     def undecided(self, student):
         return sum(record["undecided"] for record in self.students[student])
+
+    def appeals(self, student):
+        """The questions of a student against whose marks an appeal is open."""
+        return [name for record in self.students[student] for name in appeals_open(record)]
 
     def identity(self, student):
         return self.students[student][0]["identity"]
@@ -302,12 +306,14 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_ru
     ]
     unmatched = [student for student in marks.students if student not in found.values() and student not in several]
     damaged, without = _with_damaged(marks.store, without)
+    appealing = [f"{student}: {', '.join(names)}" for student in marks.students if (names := marks.appeals(student))]
     for heading, names in (
         ("In the gradebook, and nothing was handed in", without),
         ("In the gradebook, and what they handed in cannot be graded", damaged),
         ("Handed in, and not in the gradebook", unmatched),
         ("Of a name that is there more than once, or that two go by, so not filled in", several),
         ("Not filled in, because a person has still to decide", waiting),
+        ("An appeal is open: what is filled in may change", appealing),
         ("Not filled in, because the system allows no change", closed),
         ("Excused by the rules, so not filled in", excused),
         ("A mark by hand, written over as you said", replaced),

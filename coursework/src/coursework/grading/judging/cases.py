@@ -14,6 +14,7 @@ from typing import Any
 
 from ...checking.variants import names_of_variants, numbers_of_variants, siblings_of
 from ..store import write
+from .ledger import Decision, digest_of_answer
 
 #: All that marks need of a question, as :func:`coursework.grading.judging.marking.about` gives it.
 Question = dict[str, Any]
@@ -160,6 +161,40 @@ class Contracts:
 
     def _path(self, version: str) -> Path:
         return self.folder / f"{version}.json"
+
+
+#: What of a question may change and an answer is judged by the same all the same.
+SAID_OF_IT = ("version", "title", "text", "guessable", "secret", "rubric")
+
+
+def judged_alike(one: Question | None, other: Question | None) -> bool:
+    """Whether answers are judged by two questions alike: a word of the text may be another, or what a line is worth.
+
+    Of a question that nobody kept nothing is known, and so nothing is said against it.
+    """
+    if one is None or other is None or one["version"] == other["version"]:
+        return True
+
+    def judging(question: Question) -> dict[str, Any]:
+        public = {name: value for name, value in question["public"].items() if name not in ("text", "shown", "picture")}
+        bare = {name: value for name, value in question.items() if name not in (*SAID_OF_IT, *NOT_KEPT)}
+        return {**bare, "public": public, "rubric": list(question.get("rubric") or ())}
+
+    return judging(one) == judging(other)
+
+
+def changed_since(decided: Decision | None, record: Mapping[str, Any], contracts: Contracts) -> str:
+    """What is another thing than when a person decided: ``"answer"``, ``"question"`` or nothing.
+
+    On another answer a decision does not count; on one that is judged otherwise by now it does, until somebody decides
+    again, and both are shown.
+    """
+    if decided is None or decided.question not in record["marks"]:
+        return ""
+    if decided.answer != digest_of_answer(record, decided.question):
+        return "answer"
+    now = record["marks"][decided.question]["version"]
+    return "" if judged_alike(contracts.of(decided.contract), contracts.of(now)) else "question"
 
 
 #: What belongs to the question of today, and not to one variant of it as it stood.

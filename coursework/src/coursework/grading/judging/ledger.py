@@ -1,9 +1,14 @@
 """What people decided on answers: a ledger that only grows, with who, when and why.
 
-Each line of ``ledger.jsonl`` is one decision on one answer. Of several decisions on the same answer the last one
-counts, and none is ever taken out; who takes an own decision back enters another one that says so, and what stood
-before it counts again. It belongs to the answer that was looked at: handed in anew, an answer is judged anew. Who
-decides names what was decided when they looked: if it is another by then, nothing is entered, and both are told.
+Each line of ``ledger.jsonl`` is an event: a :class:`Decision` on one answer, a step of an :class:`Appeal`, or what a
+line of a rubric is worth from now on (:class:`Worth`). Of several decisions on the same answer the last one counts, and
+none is ever taken out; who takes an own decision back enters another one that says so, and what stood before it counts
+again. A decision belongs to the answer that was looked at and to the question as it stood then: handed in anew, an
+answer is judged anew. Who decides names what was decided when they looked: if it is another by then, nothing is
+entered, and both are told.
+
+What all events come to is worked out whenever it is needed (:class:`Standing`), so that a line of a rubric whose worth
+changes scores anew what used it, and the marks of any day can be told.
 """
 
 import contextlib
@@ -12,21 +17,33 @@ import datetime
 import getpass
 import hashlib
 import json
+import math
 import os
 import secrets
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
 
 from ..locks import lock
 from ..submissions.identity import decoded
 from ..tables import as_written
 
 FILE = "ledger.jsonl"
+#: Of the lines; those of the first format say no ``event`` and are decisions.
+FORMAT = 2
 #: Where the beginning of a line is kept that was being written when the machine stopped.
 CUT = "ledger.cut"
-DECISIONS = "decisions.csv"
-KEYS = ("id", "when", "who", "student", "assignment", "question", "answer", "credit", "comment", "rubric", "why")
-#: What later versions added: lines without it are read as before.
-LATER = ("undoes", "after")
+DECISIONS, APPEALS = "decisions.csv", "appeals.csv"
+LONGEST_WORDS = 4_000
+
+Record = dict[str, Any]
+#: A student, an assignment, a question.
+Key = tuple[str, str, str]
+
+#: The states of an appeal, in their order; the last two close it.
+RAISED, UNDER_REVIEW, ACCEPTED, REJECTED = "raised", "under review", "accepted", "rejected"
+OPEN = (RAISED, UNDER_REVIEW)
 
 
 class Decision(NamedTuple):
@@ -43,13 +60,20 @@ class Decision(NamedTuple):
         From 0 to 1; ``None`` takes the decision ``undoes`` back, or all earlier ones where that is empty.
     comment : str
         For the student.
-    rubric : list of str
+    rubric : tuple of str
+        The lines that hold of this answer.
     why : str
         For those who grade.
     undoes : str
         The decision of the same person that is taken back.
     after : str
         The decision that counted when this one was made; empty where there was none.
+    contract : str
+        The version of the question by which the answer was judged when it was looked at; empty where nobody knows.
+    points : tuple of float or None
+        What each line of the rubric was worth, where the points are those of the rubric.
+    appeal : str
+        The appeal that is accepted by this decision.
     """
 
     id: str
@@ -61,10 +85,88 @@ class Decision(NamedTuple):
     answer: str
     credit: float | None
     comment: str = ""
-    rubric: tuple = ()
+    rubric: tuple[str, ...] = ()
     why: str = ""
     undoes: str = ""
     after: str = ""
+    contract: str = ""
+    points: tuple[float | None, ...] | None = None
+    appeal: str = ""
+
+    @property
+    def key(self) -> Key:
+        return self.student, self.assignment, self.question
+
+
+class Appeal(NamedTuple):
+    """A step of an appeal against a mark: it is raised, taken up, or rejected. A :class:`Decision` accepts it.
+
+    Attributes
+    ----------
+    id : str
+    when, who : str
+        Who entered it.
+    student, assignment, question, answer, contract : str
+        As of a decision.
+    state : str
+    words : str
+        The student's where it is raised, and later for the student.
+    appeal : str
+        The first step; empty if it is this one.
+    after : str
+        The last step when this one was taken.
+    """
+
+    id: str
+    when: str
+    who: str
+    student: str
+    assignment: str
+    question: str
+    answer: str
+    contract: str
+    state: str
+    words: str
+    appeal: str = ""
+    after: str = ""
+
+    @property
+    def key(self) -> Key:
+        return self.student, self.assignment, self.question
+
+
+class Worth(NamedTuple):
+    """What a line of a rubric is worth from now on.
+
+    Attributes
+    ----------
+    id : str
+    when, who : str
+    question, line : str
+    points : float
+    source : float or None
+        What the source said when this was entered: once it says something else, that is newer.
+    after : str
+        The event that was in force before.
+    """
+
+    id: str
+    when: str
+    who: str
+    question: str
+    line: str
+    points: float
+    source: float | None = None
+    after: str = ""
+
+
+Event = Decision | Appeal | Worth
+KINDS: dict[str, type[Decision] | type[Appeal] | type[Worth]] = {
+    "decision": Decision,
+    "appeal": Appeal,
+    "worth": Worth,
+}
+NAMES = {kind: name for name, kind in KINDS.items()}
 
 
 class Collision(ValueError):
@@ -76,37 +178,127 @@ class Collision(ValueError):
         What counts now.
     """
 
-    def __init__(self, message, decisions=()):
+    def __init__(self, message: str, decisions: Iterable[Decision] = ()) -> None:
         super().__init__(message)
         self.decisions = list(decisions)
 
 
-def digest_of_answer(record, question):
+def digest_of_answer(record: Mapping[str, Any], question: str) -> str:
     """A short text that follows from an answer, and from nothing else."""
     answer = record["answers"].get(question, {"outcome": "missing"})
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def stable_id(student, assignment, question):
+def contract_of(record: Mapping[str, Any], question: str) -> str:
+    """The version of the question by which an answer is judged."""
+    return str(record.get("marks", {}).get(question, {}).get("version", ""))
+
+
+def stable_id(student: str, assignment: str, question: str) -> str:
     """What a line of a table is known by, whatever a spreadsheet makes of the names in it."""
     return hashlib.sha256(json.dumps([student, assignment, question]).encode()).hexdigest()[:12]
 
 
-def with_decisions(record, decisions):
+# --- what all events come to --------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Appealed:
+    """An appeal with all its steps.
+
+    Attributes
+    ----------
+    steps : tuple of Appeal
+        In their order; the first one raised it.
+    accepted : Decision or None
+        The decision that accepts it, unless it was taken back.
+    """
+
+    steps: tuple[Appeal, ...]
+    accepted: Decision | None = None
+
+    @property
+    def id(self) -> str:
+        return self.steps[0].id
+
+    @property
+    def last(self) -> str:
+        """What happened last: who goes on names it."""
+        return self.accepted.id if self.accepted else self.steps[-1].id
+
+    @property
+    def state(self) -> str:
+        return ACCEPTED if self.accepted else self.steps[-1].state
+
+    @property
+    def is_open(self) -> bool:
+        return self.state in OPEN
+
+    def as_json(self) -> dict[str, str]:
+        """What its student is told."""
+        first, last = self.steps[0], self.steps[-1]
+        answered = self.accepted.comment if self.accepted else last.words if len(self.steps) > 1 else ""
+        return {"when": first.when[:10], "words": first.words, "state": self.state, "answer": answered}
+
+
+@dataclass(frozen=True)
+class Standing:
+    """What all events come to, at a time.
+
+    Attributes
+    ----------
+    decisions : dict
+        The decision that counts for each answer, by student, assignment and question.
+    appeals : dict
+        The appeals of each answer, in the order in which they were raised.
+    worths : dict
+        What lines are worth, by question and line, where somebody said so beside the source.
+    """
+
+    decisions: Mapping[Key, Decision] = field(default_factory=dict)
+    appeals: Mapping[Key, Sequence[Appealed]] = field(default_factory=dict)
+    worths: Mapping[tuple[str, str], Worth] = field(default_factory=dict)
+
+    def decision(self, record: Mapping[str, Any], question: str) -> Decision | None:
+        """The decision on an answer that counts; one on an answer that was handed in before does not."""
+        found = self.decisions.get((record["student"], record["assignment"], question))
+        return found if found and found.answer == digest_of_answer(record, question) else None
+
+    def worth(self, question: str, line: str, source: float | None) -> float | None:
+        """What a line of a rubric is worth: what was said last, on the page or in the source."""
+        said = self.worths.get((question, line))
+        return said.points if said is not None and said.source == source else source
+
+    def points(self, decision: Decision, mark: Mapping[str, Any]) -> float:
+        """The points of a decision: a share of all, or what the lines of the rubric are worth now."""
+        worth = float(mark["worth"])
+        if decision.points is None:
+            return round(worth * (decision.credit or 0), 4)
+        source, found = mark.get("rubric", {}), 0.0
+        for line, then in zip(decision.rubric, decision.points, strict=True):
+            now = self.worth(decision.question, line, source.get(line))
+            found += (then if now is None else now) or 0  # a line that nobody knows any more stays what it was
+        return round(min(worth, max(0.0, found)), 4)
+
+
+def with_decisions(record: Record, standing: Standing) -> Record:
     """A record with what people decided on its answers, in place of what the machine said; nothing is judged."""
     marks = {}
     for name, mark in record["marks"].items():
-        found = {key: value for key, value in mark.items() if key not in ("before", "decided")}
+        found = {key: value for key, value in mark.items() if key not in ("before", "decided", "appeals")}
         found |= mark.get("before", {})
-        decided = decisions.get((record["student"], record["assignment"], name))
-        if decided is not None and decided.answer == digest_of_answer(record, name):
+        decided = standing.decision(record, name)
+        if decided is not None:
             found |= {
                 "outcome": "decided",
-                "points": round(found["worth"] * decided.credit, 4),
+                "points": standing.points(decided, found),
                 "messages": [said for said in (*decided.rubric, decided.comment) if said],
                 "before": {key: found[key] for key in ("outcome", "note", "points", "messages")},
                 "decided": {"who": decided.who, "when": decided.when, "id": decided.id},
             }
+        appeals = standing.appeals.get((record["student"], record["assignment"], name), ())
+        if appeals:
+            found["appeals"] = [one.as_json() for one in appeals]
         marks[name] = found
     return {
         **record,
@@ -117,25 +309,40 @@ def with_decisions(record, decisions):
     }
 
 
+def appeals_open(record: Mapping[str, Any]) -> list[str]:
+    """The questions of a record against whose marks an appeal is open."""
+    return [
+        name
+        for name, mark in record["marks"].items()
+        if any(appeal["state"] in OPEN for appeal in mark.get("appeals", ()))
+    ]
+
+
 class Ledger:
-    """The decisions on a class.
+    """The events of a class.
 
     Parameters
     ----------
     folder : path
         The folder of results.
+    dry_run : bool
+        Nothing is written: what is entered counts for this object alone.
     """
 
-    def __init__(self, folder):
-        self.path = folder / FILE
-        self.decisions = []
+    def __init__(self, folder: Path, dry_run: bool = False) -> None:
+        self.path, self.dry_run = folder / FILE, dry_run
+        self.events: list[Event] = []
         self.read()
 
-    def read(self):
+    def read(self) -> None:
         """Read what was written, also by others, since the last time."""
-        self.decisions = list(decisions_in(self.path)) if self.path.exists() else []
+        self.events = list(events_in(self.path)) if self.path.exists() else []
 
-    def said_of_cut(self):
+    @property
+    def decisions(self) -> list[Decision]:
+        return [one for one in self.events if isinstance(one, Decision)]
+
+    def said_of_cut(self) -> str:
         """What a person should know if the last line was not written to its end; or nothing."""
         last = self.path.read_bytes().rpartition(b"\n")[2] if self.path.exists() else b""
         if not last or not _is_cut(last):
@@ -145,53 +352,85 @@ class Ledger:
             f"With the next decision its beginning is moved to {CUT}."
         )
 
-    def standing(self, until=None):
-        """The decisions on each answer that nobody took back, the last one last, by student, assignment, question.
+    # -- what they come to
 
-        With a time, those that stood then.
-        """
-        made = [one for one in self.decisions if until is None or datetime.datetime.fromisoformat(one.when) <= until]
-        # By time and not by line: ledgers of several graders may have been put together.
-        undone = {one.undoes for one in made if one.undoes}
-        found = {}
-        for one in sorted(made, key=lambda one: (one.when, one.id)):
-            key = one.student, one.assignment, one.question
-            if one.credit is not None and one.id not in undone:
-                found.setdefault(key, []).append(one)
-            elif one.credit is None and not one.undoes:
-                found.pop(key, None)
-        return found
+    def standing(self, until: datetime.datetime | None = None) -> Standing:
+        """What counts now, or counted at a time."""
+        made = _in_order(
+            one for one in self.events if until is None or datetime.datetime.fromisoformat(one.when) <= until
+        )
+        decisions = {key: several[-1] for key, several in _not_taken_back(made).items() if several}
+        worths = {(one.question, one.line): one for one in made if isinstance(one, Worth)}
+        undone = {one.undoes for one in made if isinstance(one, Decision) and one.undoes}
+        accepted = {one.appeal: one for one in made if isinstance(one, Decision) and one.id not in undone}
+        steps: dict[str, list[Appeal]] = {}
+        for one in made:
+            if isinstance(one, Appeal):
+                steps.setdefault(one.appeal or one.id, []).append(one)
+        appeals: dict[Key, list[Appealed]] = {}
+        for first, several in steps.items():
+            # Who takes it up again, or rejects it, after it was accepted, has the last word.
+            by = accepted.get(first)
+            if by is not None and any(step.after == by.id for step in several):
+                by = None
+            appeals.setdefault(several[0].key, []).append(Appealed(tuple(several), by))
+        return Standing(decisions, appeals, worths)
 
-    def current(self, until=None):
+    def current(self, until: datetime.datetime | None = None) -> Mapping[Key, Decision]:
         """The decision that counts for each answer, or counted at a time, by student, assignment and question."""
-        return {key: several[-1] for key, several in self.standing(until).items() if several}
+        return self.standing(until).decisions
 
-    def of(self, student, assignment):
+    def of(self, student: str, assignment: str) -> list[Decision]:
         """The decisions that count on one student's answers."""
         return [one for one in self.current().values() if (one.student, one.assignment) == (student, assignment)]
 
-    def hand_on(self, decisions, student):
-        """Enter decisions once more, for another name of the same student: who decided, and when, stays."""
-        self.append(
-            one._replace(
-                id=secrets.token_hex(8), student=student, why=f"{one.why}; was {one.student!r}".removeprefix("; ")
-            )
-            for one in decisions
-        )
+    # -- what is entered
 
-    def add(self, record, question, credit, *, who=None, comment="", rubric=(), why=""):
+    def hand_on(self, student: str, assignment: str, name: str) -> None:
+        """Enter all events once more, for another name of the same student: who decided, and when, stays."""
+        old = [
+            one
+            for one in self.events
+            if not isinstance(one, Worth) and (one.student, one.assignment) == (student, assignment)
+        ]
+        ids = {one.id: secrets.token_hex(8) for one in old}
+        copies: list[Event] = []
+        for one in old:
+            same: dict[str, Any] = {"id": ids[one.id], "student": name, "after": ids.get(one.after, one.after)}
+            same["appeal"] = ids.get(one.appeal, one.appeal)
+            if isinstance(one, Decision):
+                same["undoes"] = ids.get(one.undoes, one.undoes)
+                same["why"] = f"{one.why}; was {student!r}".removeprefix("; ")
+            copies.append(one._replace(**same))
+        self.append(copies)
+
+    def add(self, record: Mapping[str, Any], question: str, credit: float | None, **more: Any) -> Decision:
         """Decide on an answer of a record."""
-        one = self.decision(record, question, credit, who=who, comment=comment, rubric=rubric, why=why)
+        one = self.decision(record, question, credit, **more)
         self.append([one])
         return one
 
-    def decision(self, record, question, credit, *, who=None, comment="", rubric=(), why="", undoes="", after=""):
+    def decision(
+        self,
+        record: Mapping[str, Any],
+        question: str,
+        credit: float | None,
+        *,
+        who: str | None = None,
+        comment: str = "",
+        rubric: Iterable[str] = (),
+        why: str = "",
+        undoes: str = "",
+        after: str = "",
+        points: Iterable[float | None] | None = None,
+        appeal: str = "",
+    ) -> Decision:
         """A decision on an answer of a record, which is not entered yet."""
         if credit is not None and not 0 <= credit <= 1:
             raise ValueError(f"A credit is a number from 0 to 1, and this is {credit}.")
         return Decision(
             secrets.token_hex(8),
-            datetime.datetime.now(datetime.UTC).isoformat(timespec="microseconds"),
+            _now(),
             who or getpass.getuser(),
             record["student"],
             record["assignment"],
@@ -203,9 +442,74 @@ class Ledger:
             why,
             undoes,
             after,
+            contract_of(record, question),
+            None if points is None else tuple(points),
+            appeal,
         )
 
-    def take_back(self, records, question, who, why=""):
+    def appeal(
+        self,
+        record: Mapping[str, Any],
+        question: str,
+        words: str,
+        *,
+        state: str = RAISED,
+        of: Appealed | None = None,
+        after: str = "",
+        who: str | None = None,
+    ) -> Appeal:
+        """Raise an appeal, or take the next step ``of`` one, upon the step that was seen.
+
+        Raises
+        ------
+        ValueError
+            It says nothing, or this is no step that it can take.
+        Collision
+            Somebody else took a step in the meantime.
+        """
+        words = words.strip()[:LONGEST_WORDS]
+        if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
+            raise ValueError(f"An appeal is raised, then under review or rejected, and this is {state!r}.")
+        if not words and state != UNDER_REVIEW:
+            raise ValueError("What the student says is missing." if state == RAISED else "Say why it is rejected.")
+        one = Appeal(
+            secrets.token_hex(8),
+            _now(),
+            who or getpass.getuser(),
+            record["student"],
+            record["assignment"],
+            question,
+            digest_of_answer(record, question),
+            contract_of(record, question),
+            state,
+            words,
+            of.id if of else "",
+            after,
+        )
+        self.append([one], collisions=True)
+        return one
+
+    @staticmethod
+    def worths(
+        question: str, changes: Mapping[str, tuple[float, str]], source: Mapping[str, float], who: str | None = None
+    ) -> list[Worth]:
+        """What lines of a rubric are worth from now on, which is not entered yet.
+
+        Parameters
+        ----------
+        question : str
+        changes : mapping
+            By line: the points, and the event that was in force when somebody looked, or nothing.
+        source : mapping
+            What the source says of each line.
+        """
+        who = who or getpass.getuser()
+        return [
+            Worth(secrets.token_hex(8), _now(), who, question, line, points, source.get(line), after)
+            for line, (points, after) in changes.items()
+        ]
+
+    def take_back(self, records: Iterable[Mapping[str, Any]], question: str, who: str, why: str = "") -> None:
         """Take back the last decision of a person on each of these answers; what stood before it counts again.
 
         Raises
@@ -214,10 +518,9 @@ class Ledger:
             None of the decisions that stand is this person's.
         """
         with self._alone() as file:
-            standing = self.standing()
+            standing = _not_taken_back(_in_order(self.events))
             mine = [
-                (record, [one for one in standing.get((record["student"], record["assignment"], question), ())])
-                for record in records
+                (record, standing.get((record["student"], record["assignment"], question), [])) for record in records
             ]
             own = [(record, [one for one in several if one.who == who]) for record, several in mine]
             if not any(several for _, several in own):
@@ -232,31 +535,48 @@ class Ledger:
                 ],
             )
 
-    def append(self, decisions, collisions=False):
-        """Write decisions at the end, all or none; what stands before is never touched.
+    def append(self, events: Iterable[Event], collisions: bool = False) -> None:
+        """Write events at the end, all or none; what stands before is never touched.
 
         Raises
         ------
         Collision
-            With ``collisions``, if what counts is another decision than the one that each says to come ``after``.
+            With ``collisions``, if what counts is another event than the one that each says to come ``after``.
         """
-        decisions = list(decisions)
+        events = list(events)
+        if self.dry_run:
+            self.events += events
+            return
         with self._alone() as file:
             if collisions:
-                current = self.current()
-                keys = [(one.student, one.assignment, one.question) for one in decisions]
-                others = [
-                    current[key]
-                    for key, one in zip(keys, decisions, strict=True)
-                    if key in current and current[key].id != one.after
-                ]
-                gone = any(one.after and key not in current for key, one in zip(keys, decisions, strict=True))
-                if others or gone:
-                    raise Collision("Somebody else decided in the meantime.", others)
-            self._write(file, decisions)
+                self._demand_seen(events)
+            self._write(file, events)
+
+    def _demand_seen(self, events: Sequence[Event]) -> None:
+        standing = self.standing()
+        decided = [one for one in events if isinstance(one, Decision)]
+        others = [
+            standing.decisions[one.key]
+            for one in decided
+            if one.key in standing.decisions and standing.decisions[one.key].id != one.after
+        ]
+        if others or any(one.after and one.key not in standing.decisions for one in decided):
+            raise Collision("Somebody else decided in the meantime.", others)
+        appeals = {one.id: one for several in standing.appeals.values() for one in several}
+        for one in events:
+            if isinstance(one, Decision) and one.appeal and not appeals[one.appeal].is_open:
+                raise Collision("Somebody else settled the appeal in the meantime.")
+            if isinstance(one, Appeal) and one.appeal and appeals[one.appeal].last != one.after:
+                raise Collision("Somebody else went on with the appeal in the meantime.")
+            if isinstance(one, Appeal) and not one.appeal and any(x.is_open for x in standing.appeals.get(one.key, ())):
+                raise Collision("An appeal against this mark is open already.")
+            if isinstance(one, Worth):
+                before = standing.worths.get((one.question, one.line))
+                if (before.id if before else "") != one.after:
+                    raise Collision(f"Somebody else changed what “{one.line}” is worth in the meantime.")
 
     @contextlib.contextmanager
-    def _alone(self):
+    def _alone(self) -> Iterator[BinaryIO]:
         """Keep other writers away, and know what they have written."""
         with open(self.path, "ab+") as file:
             lock(file)
@@ -275,36 +595,37 @@ class Ledger:
             self.read()
             yield file
 
-    def _write(self, file, decisions):
-        file.write(b"".join(json.dumps(one._asdict(), ensure_ascii=False).encode() + b"\n" for one in decisions))
+    def _write(self, file: BinaryIO, events: Sequence[Event]) -> None:
+        file.write(b"".join(_line(one) for one in events))
         file.flush()
         os.fsync(file.fileno())
-        self.decisions += decisions
+        self.events += events
 
-    def merge(self, path):
-        """Take in the decisions of another grader's ledger; give how many are new, and those that differ.
+    def merge(self, path: Path) -> tuple[list[Event], list[tuple[Decision, Decision]]]:
+        """Take in the events of another grader's ledger; give those that are new, and those that differ.
 
         Returns
         -------
-        number : int
+        new : list
         differing : list of (Decision, Decision)
             Where both decided on one answer and not the same: the later one counts.
         """
-        known = {one.id for one in self.decisions}
+        known = {one.id for one in self.events}
         before = self.current()
-        new = [one for one in decisions_in(path) if one.id not in known]
+        new = [one for one in events_in(path) if one.id not in known]
         differing = [
-            (before[key], one)
+            (before[one.key], one)
             for one in new
-            if (key := (one.student, one.assignment, one.question)) in before
-            and (before[key].credit, before[key].answer) != (one.credit, one.answer)
-            and before[key].who != one.who
+            if isinstance(one, Decision)
+            and one.key in before
+            and (before[one.key].credit, before[one.key].answer) != (one.credit, one.answer)
+            and before[one.key].who != one.who
         ]
         if new:
             self.append(new)
-        return len(new), differing
+        return new, differing
 
-    def take_in_table(self, path, records):
+    def take_in_table(self, path: Path, records: Iterable[Record]) -> list[str]:
         """Enter the decisions of a table that a person filled in; say what became of every line.
 
         Parameters
@@ -323,27 +644,18 @@ class Ledger:
         ValueError
             A line cannot be read; nothing is entered then.
         """
-        if not path.exists():
-            return []
-        by_id, by_names = {}, {}
-        for record in records:
-            for question in record["marks"]:
-                by_id[stable_id(record["student"], record["assignment"], question)] = record, question
-                by_names.setdefault((record["student"], question), []).append((record, question))
         unused, wanted = [], []
         # What was entered from this table, and changed since, is not entered again.
         why = f"from {path.name}"
-        entered = {(one.student, one.assignment, one.question): one for one in self.decisions if one.why == why}
-        for number, row in _rows(path):
+        entered = {one.key: one for one in self.decisions if one.why == why}
+        for number, row, fitting in _fitting_rows(path, records, "credit"):
             credit = _credit(row.get("credit", ""), f"{path}, line {number}")
             if credit is None:
                 continue
-            names = as_written(row.get("student", "")), row.get("question", "")
-            fitting = [by_id[row["id"]]] if row.get("id") in by_id else by_names.get(names, [])
-            if len(fitting) != 1:
-                unused.append(f"line {number}: there is no answer of {names[0]!r} to {names[1]!r}")
+            if isinstance(fitting, str):
+                unused.append(f"line {number}: {fitting}")
                 continue
-            record, question = fitting[0]
+            record, question = fitting
             known = entered.get((record["student"], record["assignment"], question))
             comment = row.get("comment", "")
             same = known and (known.credit, known.comment, known.answer) == (
@@ -352,14 +664,83 @@ class Ledger:
                 digest_of_answer(record, question),
             )
             if not same:
-                wanted.append((record, question, credit, comment))
-        for record, question, credit, comment in wanted:
-            self.add(record, question, credit, comment=comment, why=why)
+                wanted.append(self.decision(record, question, credit, comment=comment, why=why))
+        if wanted:
+            self.append(wanted)
+        return unused
+
+    def take_in_appeals(self, path: Path, records: Iterable[Record]) -> list[str]:
+        """Raise the appeals of a table, each once; say which lines fit no answer.
+
+        Parameters
+        ----------
+        path : path
+            A table with the columns ``words`` and ``id``, or ``student`` and ``question``.
+        records : iterable of dict
+        """
+        unused = []
+        raised = {(*one.key, one.words) for one in self.events if isinstance(one, Appeal)}
+        for number, row, fitting in _fitting_rows(path, records, "words"):
+            words = as_written(row.get("words", "")).strip()[:LONGEST_WORDS]
+            if not words:
+                continue
+            if isinstance(fitting, str):
+                unused.append(f"line {number}: {fitting}")
+                continue
+            record, question = fitting
+            if (record["student"], record["assignment"], question, words) in raised:
+                continue
+            try:
+                self.appeal(record, question, words)
+            except Collision as error:
+                unused.append(f"line {number}: {error}")
         return unused
 
 
-def decisions_in(path):
-    """The decisions of a ledger, but for a last line that was not written to its end: nobody was told that it counts.
+def _now() -> str:
+    return datetime.datetime.now(datetime.UTC).isoformat(timespec="microseconds")
+
+
+def _in_order(events: Iterable[Event]) -> list[Event]:
+    """Events by time, since ledgers of several graders may have been put together; but none before what it came after.
+
+    A clock may be wrong, or be set back: who saw another decision decided later all the same.
+    """
+    events = list(events)
+    by_id = {one.id: one for one in events}
+    places: dict[str, tuple[str, int]] = {}
+
+    def place(one: Event) -> tuple[str, int]:
+        chain = [one]
+        while chain[-1].id not in places and (before := by_id.get(chain[-1].after)) and before not in chain:
+            chain.append(before)
+        for each in reversed(chain):
+            if each.id not in places:
+                when, order = places.get(each.after, ("", 0))
+                places[each.id] = (when, order + 1) if when >= each.when else (each.when, 0)
+        return places[one.id]
+
+    return sorted(events, key=lambda one: (*place(one), one.id))
+
+
+def _not_taken_back(made: Sequence[Event]) -> dict[Key, list[Decision]]:
+    """The decisions on each answer that nobody took back, the last one last."""
+    decisions = [one for one in made if isinstance(one, Decision)]
+    undone = {one.undoes for one in decisions if one.undoes}
+    found: dict[Key, list[Decision]] = {}
+    for one in decisions:
+        if one.credit is not None and one.id not in undone:
+            found.setdefault(one.key, []).append(one)
+        elif one.credit is None and not one.undoes:
+            found.pop(one.key, None)
+    return found
+
+
+# --- lines ---------------------------------------------------------------------------------------
+
+
+def events_in(path: Path) -> Iterator[Event]:
+    """The events of a ledger, but for a last line that was not written to its end: nobody was told that it counts.
 
     Raises
     ------
@@ -369,49 +750,95 @@ def decisions_in(path):
     with open(path, encoding="utf8", errors="replace") as file:
         for number, line in enumerate(file, 1):
             try:
-                yield _decision(line)
-            except (ValueError, TypeError, KeyError):
+                yield _event(line)
+            except (ValueError, TypeError, KeyError) as error:
                 if not line.endswith("\n"):
                     return
+                said = str(error) if isinstance(error, NewerFormat) else f"this is no decision: {line[:80]!r}. "
                 raise ValueError(
-                    f"{path}, line {number}: this is no decision: {line[:80]!r}. Somebody changed the file: move "
-                    "the line into a file of its own, and look at that answer again."
+                    f"{path}, line {number}: {said}"
+                    if isinstance(error, NewerFormat)
+                    else f"{path}, line {number}: {said}Somebody changed the file: move the line into a file of its "
+                    "own, and look at that answer again."
                 ) from None
 
 
-def _is_cut(line):
-    """Whether a last line, without the end of a line, is no whole decision."""
+class NewerFormat(ValueError):
+    """A later version wrote this."""
+
+
+def _is_cut(line: bytes) -> bool:
+    """Whether a last line, without the end of a line, is no whole event."""
     try:
-        _decision(line.decode("utf8", "replace"))
+        _event(line.decode("utf8", "replace"))
+    except NewerFormat:
+        return False
     except (ValueError, TypeError, KeyError):
         return True
     return False
 
 
-def _decision(line):
-    """What a line says; raises ``ValueError``, ``TypeError`` or ``KeyError`` if it is no decision."""
+def _line(one: Event) -> bytes:
+    said = {"format": FORMAT, "event": NAMES[type(one)], **one._asdict()}
+    return json.dumps(said, ensure_ascii=False).encode("utf8", "backslashreplace") + b"\n"
+
+
+def _event(line: str) -> Event:
+    """What a line says; raises ``ValueError``, ``TypeError`` or ``KeyError`` if it is none."""
     found = json.loads(line)
-    credit = found["credit"]
-    if not set(KEYS) <= set(found) <= {*KEYS, *LATER} or not (credit is None or 0 <= credit <= 1):
+    if found.pop("format", 1) > FORMAT:
+        raise NewerFormat("a later version of coursework wrote this. Install that one.")
+    kind = KINDS[found.pop("event", "decision")]
+    for name in ("rubric", "points"):
+        if isinstance(found.get(name), list):
+            found[name] = tuple(found[name])
+    made = kind(**found)
+    credit = found["credit"] if isinstance(made, Decision) else None
+    if not all(isinstance(found[name], str) for name in ("id", "when", "who")):
+        raise TypeError
+    datetime.datetime.fromisoformat(made.when)
+    if not (credit is None or 0 <= credit <= 1):
         raise ValueError
-    return Decision(**{**found, "rubric": tuple(found["rubric"])})
+    if isinstance(made, Decision) and made.points is not None and len(made.points) != len(made.rubric):
+        raise ValueError
+    if isinstance(made, Worth) and not math.isfinite(made.points):
+        raise ValueError
+    return made
 
 
-def _rows(path):
+def _fitting_rows(
+    path: Path, records: Iterable[Record], column: str
+) -> Iterator[tuple[int, dict[str, str], tuple[Record, str] | str]]:
+    """The lines of a table, each with the record and the question that it means, or why there is none."""
+    if not path.exists():
+        return
+    by_id: dict[str, tuple[Record, str]] = {}
+    by_names: dict[tuple[str, str], list[tuple[Record, str]]] = {}
+    for record in records:
+        for question in record["marks"]:
+            by_id[stable_id(record["student"], record["assignment"], question)] = record, question
+            by_names.setdefault((record["student"], question), []).append((record, question))
+    for number, row in _rows(path, column):
+        names = as_written(row.get("student", "")), row.get("question", "")
+        fitting = [by_id[row["id"]]] if row.get("id") in by_id else by_names.get(names, [])
+        yield number, row, fitting[0] if len(fitting) == 1 else f"there is no answer of {names[0]!r} to {names[1]!r}"
+
+
+def _rows(path: Path, column: str) -> Iterator[tuple[int, dict[str, str]]]:
     text = decoded(path.read_bytes())
     first = text.split("\n", 1)[0]
     reader = csv.reader(text.splitlines(keepends=True), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
-    if "credit" not in header or not ("id" in header or {"student", "question"} <= set(header)):
+    if column not in header or not ("id" in header or {"student", "question"} <= set(header)):
         raise ValueError(
-            f"{path}: a table of decisions has the columns credit and id, or credit, student and question; "
-            f"this one has {', '.join(header) or 'none'}."
+            f"{path}: this table has the columns {column} and id, or {column}, student and question; "
+            f"there are {', '.join(header) or 'none'}."
         )
     for cells in reader:
         yield reader.line_num, dict(zip(header, (cell.strip() for cell in cells), strict=False))
 
 
-def _credit(text, where):
+def _credit(text: str, where: str) -> float | None:
     if not text:
         return None
     try:

@@ -12,6 +12,7 @@ import importlib
 import io
 import itertools
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
@@ -51,6 +52,8 @@ UNJUDGED = {
     "group": "",
     "tries": None,
 }
+#: A figure in the text of a question, as :func:`coursework.checking.variants.image` writes it.
+PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: How a cell ends that a limit ended: what is missing then may have been lost to it.
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
 #: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
@@ -79,7 +82,7 @@ def questions_of(path, secret, edition=""):
 def _questions_of(path, secret, edition):
     declared = declared_strengths(Path(path).parent)
     source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
-    texts = texts_of_questions(source.notebook)
+    texts = texts_of_questions(source.notebook, source.figures)
     found = {
         name: about(question, secret, declared.get(name), texts.get(name, ""))
         for name, question in source.questions.items()
@@ -144,7 +147,7 @@ def about(question, secret, guessable=None, text=""):
     """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it.
 
     ``guessable`` is how many tries of a script it withstands, where its author declared that it can be guessed;
-    ``text`` is that of a question without variants: one that has them holds its own.
+    ``text`` is that in the source: a question with variants holds its own, beside which the figures stay.
     """
     found = json.loads(
         json.dumps(
@@ -164,7 +167,7 @@ def about(question, secret, guessable=None, text=""):
                 "guessable": guessable,
                 "partial": read(question.public, question.plain).text if question.partial else None,
                 "rubric": question.rubric,
-                "text": "" if "text" in question.public else text,
+                "text": "\n\n".join(PICTURE.findall(text)) if "text" in question.public else text,
             }
         )
     )

@@ -58,9 +58,9 @@ def write_course(store, rules, *, earlier=(), now=None):
     now = now or datetime.datetime.now(datetime.UTC)
     counts = [_earlier(path) for path in earlier]
     statistics, worth, students = Statistics(), {}, set()
-    decisions = Ledger(store.folder).current()
+    standing = Ledger(store.folder).standing()
     for record in store.all():
-        statistics.add(with_decisions(record, decisions))
+        statistics.add(with_decisions(record, standing))
         worth[record["assignment"]] = record["worth"]
         students.add(record["student"])
     roster = store.folder / ROSTER
@@ -70,7 +70,7 @@ def write_course(store, rules, *, earlier=(), now=None):
     folder, rows, unknown, marked = store.folder / FOLDER, [], [], []
     for student in sorted(students):
         records = {
-            name: with_decisions(found, decisions)
+            name: with_decisions(found, standing)
             for name in rules.assignments
             if (found := store.read(student, name)) is not None
         }

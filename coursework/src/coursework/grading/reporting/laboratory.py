@@ -125,9 +125,10 @@ class Change(NamedTuple):
 
 @dataclass
 class Laboratory:
-    """What a regrade would do to a class."""
+    """What a regrade would do to a class: the changes by questions, and the points that move ``by_people``."""
 
     changes: list[Change] = field(default_factory=list)
+    by_people: list[Any] = field(default_factory=list)
 
     def add(self, before: Record, after: Record) -> None:
         """Take in a record as it is, and as it would be."""

@@ -44,6 +44,7 @@ svg text { fill: var(--soft); font: 12px "Segoe UI", system-ui, sans-serif; }
 svg .axis { stroke: var(--rule); } svg .bar { fill: var(--open); }
 svg .of-correct { fill: var(--right); } svg .of-wrong { fill: var(--wrong); } svg .of-invalid { fill: var(--form); }
 svg .of-undecided { fill: var(--open); } svg .of-none { fill: var(--rule); } svg .edge { stroke: var(--paper); stroke-width: 1.5; }
+.appeal { border-left: .2rem solid var(--open); padding-left: .7rem; } .prose { white-space: pre-wrap; overflow-wrap: anywhere; }
 figure { margin: .6rem 0; } .scroll table { min-width: 32rem; }
 .key span { margin-right: 1.1rem; white-space: nowrap; } .key svg { display: inline-block; vertical-align: -1px; margin-right: .35rem; }
 @media print { body { background: #fff; font-size: 11pt; } main { max-width: none; padding: 0; }

@@ -550,7 +550,7 @@ def _rows(path):
         yield number, dict(zip(header, (cell.strip() for cell in cells), strict=False))
 
 
-def decoded(data):
+def decoded(data: bytes) -> str:
     """The text of a table, in whichever encoding a spreadsheet left it."""
     for mark, encoding in ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
         if data.startswith(mark):

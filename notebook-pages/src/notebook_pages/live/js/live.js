@@ -213,6 +213,14 @@ class Page {
     if (!this.busy) this.work();
   }
 
+  // Files of the reader's, for a cell that takes some.
+  async give(cell, files) {
+    this.files = await Promise.all(files.map(async (file) => [file.name, new Uint8Array(await file.arrayBuffer())]));
+    if (this.has) this.python?.put(this.files);
+    cell.ran = false;
+    this.run(cell);
+  }
+
   async work() {
     this.busy = true;
     this.retry = true; // what could not be fetched before is tried again
@@ -242,6 +250,7 @@ class Page {
     setTimeout(() => this.edit());
     try {
       this.has = await python.ready;
+      if (this.files) python.put(this.files);
       this.bar.fetched();
     } catch (error) {
       if (this.python === python) this.python = null;

@@ -136,6 +136,33 @@
     run.dataset.label = `Run cell ${number + 1}`;
     box.querySelector(".cell_input").append(run);
   });
+  // A cell that takes files, by its tag: Python finds them in the folder ``dropped``, and the cell runs. Nothing is sent.
+  const give = async (number, files) => {
+    if (fromDisk) return tools.say(FROM_DISK);
+    if (!files.length) return;
+    try {
+      const opened = await open();
+      await opened.give(opened.cells[number], files);
+    } catch (error) {
+      page = undefined;
+      await tools.explain(error);
+    }
+  };
+  boxes.forEach((box, number) => {
+    if (!box.classList.contains("tag_takes-file")) return;
+    const field = make("input", { type: "file", multiple: true });
+    const label = make("label", { className: "takes-file" }, "Choose a file, or drop it here. It stays in this page: ");
+    label.append(field);
+    box.prepend(label);
+    field.addEventListener("change", () => give(number, [...field.files]));
+    box.addEventListener("dragover", (event) => (event.preventDefault(), box.classList.add("taking")));
+    box.addEventListener("dragleave", () => box.classList.remove("taking"));
+    box.addEventListener("drop", (event) => {
+      event.preventDefault();
+      box.classList.remove("taking");
+      give(number, [...event.dataTransfer.files]);
+    });
+  });
   const runPage = document.querySelector("button.run-page");
   runPage.addEventListener("click", () => ask(-1));
 

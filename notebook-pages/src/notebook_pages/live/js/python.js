@@ -52,6 +52,11 @@ export class Python {
     });
   }
 
+  // Put files into the folder ``dropped``, in place of those before.
+  put(files) {
+    this.worker.postMessage({ type: "files", files });
+  }
+
   // Tell a widget's Python side what has changed on the page. It is heard before the next run.
   tell(name, data) {
     this.worker.postMessage({ type: "widget", name, data });

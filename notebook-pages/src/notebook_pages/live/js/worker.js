@@ -23,6 +23,7 @@ const NUMERICAL = ["numpy", "matplotlib"];
 
 let python, shell, packages, job;
 const COURSEWORK = ".coursework"; // the folder in which it keeps who works here, and how far
+const DROPPED = "dropped"; // the folder for files that a reader gives a cell
 let files = {}; // the texts of its files, as the page has them
 let widget = null; // the one whose observers are at work
 let line = false; // whether widgets can talk with the page
@@ -218,6 +219,13 @@ async function bring(module) {
   return came;
 }
 
+// What a reader has given a cell of the page.
+function putDropped(given) {
+  python.FS.mkdirTree(DROPPED);
+  for (const name of python.FS.readdir(DROPPED)) if (!/^\.+$/.test(name)) python.FS.unlink(`${DROPPED}/${name}`);
+  for (const [name, bytes] of given) python.FS.writeFile(`${DROPPED}/${name.replaceAll("/", "_")}`, bytes);
+}
+
 async function run({ code, name, needs = [], retry, kept }) {
   if (retry) refused = {};
   putFiles(kept);
@@ -257,6 +265,7 @@ addEventListener("message", async ({ data }) => {
   try {
     if (data.type === "start") await start(data);
     else if (data.type === "widget") hear(data);
+    else if (data.type === "files") putDropped(data.files);
     else {
       job = data.job;
       postMessage({ type: "done", job, outcome: await run(data) });

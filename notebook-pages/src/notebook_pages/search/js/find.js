@@ -1,27 +1,9 @@
 // Finds places of the book by what a reader types: words, with slips and synonyms, or signs of a formula.
+//
+// A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare it
+// is; a phrase is as good as the share of the question that it answers, and of itself that was asked for.
 import MiniSearch from "minisearch";
-
-const LEFT_OUT = new Set(("a an and are as at be between by can do does for from get have how i in into is it its my of on or"
-  + " should that the their them this to use using vs versus was what when which why with you your").split(" "));
-const IRREGULAR = { matrices: "matrix", axes: "axis", vertices: "vertex", gimble: "gimbal", euler: "euler" };
-const ENDINGS = /(?:ations?|ating|at(?:es?|ed)|i[sz](?:ing|ed|es?)|ings?|ies|ed|es|s|ly|e)$/;
-const GREEK = { α: "alpha", β: "beta", γ: "gamma", δ: "delta", θ: "theta", λ: "lambda", π: "pi", σ: "sigma", φ: "phi", ϕ: "phi", ψ: "psi", ω: "omega", Ω: "omega" };
-
-export const plain = (text) => text.replace(/[α-ωϕΩ]/g, (sign) => ` ${GREEK[sign] ?? ""} `).normalize("NFD").replace(/[\u0300-\u036f]/g, "").toLowerCase();
-
-// The stem of a word, about: endings of English, as long as four letters stay.
-export function stem(word) {
-  if (IRREGULAR[word]) return IRREGULAR[word];
-  const end = ENDINGS.exec(word);
-  return end?.index >= 4 ? word.slice(0, end.index) : word.replace(/(?<=[a-z]{3}[^s])s$/, "");
-}
-
-// The words of a text; a name of the software is one word, and each of its parts is one, too.
-export function words(text) {
-  const found = plain(text).replace(/[’']s\b/g, "").match(/[a-z0-9]+(?:[_.][a-z0-9]+)*/g) ?? [];
-  return found.flatMap((word) => word.split(".")).flatMap((word) => (word.includes("_") ? [word, ...word.split("_")] : [word]))
-    .filter((word) => !LEFT_OUT.has(word)).map((word) => (word.includes("_") ? word : stem(word)));
-}
+import { isWeak, plain, read, stem, words } from "./words.js";
 
 // The signs of a formula, as TeX has them or as they are typed: what only shapes them is left out.
 export function signs(text) {
@@ -39,55 +21,173 @@ function overlap(one, other) {
   return common;
 }
 
-// What a reader looks for is rather one than another of these, where both answer as well.
-const KINDS = { page: 1.6, section: 1.25, term: 1.15, function: 0.75, exercise: 0.7, example: 0.8, figure: 0.55, equation: 0.45 };
-
-const READ = { page: true, section: true }; // those of the chapters have numbers
-
-// ``texts`` are the words of each entry's text, once they are there.
-export function finder({ pages, fields, entries: rows, synonyms = [] }, texts = []) {
-  const entries = rows.map((row) => Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined])));
-  for (const entry of entries) entry.page ??= 0;
-  const cut = texts.map(words);
-  const concepts = synonyms.map((group) => group.map((phrase) => words(phrase)));
-  // Where in a list of words a phrase stands; the last word may still be on its way, from the third letter on.
-  const begun = (word, whole) => word === whole || (word?.length > 2 && whole.startsWith(word));
-  const within = (list, phrase, typed) => list.findIndex((_, k) => phrase.every((word, j) =>
-    (typed && k + j === list.length - 1 ? begun(list[k + j], word) : list[k + j] === word)));
-  // Each word, or run of words, that names a concept, replaced by the concept.
-  const named = (list, typed) => concepts.flatMap((group, number) => group.filter((phrase) => phrase.length && within(list, phrase, typed) >= 0)
-    .sort((one, other) => other.length - one.length)
-    .slice(0, 1).map((phrase) => [number, phrase]));
-  const index = new MiniSearch({
-    idField: "id", fields: ["title", "concepts", "chapter", "about", "words"], tokenize: (text) => text.split(" ").filter(Boolean), processTerm: (term) => term,
-  });
-  index.addAll(entries.map((entry, id) => {
-    const title = words(entry.title);
-    return {
-      id, title: title.join(" "), chapter: entry.anchor ? words(pages[entry.page][1]).join(" ") : "", about: words(entry.about ?? "").join(" "), words: (cut[id] ?? []).join(" "),
-      concepts: named(title).map(([number]) => `§${number}`).join(" "),
-    };
-  }));
-  const spread = new Map(); // in how many entries each word stands
-  for (const [id, entry] of entries.entries()) {
-    for (const word of new Set([...words(`${entry.title} ${entry.about ?? ""}`), ...cut[id] ?? []])) spread.set(word, (spread.get(word) ?? 0) + 1);
+// How many letters must be changed, added or left out, or two neighbours exchanged, to make one word of the other.
+function slips(one, other) {
+  let [before, row] = [[], [...Array(other.length + 1).keys()]];
+  for (let i = 1; i <= one.length; i += 1) {
+    const next = [i];
+    for (let j = 1; j <= other.length; j += 1) {
+      next[j] = Math.min(row[j] + 1, next[j - 1] + 1, row[j - 1] + (one[i - 1] === other[j - 1] ? 0 : 1));
+      if (one[i - 1] === other[j - 2] && one[i - 2] === other[j - 1]) next[j] = Math.min(next[j], before[j - 2] + 1);
+    }
+    [before, row] = [row, next];
   }
-  const worth = (term) => Math.log(1 + entries.length / (1 + (spread.get(term) ?? 0)));
-  const formulas = entries.map(({ tex }, id) => tex && { id, signs: pairs(signs(tex)) }).filter(Boolean);
-  const OPTIONS = {
-    boost: { title: 6, concepts: 6, chapter: 1.2, about: 1.4, words: 0.4 }, weights: { fuzzy: 0.3, prefix: 0.5 },
-    prefix: (term) => term.length > 2 && term[0] !== "§", fuzzy: (term) => (term[0] !== "§" && term.length > 3 ? (term.length > 7 ? 0.25 : 0.2) : false),
-  };
+  return row[other.length];
+}
 
-  function byWords(list, whole, worthOf = worth) {
+// What a reader looks for is rather one than another of these, where both answer as well.
+const KINDS = { page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6 };
+const READ = { page: true, section: true }; // those of the chapters have numbers
+const CHAPTER = 0.45, ABOUT = 0.45, TEXT = 0.3; // what a word counts that stands not in a phrase, but there
+const SAME = 1.12; // for the very words
+const SYNONYM = 0.9, OF_WEAK = 0.3;
+const OTHER_WAY = 0.7, NO_WAY = 0.88; // where a conversion is asked for: the one back, or none
+const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
+const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
+
+// ``more`` holds the words of each entry's text and its TeX, once they are there.
+export function finder({ pages, fields, kinds: kindsOfPlaces, entries: rows, synonyms = {} }, more = {}) {
+  const entries = rows.map((row) => Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined])));
+  for (const entry of entries) entry.kind = kindsOfPlaces[entry.kind ?? 0];
+  const kinds = (synonyms.conversions ?? []).map((group) => group.map(words));
+  const groups = (synonyms.words ?? []).map((group) => group.map(words).filter((phrase) => phrase.join("").length > 1));
+
+  // A text as words, and the concepts and conversions that stand in it, each with the words that it covers.
+  const heads = new Map(); // the concepts that begin with a word
+  for (const [number, group] of groups.entries()) for (const phrase of group) heads.set(phrase[0], [...heads.get(phrase[0]) ?? [], [number, phrase]]);
+  function understood(text) {
+    const { list, conversions } = read(text, kinds);
+    const signs = conversions.map(({ way, start, end }) => ({ term: `§${way[0]}>${way[1]}`, back: `§${way[1]}>${way[0]}`, start, end }));
+    for (const [k, word] of list.entries()) for (const [number, phrase] of heads.get(word) ?? []) {
+      if (phrase.every((one, j) => list[k + j] === one)) signs.push({ term: `§${number}`, start: k, end: k + phrase.length });
+    }
+    return { list, signs };
+  }
+
+  // Each title and each phrase is a document, and so is each text.
+  const documents = [];
+  for (const [id, entry] of entries.entries()) {
+    entry.page ??= 0;
+    const add = (text, share = 1) => documents.push({ entry: id, share, ...understood(text) });
+    entry.title ??= `Equation ${entry.number}: ${entries[id - 1].kind === "equation" ? entries[id - 1].of : entries[id - 1].title}`;
+    if (entry.kind === "equation") entry.of = entry.title.slice(entry.title.indexOf(": ") + 2);
+    add(entry.title);
+    if (entry.number) documents.push({ entry: id, share: 1, alone: true, ...understood(/^[A-Z]/.test(entry.number) ? entry.number : `${entry.kind === "page" ? "chapter" : entry.kind} ${entry.number}`) });
+    for (const phrase of entry.asked ?? []) add(phrase, 0.98);
+    if (entry.about) documents.push({ entry: id, within: ABOUT, ...understood(entry.about) });
+    if (entry.anchor && pages[entry.page][2]) documents.push({ entry: id, within: CHAPTER, ...understood(pages[entry.page][1]) });
+    if (more.words?.[id]) documents.push({ entry: id, within: TEXT, list: words(more.words[id]), signs: [] });
+  }
+  const spread = new Map(), known = new Set(); // in how many entries each word or concept stands
+  for (const [id, { entry, list, signs, within }] of documents.entries()) {
+    documents[id].id = id;
+    for (const word of list) known.add(word);
+    if (within === CHAPTER) continue;
+    for (const word of [...list, ...signs.map(({ term }) => term)]) {
+      if (!spread.has(word)) spread.set(word, new Set());
+      spread.get(word).add(entry);
+    }
+  }
+  const rarity = (term) => Math.log(1 + entries.length / (1 + (spread.get(term)?.size ?? 0)));
+  const worth = (word, signs = [], k = -1) => {
+    const concepts = signs.filter(({ term, start, end }) => !term.includes(">") && start === k && end === k + 1).map(({ term }) => rarity(term));
+    return Math.min(rarity(word), ...concepts) * (isWeak(word) ? OF_WEAK : 1);
+  };
+  const index = new MiniSearch({ fields: ["words"], tokenize: (text) => text.split(" ").filter(Boolean), processTerm: (term) => term });
+  index.addAll(documents.map(({ id, list, signs }) => ({ id, words: [...list, ...signs.map(({ term }) => term)].join(" ") })));
+  for (const one of documents) {
+    one.worths = one.list.map((word, k) => worth(word, one.signs, k));
+    one.worth = one.worths.reduce((sum, one) => sum + one, 0);
+  }
+  const formulas = (more.tex ?? []).map(([id, tex]) => ({ id, signs: pairs(signs(tex)) }));
+
+  // Words that were written together, or apart, as the book has them.
+  function joined(list) {
+    const found = [];
+    for (let k = 0; k < list.length; k += 1) {
+      const [one, other] = [list[k], list[k + 1]];
+      if (other && !(known.has(one) && known.has(other)) && known.has(stem(one + other))) {
+        found.push(one + other), k += 1;
+        continue;
+      }
+      let cut = null;
+      if (!known.has(one)) for (let j = 3; j <= one.length - 3 && !cut; j += 1) {
+        const parts = [stem(one.slice(0, j)), stem(one.slice(j))];
+        if (parts.every((part) => known.has(part) && (spread.get(part)?.size ?? 0) > 1)) cut = parts;
+      }
+      found.push(...cut ?? [one]);
+    }
+    return found;
+  }
+
+  // The documents that have a word, or one like it: [document, which of its words, how like].
+  function having(word, isLast) {
+    const exact = known.has(word);
+    const found = index.search(word, {
+      prefix: word.length > 2 && (isLast || !exact) && word[0] !== "§",
+      fuzzy: exact || word.length < 4 || /\d/.test(word) ? false : word.length > 6 ? 2 : 1,
+    });
+    return found.map(({ id, terms }) => {
+      let like = 0, its = null;
+      for (const term of terms) {
+        const now = term === word ? 1 : term[0] === "§" ? 0 : term.startsWith(word) ? (exact ? 0.6 : 0.92 - 0.02 * (term.length - word.length)) : 0.95 - 0.15 * slips(word, term) - (term[0] === word[0] ? 0 : 0.1);
+        if (now > like) [like, its] = [now, term];
+      }
+      return [documents[id], its, like];
+    });
+  }
+
+  function byWords(text, ending) {
+    let { list, signs } = understood(text);
+    const put = joined(list);
+    if (put.length !== list.length || put.some((word, k) => word !== list[k])) ({ list, signs } = understood(put.join(" ")));
     if (!list.length) return [];
-    return index.search(list.join(" "), OPTIONS).map(({ id, score, queryTerms }) => {
-      const entry = entries[id], title = words(entry.title);
-      const there = title.join(" ");
-      const same = there === whole ? 2.5 : entry.kind === "page" && there.startsWith(`${whole} `) ? 2.2 : 1;
-      const sum = (of) => [...new Set(of)].reduce((all, term) => all + worthOf(term), 0);
-      const part = sum(queryTerms) / sum(list); // rare words tell more than common ones
-      return [id, score / list.length * part ** 2 * same * (KINDS[entry.kind] ?? 1) * (entry.weight ?? 1) * (entry.number || !READ[entry.kind] ? 1 : 0.8)];
+    const worths = list.map((word, k) => worth(word, signs, k));
+    const whole = worths.reduce((sum, one) => sum + one, 0);
+    const states = new Map();
+    const state = (one) => {
+      if (!states.has(one)) states.set(one, { asked: new Float64Array(list.length), own: new Float64Array(one.list.length), back: false });
+      return states.get(one);
+    };
+    for (const [k, word] of list.entries()) for (const [one, its, like] of having(word, ending && k === list.length - 1)) {
+      const { asked, own } = state(one);
+      asked[k] = Math.max(asked[k], like);
+      for (const [j, term] of one.list.entries()) if (term === its) own[j] = Math.max(own[j], like);
+    }
+    for (const { term, back, start, end } of signs) {
+      const like = term.includes(">") ? 1 : SYNONYM;
+      for (const [one] of having(term)) {
+        const { asked, own } = state(one);
+        for (let k = start; k < end; k += 1) asked[k] = Math.max(asked[k], like);
+        for (const sign of one.signs) if (sign.term === term) for (let j = sign.start; j < sign.end; j += 1) own[j] = Math.max(own[j], like);
+      }
+      if (back) for (const [one] of having(back)) state(one).back = !one.signs.some((sign) => sign.term === term);
+    }
+    const within = new Map(); // what the text of an entry adds
+    for (const [one, { asked }] of states) if (one.within) {
+      if (!within.has(one.entry)) within.set(one.entry, new Float64Array(list.length));
+      const sum = within.get(one.entry);
+      for (const [k, like] of asked.entries()) sum[k] = Math.max(sum[k], like * one.within);
+    }
+    const best = new Map(), there = list.join(" ");
+    const ways = new Set(signs.map(({ term }) => term).filter((term) => term.includes(">"))), asksWay = ways.size > 0;
+    for (const [one, { asked, own, back }] of states) {
+      if (one.within) continue;
+      const beside = one.alone ? null : within.get(one.entry);
+      let answered = 0, used = 0;
+      for (const [k, like] of asked.entries()) answered += worths[k] * Math.max(like, beside?.[k] ?? 0);
+      for (const [j, like] of own.entries()) used += one.worths[j] * like;
+      const score = (answered / whole) ** 1.5 * (0.5 + 0.5 * used / one.worth) * one.share * (one.list.join(" ") === there ? SAME : 1)
+        * (!asksWay ? 1 : back ? OTHER_WAY : one.signs.some(({ term }) => ways.has(term)) ? 1 : NO_WAY);
+      best.set(one.entry, Math.max(best.get(one.entry) ?? 0, score));
+    }
+    for (const [id, sum] of within) {
+      const answered = sum.reduce((all, like, k) => all + worths[k] * like, 0);
+      best.set(id, Math.max(best.get(id) ?? 0, (answered / whole) ** 1.5 * 0.5));
+    }
+    return [...best].map(([id, score]) => {
+      const { kind, number, weight = 1 } = entries[id];
+      return [id, score * (KINDS[kind] ?? 1) * weight * (number || !READ[kind] ? 1 : 0.93)];
     });
   }
 
@@ -97,19 +197,19 @@ export function finder({ pages, fields, entries: rows, synonyms = [] }, texts = 
       for (const [id, score] of found) scores.set(id, Math.max(scores.get(id) ?? 0, score * share));
     };
     const formula = isFormula(query);
-    const list = words(query).filter((word) => !formula || word.length > 1);
-    take(byWords(list, list.join(" ")), formula ? 0.4 : 1);
-    for (const [number, phrase] of named(list, true)) {
-      const place = within(list, phrase, true);
-      const all = phrase.reduce((sum, word) => sum + worth(word), 0);
-      const asked = [...list.slice(0, place), `§${number}`, ...list.slice(place + phrase.length)];
-      take(byWords(asked, "", (term) => (term[0] === "§" ? all : worth(term))), 0.8 + 0.15 * phrase.length);
+    if (isName(query.trim())) {
+      const name = named(query.trim());
+      take(entries.flatMap(({ kind, title }, id) => {
+        const its = title.toLowerCase().split(".").at(-1);
+        return kind !== "function" || !its.startsWith(name) ? [] : [[id, its === name ? 3 : 1.5]];
+      }));
     }
+    take(byWords(query, !/\s$/.test(query)), formula ? 0.6 : 1);
     if (formula) {
       const asked = pairs(signs(query));
-      take(formulas.map(({ id, signs: there }) => [id, 24 * (overlap(asked, there) / asked.length) ** 2 * (asked.length / there.length) ** 0.2]));
+      take(formulas.map(({ id, signs: there }) => [id, (overlap(asked, there) / asked.length) ** 2 * (asked.length / there.length) ** 0.2]));
     }
-    return [...scores].filter(([, score]) => score > 0.05).sort((one, other) => other[1] - one[1]).slice(0, most)
+    return [...scores].filter(([, score]) => score > 0.06).sort((one, other) => other[1] - one[1]).slice(0, most)
       .map(([id, score]) => ({ ...entries[id], score }));
   };
 }

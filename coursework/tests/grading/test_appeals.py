@@ -1,0 +1,365 @@
+"""Decisions, appeals and lines of a rubric are events: what they come to is told, and nothing counts unseen."""
+
+import csv
+import datetime
+import io
+import json
+import re
+import shutil
+from urllib.parse import quote_plus
+
+import nbformat
+import pytest
+from grading_class import notebook, put
+from test_review import Served
+
+from coursework.__main__ import main
+from coursework.authoring.author import AuthorError
+from coursework.authoring.source import read_source
+from coursework.grading.execution.sandbox import Limits
+from coursework.grading.export import gradebooks
+from coursework.grading.grade import grade, regrade
+from coursework.grading.judging import secret
+from coursework.grading.judging.ledger import APPEALS, FORMAT, REJECTED, UNDER_REVIEW, Collision, Ledger
+from coursework.grading.review import Class
+from coursework.grading.store import Store
+
+LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+SCRIPT = "<script>alert(1)</script>"
+ESSAY, SUM = "essays/why", "essays/sum"
+RUBRIC = {"names the couple": 2, "says why": 1, "forgets the point": -1}
+
+
+def write_essays(folder, rubric=RUBRIC, right="5", text="Why?"):
+    folder.mkdir(exist_ok=True)
+    (folder / secret.FILE).write_text("5eed" * 16)
+    cells = [
+        "import sympy as sm\nfrom coursework import check",
+        ("markdown", text),
+        "### BEGIN SOLUTION\nwhy = 'A couple has the same moment about every point.'\n### END SOLUTION",
+        f"check('{ESSAY}', why)\n### BEGIN HIDDEN TESTS\nquestion('{ESSAY}', kind='free text', worth=3, "
+        f"rubric={rubric!r})\n### END HIDDEN TESTS",
+        ("markdown", "How much is 2 + 3?"),
+        f"### BEGIN SOLUTION\ntotal = sm.Integer({right})\n### END SOLUTION",
+        f"check('{SUM}', total)\n### BEGIN HIDDEN TESTS\nquestion('{SUM}', kind='expression', worth=2)\n"
+        "### END HIDDEN TESTS",
+    ]
+    nbformat.write(notebook(cells), folder / "essays.ipynb")
+    return folder
+
+
+def answered(why, total):
+    return notebook(
+        [
+            "from coursework import check",
+            f"why = {why!r}\ncheck('{ESSAY}', why)",
+            f"total = {total}\ncheck('{SUM}', total)",
+        ]
+    )
+
+
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory):
+    place = tmp_path_factory.mktemp("appeals")
+    solutions = write_essays(place / "solutions")
+    for student, total in (("ada", 5), ("ben", 6), ("cem", 6)):
+        put(place / "in", student, answered(f"Since {student} says so.", total), "essays.ipynb")
+    grade(place / "in", place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    return place
+
+
+@pytest.fixture
+def out(begun, tmp_path):
+    return Store(shutil.copytree(begun / "out", tmp_path / "out"))
+
+
+def points_of(store):
+    return {record["student"]: record["points"] for record in store.all()}
+
+
+def cluster_of(store, question, student):
+    (found,) = [
+        one
+        for one in Class(store.folder).clusters.values()
+        if one.question == question and student in [record["student"] for record in one.members]
+    ]
+    return found
+
+
+# --- appeals ------------------------------------------------------------------------------------
+
+
+def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
+    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
+    key = "ben", "essays", SUM
+
+    def state():
+        return Ledger(out.folder).standing().appeals[key][-1]
+
+    ledger.appeal(record, SUM, "But it is right.", who="Ann")
+    assert state().state == "raised" and state().is_open
+    with pytest.raises(Collision, match="open already"):
+        ledger.appeal(record, SUM, "Again.", who="Ann")
+    first = state()
+    ledger.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=first.last, who="Ben")
+    with pytest.raises(Collision, match="went on with the appeal"):  # upon what was seen before
+        ledger.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
+    with pytest.raises(ValueError, match="why it is rejected"):
+        ledger.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
+    ledger.appeal(record, SUM, "6 is not 5.", state=REJECTED, of=first, after=state().last, who="Ann")
+    assert state().state == "rejected" and not state().is_open
+    late = ledger.decision(record, SUM, 1, who="Ben", appeal=first.id)
+    with pytest.raises(Collision, match="settled the appeal"):
+        ledger.append([late], collisions=True)
+    ledger.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=state().last, who="Ben")
+    ledger.append([late], collisions=True)
+    assert state().state == "accepted" and Ledger(out.folder).current()[key].credit == 1
+    # Undo is real: the mark is what it was, and the appeal waits again.
+    ledger.take_back([record], SUM, "Ben")
+    assert state().state == "under review" and key not in Ledger(out.folder).current()
+    # Once it is closed, another one may be raised.
+    ledger.appeal(record, SUM, "No!", state=REJECTED, of=first, after=state().last, who="Ann")
+    ledger.appeal(record, SUM, "I ask once more.", who="Ann")
+    assert [one.state for one in Ledger(out.folder).standing().appeals[key]] == ["rejected", "raised"]
+
+
+def form(**fields):
+    return "&".join(f"{name}={quote_plus(str(value))}" for name, value in fields.items())
+
+
+def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
+    """After an appeal 17 stayed where 18 was due."""
+    book = out.folder / "book.csv"
+    book.write_text("Student,ID,SIS User ID,SIS Login ID,Section,Essays (7)\n" + "".join(
+        f'"{name}",{number},,{name},x,\n' for number, name in enumerate(("ada", "ben", "cem"), 1)
+    ))  # fmt: skip
+    for name in ("ada", "ben", "cem"):
+        Ledger(out.folder).add(out.read(name, "essays"), ESSAY, 1, who="Ann")
+    command = ["export", str(out.folder), "--lms", str(book), "--filled", str(book)]
+    main(command)
+    cluster = cluster_of(out, SUM, "ben")
+    place = [record["student"] for record in cluster.members].index("ben")
+    with Served(out.folder, grader="Ann") as served:
+        words = f"I am right {SCRIPT}"
+        raised = form(form="appeal", state="raised", only=place, words=words)
+        assert served.decide(cluster.id, raised).status == 303
+        assert served.decide(cluster.id, raised).status == 409  # nothing twice
+        _, text = served.ask(f"/{served.secret}/?show=appeals")
+        assert re.findall(r"answer/([0-9a-f]{16})", text) == [cluster.id] and "1 answer waits" in text
+        capsys.readouterr()
+        main(command)
+        assert "An appeal is open: what is filled in may change (1):\n  ben: essays/sum" in capsys.readouterr().out
+        _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
+        assert "ben appeals: raised" in page and SCRIPT not in page and "&lt;script&gt;alert" in page
+        (of,) = re.findall(r'name="of" value="(\w+)"', page)
+        step = re.search(r'name="step" value="(\w+)"', page)[1]
+        taken_up = form(form="appeal", state="under review", of=of, step=step, only=place, words="")
+        assert served.decide(cluster.id, taken_up).status == 303
+        assert served.decide(cluster.id, taken_up).status == 409  # somebody was there before
+        by_itself = form(form="appeal", state="accepted", of=of, step=step, only=place)
+        assert served.decide(cluster.id, by_itself).status == 400
+        accepts = form(credit=2, only=place, accepts="yes", comment="You are.")
+        assert served.decide(cluster.id, accepts).status == 303
+    main(["regrade", str(out.folder), "--solutions", str(begun / "solutions"), "--yes"])
+    assert points_of(out) == {"ada": 5, "ben": 5, "cem": 3}
+    page = (out.folder / "feedback" / "ben" / "essays.html").read_text()
+    assert "<strong>accepted</strong>" in page and "You are." in page and "I am right" in page and SCRIPT not in page
+    capsys.readouterr()
+    main(command)
+    said = capsys.readouterr().out
+    assert "ben: 3 -> 5" in said and "An appeal" not in said
+    marks = {row["SIS Login ID"]: row["Essays (7)"] for row in csv.DictReader(book.read_text().splitlines())}
+    assert marks == {"ada": "5", "ben": "5", "cem": "3"}
+
+
+def test_a_mark_is_that_of_the_day_it_is_asked_for(out):
+    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
+    appeal = ledger.appeal(record, SUM, "Right!", who="Ann")
+    made = [
+        appeal._replace(when="2026-02-01T00:00:00.000000+00:00"),
+        ledger.decision(record, SUM, 1, who="Ann", appeal=appeal.id)._replace(when="2026-03-01T00:00:00.000000+00:00"),
+    ]
+    ledger.path.unlink()
+    Ledger(out.folder).append(made)
+    for month, state in ((1, None), (2, "raised"), (3, "accepted")):
+        day = datetime.datetime(2026, month, 15, tzinfo=datetime.UTC)
+        marks = gradebooks.Marks(out, as_of=day)
+        (found,) = [one for one in marks.records if one["student"] == "ben"]
+        appeals = found["marks"][SUM].get("appeals", [])
+        assert [one["state"] for one in appeals] == ([state] if state else []) and found["points"] == 2 * (month == 3)
+
+
+def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
+    table = "student,question,words\n" + f'ben,{SUM},"=1+1 {SCRIPT}"\nnobody,{SUM},Why?\ncem,{SUM},\n'
+    (out.folder / APPEALS).write_text(table)
+    for _ in range(2):
+        main(["regrade", str(out.folder), "--solutions", str(begun / "solutions"), "--yes"])
+    said = capsys.readouterr()
+    assert "line 3: there is no answer of 'nobody'" in said.err and "1 appeal is open (ben)" in said.err
+    (appeals,) = Ledger(out.folder).standing().appeals.values()
+    assert [(len(one.steps), one.steps[0].words) for one in appeals] == [(1, f"=1+1 {SCRIPT}")]
+    for path in out.folder.rglob("*.csv"):
+        cells = [cell for row in csv.reader(path.read_text().splitlines()) for cell in row]
+        assert path.name == APPEALS or not any(cell.startswith("=") for cell in cells)
+    assert not any(SCRIPT in path.read_text() for path in out.folder.rglob("*.html"))
+
+
+def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out, tmp_path):
+    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
+    first = ledger.appeal(record, SUM, "Right!", who="Ann")
+    one = ledger.decision(record, SUM, 1, who="Ann", appeal=first.id)
+    ledger.append([one], collisions=True)
+    ledger.append([ledger.decision(record, SUM, 0.5, who="Ben", after=one.id)], collisions=True)
+    (tmp_path / "roster.csv").write_text("student,name\nada,ada\nbenjamin,ben\ncem,cem\n")
+    options = {"solutions": begun / "solutions", "limits": LIMITS, "show": io.StringIO()}
+    grade(begun / "in", out.folder, roster=tmp_path / "roster.csv", **options)
+    found = out.read("benjamin", "essays")["marks"][SUM]
+    assert (found["points"], [one["state"] for one in found["appeals"]]) == (1, ["accepted"])
+    again = Ledger(out.folder)
+    again.take_back([out.read("benjamin", "essays")], SUM, "Ben")
+    assert again.current()["benjamin", "essays", SUM].credit == 1
+
+
+# --- what has changed since ---------------------------------------------------------------------
+
+
+def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_path, capsys):
+    Ledger(out.folder).add(out.read("ben", "essays"), SUM, 1, who="Ann")
+    Ledger(out.folder).add(out.read("cem", "essays"), SUM, 0.5, who="Ann")
+    options = {"solutions": begun / "solutions", "limits": LIMITS}
+    regrade(out.folder, solutions=begun / "solutions", show=io.StringIO())
+    # A word of the text is no other question.
+    reworded = write_essays(tmp_path / "reworded", text="Why is that so?")
+    said = io.StringIO()
+    regrade(out.folder, solutions=reworded, show=said)
+    assert "changed since" not in said.getvalue()
+    # Handed in anew, the answer is judged anew, and what was decided on the earlier one is not forgotten.
+    put(tmp_path / "in", "ben", answered("Since.", 7), "essays.ipynb")
+    grade(tmp_path / "in", out.folder, show=said, **options)
+    assert out.read("ben", "essays")["points"] == 0
+    assert "1 decision is on an answer or a question that has changed since (ben)" in said.getvalue()
+    # The question itself is mended: the decision counts, and somebody is to look.
+    mended, said = write_essays(tmp_path / "mended", right="6"), io.StringIO()
+    regrade(out.folder, solutions=mended, show=said)
+    assert points_of(out)["cem"] == 1 and "2 decisions are on answers or questions that have" in said.getvalue()
+    with Served(out.folder, grader="Ann") as served:
+        _, text = served.ask(f"/{served.secret}/?show=earlier")
+        clusters = set(re.findall(r"answer/([0-9a-f]{16})", text))
+        assert len(clusters) == 2
+        pages = "".join(served.ask(f"/{served.secret}/answer/{one}?show=earlier")[1] for one in clusters)
+        assert "The question was another when Ann decided" in pages and "to an earlier answer" in pages
+        cluster = cluster_of(out, SUM, "cem")
+        assert served.decide(cluster.id, "credit=2").status == 303
+        _, text = served.ask(f"/{served.secret}/?show=earlier")
+        assert set(re.findall(r"answer/([0-9a-f]{16})", text)) == clusters - {cluster.id}
+
+
+# --- the rubric ---------------------------------------------------------------------------------
+
+
+def decide_by_rubric(served, store, student, *lines, **more):
+    cluster = cluster_of(store, ESSAY, student)
+    body = "&".join(["credit=rubric", *(form(rubric=line) for line in lines), form(**more)])
+    return served.decide(cluster.id, body)
+
+
+def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_path):
+    solutions, names, says, forgets = begun / "solutions", *RUBRIC
+    with Served(out.folder, grader="Ann") as served:
+        assert decide_by_rubric(served, out, "ada", names, says).status == 303
+        assert decide_by_rubric(served, out, "ben", names, forgets).status == 303
+        assert decide_by_rubric(served, out, "cem", says, new="is polite", new_points="0.5").status == 303
+        regrade(out.folder, solutions=solutions, show=io.StringIO())
+        assert points_of(out) == {"ada": 5, "ben": 1, "cem": 1.5}
+        # On the page: who changes it says which value was seen.
+        cluster = cluster_of(out, ESSAY, "ada")
+        _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
+        worths = page.partition('value="worths"')[2].partition("</form>")[0]
+        lines = re.findall(r'name="line" value="([^"]*)"', worths)
+        steps = re.findall(r'name="step" value="([^"]*)"', worths)
+        shown = re.findall(r'name="points"[^>]*value="([^"]*)"', worths)
+        assert dict(zip(lines, shown, strict=True)) == {names: "2", says: "1", forgets: "-1", "is polite": "0.5"}
+        shown[lines.index(says)], shown[lines.index("is polite")] = "0.5", "1"
+        fields = zip(lines, shown, steps, strict=True)
+        body = "&".join(["form=worths", *(form(line=line, points=one, step=step) for line, one, step in fields)])
+        assert served.decide(cluster.id, body).status == 303
+        body = body.replace("points=0.5", "points=0.75")
+        assert served.decide(cluster.id, body).status == 409  # Ann saw what it was before
+        assert served.decide(cluster.id, form(form="worths", line=says, points=9, step="-")).status == 400
+        assert served.decide(cluster.id, form(form="worths", line="no line", points=1, step="-")).status == 400
+    regrade(out.folder, solutions=solutions, show=io.StringIO())
+    assert points_of(out) == {"ada": 4.5, "ben": 1, "cem": 1.5}
+    # In the source: what it says last is newer than what the page said; nobody has more than all, or less than nothing.
+    mended = write_essays(tmp_path / "mended", {names: 3, says: 0.25, forgets: -3})
+    found = regrade(out.folder, solutions=mended, dry_run=True)
+    assert {one.student: (one.before, one.after) for one in found.changes} == {
+        "ada": (2.5, 3), "ben": (1, 0), "cem": (1.5, 1.25)
+    }  # fmt: skip
+    regrade(out.folder, solutions=mended, show=io.StringIO())
+    assert points_of(out) == {"ada": 5, "ben": 0, "cem": 1.25}
+    # Points that somebody gave by hand stay.
+    Ledger(out.folder).add(out.read("ada", "essays"), ESSAY, 1 / 3, who="Ben", rubric=[names])
+    regrade(out.folder, solutions=solutions, show=io.StringIO())
+    assert points_of(out)["ada"] == 3
+
+
+def test_a_rubric_by_which_nobody_could_have_all_is_refused(tmp_path):
+    for rubric in ({"a": 2}, {"a": 4, "b": -1}, {"a": "3"}):
+        with pytest.raises(AuthorError, match="rubric"):
+            read_source(write_essays(tmp_path / "s", rubric) / "essays.ipynb")
+
+
+# --- the file -----------------------------------------------------------------------------------
+
+
+def test_older_ledgers_are_read_and_newer_ones_refused(out):
+    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
+    ledger.add(record, SUM, 0.5, who="Ann")
+    line = json.loads(ledger.path.read_text())
+    assert line["format"] == FORMAT
+    first = ("id", "when", "who", "student", "assignment", "question", "answer", "credit", "comment", "rubric", "why")
+    ledger.path.write_text(json.dumps({name: line[name] for name in first}) + "\n")
+    old = Ledger(out.folder)
+    assert old.current()["ben", "essays", SUM].credit == 0.5
+    old.take_back([record], SUM, "Ann")
+    assert Ledger(out.folder).current() == {}
+    whole = ledger.path.read_text()
+    ledger.path.write_text(whole + json.dumps({**line, "format": FORMAT + 1, "event": "mood"}) + "\n")
+    with pytest.raises(ValueError, match="line 3: a later version"):
+        Ledger(out.folder)
+    for wrong in ({"when": "yesterday"}, {"credit": 2}, {"event": "mood"}, {"student": 3, "id": None}):
+        ledger.path.write_text(json.dumps({**line, **wrong}) + "\n" + whole)
+        with pytest.raises(ValueError, match="line 1: this is no decision"):
+            Ledger(out.folder)
+
+
+def test_who_saw_another_decision_decided_later_whatever_the_clock_says(out):
+    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
+    one = ledger.decision(record, SUM, 0.5, who="Ann")
+    other = ledger.decision(record, SUM, 1, who="Ben", after=one.id)._replace(when="2020-01-01T00:00:00.000000+00:00")
+    third = ledger.decision(record, SUM, 0, who="Cem", after=other.id)._replace(when=one.when)
+    for events, credit in (([one, other], 1), ([one, other, third], 0), ([third, other, one], 0)):
+        ledger.path.unlink(missing_ok=True)
+        Ledger(out.folder).append(events)
+        assert Ledger(out.folder).current()["ben", "essays", SUM].credit == credit
+
+
+def test_a_dry_run_writes_nothing(begun, out, capsys, tmp_path):
+    other = Ledger(tmp_path)
+    other.add(out.read("ben", "essays"), SUM, 1, who="Ben")
+    (out.folder / APPEALS).write_text(f"student,question,words\nben,{SUM},Right!\n")
+    (out.folder / "decisions.csv").write_text(f"student,question,credit\ncem,{SUM},0.5\n")
+    put(tmp_path / "in", "dan", answered("So.", 5), "essays.ipynb")
+    made = (regrade_page := "regrade.html"), "regrade.csv", "whose.csv", "lock"
+
+    def contents():
+        return {path: path.read_bytes() for path in out.folder.rglob("*") if path.is_file() and path.name not in made}
+
+    before, solutions = contents(), ["--solutions", str(begun / "solutions")]
+    main(["merge", str(out.folder), str(other.path), "--dry-run"])
+    main(["regrade", str(out.folder), *solutions, "--dry-run"])
+    main(["grade", str(tmp_path / "in"), "--out", str(out.folder), *solutions, "--dry-run"])
+    said = capsys.readouterr()
+    assert "1 decisions from" in said.out and "would be taken in" in said.out
+    assert "'cem', essays: 0 -> 1" in said.out and "1 to grade, 0 of them graded before" in said.err
+    assert contents() == before and (out.folder / regrade_page).exists()

@@ -1,0 +1,92 @@
+"""The stills of the essay *Rotations*: what each of its stops shows where nothing can move.
+
+The page of the essay holds one figure, which stays while the text goes past. Its scenes are made by ``js/scene.js``,
+which the page runs; ``scenes.json`` holds one of each stop, written down by ``python -m tools.rotations``, and
+:mod:`orientation_figures.rotations.painter` paints it.
+"""
+
+import json
+from functools import cache
+from pathlib import Path
+
+from ..style import STYLE
+
+FOLDER = Path(__file__).parent
+#: What the page's figure has in the script's colours, in the tones of paper.
+_OWN = {
+    "graphite": "#474e57", "metal": "#a3abb4", "glass": "#5f86b8", "paper": "#ffffff", "lamp": "#d93025",
+    "star": "#e0a100", "ground": "#e9ecf0", "shade": "#cfd5dc",
+}  # fmt: skip
+_DARK = {
+    "graphite": "#66707c",
+    "metal": "#939ca6",
+    "glass": "#8db4ea",
+    "star": "#ffd75e",
+    "ground": "#24292f",
+    "shade": "#15181c",
+}
+#: How much black or white each tone has, in per cent, darkest first; the third is the colour itself.
+_TONES = ((45, "#000"), (28, "#000"), (13, "#000"), (0, "#fff"), (14, "#fff"), (30, "#fff"))
+
+
+@cache
+def scenes():
+    """What is written down: how the eye stands, and the ``stills`` of all stops in their order."""
+    return json.loads((FOLDER / "scenes.json").read_text("utf8"))
+
+
+def style():
+    """The style sheet of the stills."""
+    own = ".orientation-figure.painted"
+
+    def colours(table):
+        return "".join(f"--{name}:{colour};" for name, colour in table.items())
+
+    tones = "".join(
+        f"{own} .tone-{k}{{fill:{f'color-mix(in srgb,currentColor,{other} {part}%)' if part else 'currentColor'};"
+        "stroke:none}"
+        for k, (part, other) in enumerate(_TONES)
+    )
+    names = "".join(f"{own} .{name}{{color:var(--{name})}}" for name in _OWN)
+    flat = f"{own} :is(.ground,.shade,.muted,.star,.paper){{fill:currentColor}}"
+    dark = f'html[data-theme="dark"] {own}{{{colours(_DARK)}}}'
+    return f"{own}{{{colours(_OWN)}}}{own} .paper{{fill:#fff}}{names}{tones}{flat}{dark}"
+
+
+class Stop:
+    """One stop of the essay, as a notebook, a page without scripts and paper show it."""
+
+    def __init__(self, name):
+        known = [still["id"] for still in scenes()["stills"]]
+        if name not in known:
+            raise ValueError(f"{name!r} is no stop of the essay; there is {', '.join(known)}")
+        self.name = name
+        self.still = scenes()["stills"][known.index(name)]
+
+    def svg(self):
+        """The SVG element."""
+        from .painter import picture
+
+        return picture(self.still, scenes())
+
+    def _repr_html_(self):
+        return (
+            f'<figure class="orientation-figure painted" data-stop="{self.name}"><style>{STYLE}{style()}</style>'
+            f"{self.svg()}</figure>"
+        )
+
+    def __repr__(self):
+        from .painter import words
+
+        return f"Stop({self.name!r}): {words(self.still)}"
+
+
+class Gimbal(Stop):
+    """The gimbal itself, which on the page of the essay stays and moves, and elsewhere stands as one stop has it."""
+
+    def _repr_html_(self):
+        return (
+            f'<figure class="orientation-figure painted world" '
+            f'data-figure="rotations">'
+            f'<style>{STYLE}{style()}</style><div class="still">{self.svg()}</div></figure>'
+        )

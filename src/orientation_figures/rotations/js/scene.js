@@ -1,0 +1,582 @@
+// The world of the essay as data: for each state a list of shapes, each with its place and its colour, and a list of
+// labels. paint.js shows them on a screen and painter.py on paper, and neither knows what they mean.
+//
+// All places are along the unit vectors of the hand, frame A: a_x to the east, a_y to the north, a_z up. The gimbal is
+// z-x-y: the first motor turns about a_z, the second about b_x, the third about c_y, and the lens looks along d_y. So
+// the three angles are longitude, height and roll.
+import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
+  dcmFromQuaternion, dot, length, multiply, quaternionFromAxisAngle, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
+  times, transpose, unit } from '../../moving/js/mathematics.js';
+import { quaternionAt } from '../../moving/js/belt.js';
+import { STOPS } from './stops.js';
+
+const PI = Math.PI;
+export const deg = (angle) => angle * PI / 180;
+export const SEQUENCE = 'zxy';
+export const GROUND = -2.2, RIM = 1.42;   // where the ground lies, and how far it reaches
+export const LIGHT = unit([0.55, 0.1, 1]);
+export const DISTANCE = 8.5, TARGET = [0, 0, -0.42], HALF = 2.36;   // of the eye; what it looks at; half of what it sees there
+const REACH = 1.62;
+const mix = (a, b, part) => a + (b - a) * part;
+const clamp = (value) => Math.min(1, Math.max(0, value));
+// From 0 to 1 while t goes from one moment to another, gently at both ends.
+const between = (t, from, to) => {
+  const part = clamp((t - from) / (to - from));
+  return part * part * (3 - 2 * part);
+};
+
+// Where the lens looks that many degrees east of north, that many up.
+export function direction(heading, height) {
+  const [h, e] = [deg(heading), deg(height)];
+  return [Math.sin(h) * Math.cos(e), Math.cos(h) * Math.cos(e), Math.sin(e)];
+}
+
+export const STAR = direction(-22, 36);
+
+// Right, up and towards the eye, along A.
+export function viewFrom(azimuth, elevation) {
+  const [x, y, z] = multiply(simpleDcm('y', -elevation), simpleDcm('z', azimuth));
+  return [y, z, x];
+}
+
+// Where a point is seen: right and up in halves of the smaller side of the picture, and how near it is.
+export function project(view, point, distance = DISTANCE) {
+  const [x, y, z] = times(view, subtract(point, TARGET)), near = distance / (distance - z);
+  return [near * x / HALF, near * y / HALF, z];
+}
+
+export function frames(angles) {
+  const [b, c, d] = angles.map((angle, k) => simpleDcm(SEQUENCE[k], angle));
+  const B = b, C = multiply(c, B), D = multiply(d, C);
+  return { A: IDENTITY, B, C, D };
+}
+
+// The angles of a matrix that lie nearest to those there were: of the two triples that there always are.
+export function anglesNear(dcm, before) {
+  const [psi, theta, phi] = bodyFixedFromDcm(dcm, SEQUENCE);
+  const near = [[psi, theta, phi], [psi + PI, PI - theta, phi + PI]].map((triple) => triple.map(
+    (angle, k) => before[k] + wrapped(angle - before[k])));
+  const far = (triple) => Math.max(...triple.map((angle, k) => Math.abs(angle - before[k])));
+  return far(near[0]) <= far(near[1]) ? near[0] : near[1];
+}
+
+export const wrapped = (angle) => angle - 2 * PI * Math.round(angle / (2 * PI));
+// A vector turned about an axis: the rows of the matrix are the unit vectors turned.
+export const turned = (axis, angle, vector) => times(transpose(dcmFromAxisAngle(axis, angle)), vector);
+// A frame turned, as a thing in the room is.
+export const turnedFrame = (axis, angle, dcm) => multiply(dcm, dcmFromAxisAngle(axis, angle));
+
+// ---- shapes ----------------------------------------------------------------------------------------------
+
+class Scene {
+  constructor() {
+    this.items = [];
+    this.labels = [];
+    this.alpha = 1;
+    this.casts = false;   // whether what is added throws a shadow on the ground
+  }
+
+  add(shape, of, rows, origin, size, colour, alpha = 1) {
+    const seen = alpha * this.alpha;
+    if (seen > 0.01) this.items.push({ shape, of, rows, origin, size, colour, alpha: seen, casts: this.casts && seen > 0.6 });
+  }
+
+  // A part of a ring in the plane of u and v.
+  arc(u, v, radius, thick, from, to, colour, origin = [0, 0, 0], alpha = 1) {
+    this.add('arc', [radius, thick, from, to], [u, v, cross(u, v)], origin, [1, 1, 1], colour, alpha);
+  }
+
+  // A cylinder, or a cone where `top`, its radius at the end as a share, is not 1.
+  rod(from, to, radius, colour, { top = 1, alpha = 1 } = {}) {
+    const along = subtract(to, from), far = length(along);
+    if (far < 1e-6) return;
+    const w = scale(1 / far, along), sizes = w.map(Math.abs), other = IDENTITY[sizes.indexOf(Math.min(...sizes))];
+    const u = unit(cross(other, w));
+    this.add('rod', [top], [u, cross(w, u), w], from, [radius, radius, far], colour, alpha);
+  }
+
+  ball(at, radius, colour, alpha = 1) {
+    this.add('ball', [], IDENTITY, at, [radius, radius, radius], colour, alpha);
+  }
+
+  box(rows, size, colour, at = [0, 0, 0], bevel = 0.05, alpha = 1) {
+    this.add('box', [...size, bevel], rows, at, [1, 1, 1], colour, alpha);
+  }
+
+  // A thread through points.
+  tube(points, radius, colour, alpha = 1) {
+    if (points.length > 1) this.add('tube', [radius, ...points.flat()], IDENTITY, [0, 0, 0], [1, 1, 1], colour, alpha);
+  }
+
+  // A band between two lines of points, seen from both sides.
+  ribbon(left, right, colour, alpha = 1) {
+    this.add('ribbon', left.flatMap((point, k) => [...point, ...right[k]]), IDENTITY, [0, 0, 0], [1, 1, 1], colour, alpha);
+  }
+
+  dashes(from, to, radius, colour, count = 9, alpha = 1) {
+    const along = subtract(to, from);
+    for (let k = 0; k < count; k += 1) {
+      this.rod(add(from, scale(k / count, along)), add(from, scale((k + 0.55) / count, along)), radius, colour, { alpha });
+    }
+  }
+
+  arrow(from, to, colour, { thick = 0.028, alpha = 1, label = '', head = 1 } = {}) {
+    const along = subtract(to, from), far = length(along);
+    if (far < 0.02) return;
+    const tip = Math.min(0.24 * head, 0.8 * far), neck = subtract(to, scale(tip / far, along));
+    this.rod(from, neck, thick, colour, { alpha });
+    this.rod(neck, to, 2.9 * thick * head, colour, { top: 0, alpha });
+    if (label) this.label(add(to, scale(0.04 / far, along)), label, colour, from, alpha);
+  }
+
+  // A label beyond a point as seen from another.
+  label(at, text, colour, from = [0, 0, 0], alpha = 1) {
+    if (alpha * this.alpha > 0.3) this.labels.push({ at, text, colour, from });
+  }
+
+  circle(u, v, radius, from, to, colour, thick = 0.014, origin = [0, 0, 0], alpha = 1) {
+    const count = Math.max(2, Math.ceil(Math.abs(to - from) / 0.12));
+    this.tube(Array.from({ length: count + 1 }, (_, k) => {
+      const angle = from + (to - from) * k / count;
+      return add(origin, scale(radius * Math.cos(angle), u), scale(radius * Math.sin(angle), v));
+    }), thick, colour, alpha);
+  }
+
+  // The way of a vector that is turned about an axis, with an arrow's head.
+  sweep(axis, angle, start, colour, { thick = 0.018, origin = [0, 0, 0], head = true, alpha = 1 } = {}) {
+    if (Math.abs(angle) < 0.03) return;
+    const count = Math.max(3, Math.ceil(Math.abs(angle) / 0.1));
+    const at = (part) => add(origin, turned(axis, angle * part, start));
+    const tip = head ? Math.min(0.5, 0.15 / (Math.abs(angle) * length(start) + 1e-9)) : 0;
+    this.tube(Array.from({ length: count + 1 }, (_, k) => at((1 - tip) * k / count)), thick, colour, alpha);
+    if (head) this.rod(at(1 - tip), at(1), 2.8 * thick, colour, { top: 0, alpha });
+  }
+
+  triad(letter, rows, { reach = REACH, origin = [0, 0, 0], alpha = 1, thick = 0.028, labels = true } = {}) {
+    rows.forEach((row, k) => this.arrow(origin, add(origin, scale(reach, row)), letter,
+      { alpha, thick, label: labels ? `\\hat{${letter.toLowerCase()}}_${AXES[k]}` : '' }));
+  }
+
+  // ---- the machine -----------------------------------------------------------------------------------------
+
+  camera(rows, { at = [0, 0, 0], size = 1, alpha = 1, lamp = true, colour = 'D' } = {}) {
+    const [x, y, z] = rows, to = (i, j, k) => add(at, scale(size * i, x), scale(size * j, y), scale(size * k, z));
+    this.box(rows, [0.64 * size, 0.4 * size, 0.46 * size], colour, at, 0.06 * size, alpha);
+    this.box(rows, [0.25 * size, 0.26 * size, 0.13 * size], colour, to(-0.02, 0, 0.27), 0.04 * size, alpha);
+    this.rod(to(0, 0.19, 0), to(0, 0.36, 0), 0.2 * size, 'graphite', { alpha });
+    this.rod(to(0, 0.36, 0), to(0, 0.53, 0), 0.16 * size, 'graphite', { alpha });
+    this.rod(to(0, 0.53, 0), to(0, 0.55, 0), 0.165 * size, 'metal', { alpha });
+    this.rod(to(0, 0.551, 0), to(0, 0.556, 0), 0.125 * size, 'glass', { alpha });
+    if (lamp) {
+      this.ball(to(0.04, 0.56, 0.045), 0.028 * size, 'paper', alpha);
+      this.ball(to(0.23, 0.2, 0.14), 0.035 * size, 'lamp', alpha);
+      this.rod(to(0.2, 0, 0.22), to(0.2, 0, 0.265), 0.05 * size, 'metal', { alpha });
+    }
+  }
+
+  machine({ B, C, D }, alpha, cameraAlpha) {
+    this.casts = true;
+    const up = [0, 0, 1], at = (row, far) => scale(far, row);
+    const part = { alpha };
+    this.rod(at(up, -2.1), at(up, -1.36), 0.15, 'graphite', part);
+    this.ball(at(up, -2.1), 0.15, 'graphite', alpha);
+    for (const z of [-1.52, -1.66, -1.8, -1.94]) this.arc(IDENTITY[0], IDENTITY[1], 0.153, 0.018, 0, 2 * PI, 'A', [0, 0, z], alpha);
+    this.rod(at(up, -1.38), at(up, -1.14), 0.23, 'A', part);
+    this.rod(at(up, -1.14), at(up, -1.1), 0.19, 'metal', part);
+    // The outer arm, which the first motor turns.
+    this.arc(B[0], B[2], 1.05, 0.07, PI, 2 * PI, 'B', [0, 0, 0], alpha);
+    this.rod(at(B[2], -1.1), at(B[2], -1.0), 0.13, 'B', part);
+    for (const side of [1, -1]) {
+      this.rod(at(B[0], 0.93 * side), at(B[0], 1.17 * side), 0.14, 'B', part);
+      this.rod(at(B[0], 1.17 * side), at(B[0], 1.2 * side), 0.1, 'metal', part);
+      this.rod(at(B[0], 0.74 * side), at(B[0], 0.94 * side), 0.05, 'metal', part);
+    }
+    // The inner arm, which the second motor turns.
+    this.arc(C[0], C[1], 0.77, 0.06, PI, 2 * PI, 'C', [0, 0, 0], alpha);
+    for (const side of [1, -1]) this.ball(at(C[0], 0.77 * side), 0.085, 'C', alpha);
+    this.rod(at(C[1], -0.9), at(C[1], -0.66), 0.14, 'C', part);
+    this.rod(at(C[1], -0.66), at(C[1], -0.18), 0.05, 'metal', part);
+    this.camera(D, { alpha: cameraAlpha });
+    this.casts = false;
+  }
+
+  ground(alpha) {
+    this.rod([0, 0, GROUND - 0.05], [0, 0, GROUND], RIM, 'ground', { alpha });
+    for (let k = 0; k < 16; k += 1) {
+      const [x, y] = direction(k * 22.5, 0), long = k % 4 ? 0.09 : 0.2;
+      this.rod([(RIM - 0.04) * x, (RIM - 0.04) * y, GROUND], [(RIM - 0.04 - long) * x, (RIM - 0.04 - long) * y, GROUND + 0.004], k % 4 ? 0.012 : 0.02, 'muted', { alpha });
+    }
+    for (const [k, letter] of ['N', 'E', 'S', 'W'].entries()) {
+      this.label((add(scale(RIM - 0.42, direction(90 * k, 0)), [0, 0, GROUND])), letter, 'muted', [0, 0, GROUND], alpha);
+    }
+  }
+
+  star(at, size = 0.11) {
+    this.ball(at, size * 0.62, 'star');
+    for (const axis of [[1, 1, 0], [1, -1, 0], [0, 1, 1], [0, 1, -1], [1, 0, 1], [1, 0, -1]].map(unit)) {
+      for (const side of [1, -1]) this.rod(at, add(at, scale(side * size * 1.7, axis)), size * 0.33, 'star', { top: 0 });
+    }
+  }
+}
+
+// ---- the stops: what each shows besides the machine --------------------------------------------------------
+
+const ZERO = [0, 0, 0];
+const poses = (...list) => list.map((one) => one.map(deg));
+
+// Through a list of poses, one after the other, as t goes from 0 to 1.
+function through(list, t, marks = list.map((_, k) => k / (list.length - 1))) {
+  let k = 0;
+  while (k < list.length - 2 && t > marks[k + 1]) k += 1;
+  const part = between(t, marks[k], marks[k + 1]);
+  return list[k].map((angle, i) => mix(angle, list[k + 1][i], part));
+}
+
+export const AT_READER = poses([-38, 18, 0])[0];
+export const GENERIC = poses([28, 24, -22])[0];
+export const CROOKED = poses([84, 32, -58])[0];
+export const FROM = poses([-80, 60, -30])[0], TO = poses([100, 65, 40])[0];   // of stop 14
+export const SAME = poses([35, 50, 65])[0];   // the angles of stop 8
+const SECOND = (angles) => [angles[0] + PI, PI - angles[1], angles[2] + PI];
+export const TOWARDS_STAR = [deg(22), deg(36), 0];
+export const CABLE = { wall: 2.05, start: 0.5 };
+export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
+
+// Where the eye stands, where it is not where it always stands.
+export const EYES = { 'not-home': [8, 24], 'two-mirrors': [52, 30], 'between-poses': [70, 20] };
+
+// Where the angles and the rest go by themselves at a moment of a stop; start: the pose in which the stop was entered.
+export const COURSE = {
+  'which-way': (t) => ({ angles: through([AT_READER, AT_READER, poses([-38, -2, 0])[0]], t) }),
+  'two-triads': (t) => ({ angles: GENERIC, away: between(t, 0.35, 0.95) }),
+  'one-motor': (t) => ({ angles: through(poses([0, 0, 0], [60, 0, 0], [120, 0, 0]), t, [0, 0.6, 1]) }),
+  'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.min(2, Math.floor(3 * t)) }),
+  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0, 0.3, 0.5, 0.58, 0.95]),
+    ride: t > 0.54 ? 1 : 0 }),
+  'two-motors': (t) => ({ angles: [mix(0, PI / 2, between(t, 0.08, 0.42)), mix(0, deg(70), between(t, 0.5, 0.88)), 0], swapped: true }),
+  'three-are-enough': (t) => ({ angles: t < 0.45 ? [0, 0, 0] : through([TOWARDS_STAR, TOWARDS_STAR, SECOND(TOWARDS_STAR)], t, [0.45, 0.6, 1]) }),
+  'same-numbers': (t) => ({ angles: SAME.map((angle) => angle * between(t, 0.1, 0.8)) }),
+  lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [-50, 90, 50], [-50, 90, 50]), t, [0, 0.35, 0.65, 1]) }),
+  'one-turn': (t, start) => ({ part: between(t, 0.15, 0.9) , start }),
+  'two-mirrors': (t) => ({ angles: ZERO, together: between(t, 0.25, 0.55), apart: between(t, 0.6, 0.95) }),
+  'four-numbers': (t) => ({ whole: 4 * PI * between(t, 0.1, 0.95) }),
+  'not-home': (t) => ({ angles: ZERO, turn: t < 0.6 ? 2 * PI * between(t, 0.05, 0.3) : 2 * PI * (1 + between(t, 0.6, 0.75)),
+    passed: t < 0.6 ? between(t, 0.35, 0.55) : between(t, 0.8, 0.98) }),
+  'between-poses': (t) => ({ part: between(t, 0.1, 0.9) }),
+  'it-moves': (t) => ({ time: 24 * clamp(t) }),
+  'your-turn': (t, start) => ({ angles: start }),
+};
+
+// The camera in stop 15: a rate that changes all the time, and what a gyroscope that is off by 1.5 degrees a second
+// makes of it, step by step. Frames as they are after each of the steps.
+const STEP = 0.05, OFF = deg(1.5);
+export const rateAt = (time) => [0.5 * Math.sin(0.9 * time), 0.35 * Math.cos(0.6 * time), 0.4 * Math.sin(0.45 * time + 1)];
+const runs = { true: [IDENTITY], told: [IDENTITY] };
+export function motion(time) {
+  const count = Math.floor(time / STEP);
+  for (let k = runs.true.length; k <= count + 1; k += 1) {
+    const rate = rateAt((k - 0.5) * STEP);   // along the camera's own arrows, as an instrument in it feels it
+    const step = (dcm, w) => multiply(dcmFromAxisAngle(w, length(w) * STEP), dcm);
+    runs.true.push(step(runs.true[k - 1], rate));
+    runs.told.push(step(runs.told[k - 1], add(rate, [0, OFF, 0])));
+  }
+  const part = time / STEP - count;
+  const at = (run) => {
+    const [from, to] = [run[count], run[count + 1]].map(quaternionFromDcm);
+    return dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, part));
+  };
+  return { D: at(runs.true), told: at(runs.told) };
+}
+
+// The two ways of stop 14 at a share of the way, as matrices.
+export function ways(part) {
+  const [from, to] = [FROM, TO].map((angles) => quaternionFromDcm(frames(angles).D));
+  return { one: dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, part)),
+    angles: frames(FROM.map((angle, k) => mix(angle, TO[k], part))).D };
+}
+
+// How far a way turns in all, in radians: the sum of its small turns.
+export const turnedAlong = (list) => list.slice(1).reduce((sum, dcm, k) => sum + apart(list[k], dcm), 0);
+export const apart = (first, second) => axisAngleFromDcm(multiply(second, transpose(first))).angle;
+
+const SHOWS = {
+  'two-triads'(scene, s, { D }) {
+    if (s.away < 0.02) return;
+    const to = scale(1.15 * s.away, s.right);
+    scene.triad('D', D, { reach: 0.95, origin: add(to, scale(-0.55 * s.away, [0, 0, -1])), alpha: s.away, thick: 0.022 });
+    scene.camera(D, { at: add(to, scale(-0.55 * s.away, [0, 0, -1])), size: 0.55, alpha: 0.25 * s.away });
+  },
+  'one-motor'(scene, s, { D }) {
+    scene.circle(IDENTITY[0], IDENTITY[1], REACH, 0, 2 * PI, 'muted', 0.011);
+    scene.sweep([0, 0, 1], wrapped(s.angles[0]), [0.62, 0, 0], 'accent');
+    shadows(scene, D[0], [0, 1]);
+  },
+  'nine-shadows'(scene, s, { D }) { shadows(scene, D[s.lit], [0, 1, 2]); },
+  'two-motors'(scene, s) {
+    const [psi, theta] = s.angles, other = dcmFromBodyFixed([theta, psi, 0], 'xzy');
+    const at = add(scale(-1.28, s.right), [0, 0, 1.12]);
+    scene.camera(other, { at, size: 0.62, alpha: 0.42 });
+    scene.triad('D', other, { origin: at, reach: 0.85, alpha: 0.55, thick: 0.018 });
+  },
+  'three-are-enough'(scene, s, { D }) {
+    starAnd(scene, STAR);
+    const [psi, theta] = s.angles, flat = [-Math.sin(psi), Math.cos(psi), 0];
+    scene.circle(IDENTITY[0], IDENTITY[1], 1.38, 0, 2 * PI, 'muted', 0.009);
+    scene.sweep([0, 0, 1], wrapped(psi), [0, 1.38, 0], 'B', { thick: 0.022 });
+    scene.sweep([Math.cos(psi), Math.sin(psi), 0], theta, scale(1.38, flat), 'C', { thick: 0.022 });
+    scene.arrow(scale(0.6, D[1]), scale(1.62, D[1]), 'D');
+    scene.arrow(scale(0.3, D[2]), scale(1.0, D[2]), 'D');
+  },
+  'same-numbers'(scene, s) {
+    const [right, up] = s.view;
+    SEQUENCES.forEach((sequence, k) => {
+      const at = add(TARGET, scale(1.2 * (k % 4 - 1.5), right), scale(1.45 * (1 - Math.floor(k / 4)) + 0.12, up));
+      const rows = dcmFromBodyFixed(s.angles, sequence), own = sequence === SEQUENCE;
+      scene.camera(rows, { at, size: 0.68, colour: own ? 'D' : 'metal' });
+      scene.arrow(add(at, scale(0.36, rows[1])), add(at, scale(0.72, rows[1])), own ? 'D' : 'accent', { thick: 0.022, head: 0.7 });
+      scene.labels.push({ at: add(at, scale(-0.62, up)), text: [...sequence].join('-'), colour: own ? 'D' : 'muted', from: add(at, scale(-0.62, up)), still: true });
+    });
+  },
+  lock(scene, s, { A, B, C }) {
+    const margin = Math.abs(wrapped(s.angles[1])) - PI / 2, close = Math.abs(margin) < deg(12);
+    for (const [axis, text, near] of [[A[2], '\\psi', 1.62], [C[1], '\\varphi', 1.5]]) {
+      scene.dashes(scale(-1.25, axis), scale(near, axis), 0.017, close ? 'accent' : 'muted', 22);
+      scene.label(scale(near, axis), text, close ? 'accent' : 'ink', ZERO);
+    }
+    scene.dashes(scale(-1.7, B[0]), scale(1.7, B[0]), 0.017, 'muted', 24);
+    scene.label(scale(1.7, B[0]), '\\theta', 'ink');
+    // The star passes from overhead along the line that the camera cannot follow: towards b_x.
+    const gone = deg(38) * between(s.t, 0.68, 1);
+    if (s.t > 0.1) {
+      const at = (angle) => add(scale(1.85 * Math.cos(angle), [0, 0, 1]), scale(1.85 * Math.sin(angle), B[0]));
+      scene.star(at(gone), 0.1);
+      scene.tube(Array.from({ length: 12 }, (_, k) => at(gone * k / 11)), 0.011, 'star');
+    }
+  },
+  'one-turn'(scene, s, { D }) {
+    const { axis, angle } = axisOf(s.start);
+    if (angle < 0.05) return;
+    scene.dashes(scale(-2.0, axis), scale(2.0, axis), 0.022, 'accent', 26);
+    scene.label(scale(2.0, axis), '\\hat{e}', 'accent');
+    const home = frames(s.start).D;
+    for (const row of home) {   // the circle of each arrow's tip, and the part of it that is behind
+      const foot = scale(dot(row, axis) * 1.3, axis), arm = subtract(scale(1.3, row), foot);
+      if (length(arm) < 0.08) continue;
+      const u = unit(arm);
+      scene.circle(u, cross(axis, u), length(arm), 0, 2 * PI, 'muted', 0.008, foot, 0.8);
+      scene.sweep(axis, -angle * s.part, arm, 'accent', { origin: foot, thick: 0.02 });
+    }
+    scene.triad('D', D, { reach: 1.3 });
+  },
+  'two-mirrors'(scene, s) {
+    const axis = unit([0.1, -0.2, 1]), u = unit(cross([0, 1, 0.2], axis)), v = cross(axis, u);
+    const way = (angle) => add(scale(Math.cos(angle), u), scale(Math.sin(angle), v));
+    const first = deg(20) + s.together * deg(55), gap = deg(35) + s.apart * deg(30), second = first + gap;
+    for (const [angle, colour] of [[first, 'glass'], [second, 'glass']]) {
+      const edge = (side, high) => add(scale(1.45 * side, way(angle)), scale(high, axis));
+      scene.ribbon([edge(-1, -1.25), edge(1, -1.25)], [edge(-1, 1.25), edge(1, 1.25)], colour, 0.34);
+      const frame = [edge(-1, -1.25), edge(1, -1.25), edge(1, 1.25), edge(-1, 1.25), edge(-1, -1.25)];
+      frame.slice(1).forEach((corner, k) => scene.rod(frame[k], corner, 0.016, 'metal'));
+    }
+    scene.dashes(scale(-1.6, axis), scale(1.6, axis), 0.02, 'accent', 20);
+    scene.label(scale(1.62, axis), '\\hat{e}', 'accent');
+    const r = add(scale(1.5, way(deg(-32))), scale(0.35, axis));
+    const reflected = (vector, angle) => subtract(vector, scale(2 * dot(vector, normal(angle)), normal(angle)));
+    const normal = (angle) => way(angle + PI / 2);
+    const once = reflected(r, first), twice = reflected(once, second);
+    scene.arrow(ZERO, r, 'A', { thick: 0.035 });
+    scene.label(r, '0', 'A');
+    scene.arrow(ZERO, once, 'metal', { thick: 0.03 });
+    scene.label(once, '1', 'ink');
+    scene.arrow(ZERO, twice, 'D', { thick: 0.035 });
+    scene.label(twice, '2', 'D');
+    scene.circle(u, v, 0.62, first, second, 'ink', 0.02);
+    scene.sweep(axis, 2 * gap, scale(0.95, way(deg(-32))), 'accent', { thick: 0.022 });
+  },
+  'four-numbers'(scene, s, { D }) {
+    const { axis } = FOUR, half = s.whole / 2;
+    scene.dashes(scale(-1.9, axis), scale(1.9, axis), 0.02, 'accent', 24);
+    const arm = scale(1.3, unit(cross(axis, [0, 0, 1])));
+    scene.sweep(axis, s.whole % (2 * PI), arm, 'D', { thick: 0.024 });
+    scene.circle(unit(arm), cross(axis, unit(arm)), 1.3, 0, 2 * PI, 'muted', 0.008);
+    // Along the axis the part that is a vector: as long as the sine of half the angle.
+    if (Math.abs(Math.sin(half)) > 0.05) scene.arrow(ZERO, scale(1.5 * Math.sin(half), axis), 'accent', { thick: 0.045 });
+    scene.triad('D', D, { reach: 1.15, thick: 0.022, labels: false });
+    // The circle of the half angle, flat before the eye.
+    const [right, up] = s.view, middle = add(TARGET, scale(1.42, right), scale(1.42, up)), r = 0.72;
+    const at = (angle, far = r) => add(middle, scale(far * Math.sin(angle), right), scale(far * Math.cos(angle), up));
+    scene.circle(right, up, r, 0, 2 * PI, 'muted', 0.014, middle);
+    scene.rod(at(0, -r), at(0), 0.008, 'muted');
+    scene.rod(at(PI / 2, -r), at(PI / 2), 0.008, 'muted');
+    const point = at(half), [c, d] = [Math.cos(half), Math.sin(half)];
+    scene.rod(middle, point, 0.016, 'accent');
+    scene.rod(middle, add(middle, scale(r * c, up)), 0.028, 'ink');
+    scene.rod(add(middle, scale(r * c, up)), add(middle, scale(r * c, up), scale(r * d, right)), 0.028, 'accent');
+    scene.ball(point, 0.075, 'accent');
+    scene.ball(at(half + PI), 0.05, 'metal');
+    scene.label(at(half, r + 0.02), 'q', 'accent', middle);
+    scene.label(at(half + PI, r + 0.02), '-q', 'ink', middle);
+  },
+  'not-home'(scene, s) {
+    const count = 64, left = [], right = [];
+    for (let k = 0; k <= count; k += 1) {
+      const part = k / count, far = mix(CABLE.start, CABLE.wall, part);
+      // In the figure's words the wall is at rest and the camera has turned: the loop is read from its end.
+      const rows = dcmFromQuaternion(quaternionAt(s.turn, s.passed, 1 - part));
+      const place = (across) => times(transpose(rows), [across, -far, 0]);
+      left.push(place(-0.11));
+      right.push(place(0.11));
+    }
+    const middle = left.map((point, k) => scale(0.5, add(point, right[k])));
+    scene.ribbon(left, middle, 'A');
+    scene.ribbon(middle, right, 'B');
+    scene.tube(left, 0.014, 'A');
+    scene.tube(right, 0.014, 'B');
+    scene.box(IDENTITY, [0.9, 0.08, 0.9], 'metal', [0, -CABLE.wall - 0.05, 0], 0.03);
+    scene.triad('D', s.D, { reach: 0.95, thick: 0.02, labels: false });
+  },
+  'between-poses'(scene, s, { D }) {
+    const [from, to] = [FROM, TO].map((angles) => frames(angles).D), { one, angles } = ways(s.part);
+    const line = (kind) => Array.from({ length: 49 }, (_, k) => scale(1.5, ways(k / 48)[kind][1]));
+    scene.tube(line('one'), 0.02, 'accent');
+    scene.tube(line('angles'), 0.016, 'B');
+    for (const [rows, letter] of [[from, '0'], [to, '1']]) {
+      scene.ball(scale(1.5, rows[1]), 0.06, 'ink');
+      scene.label(scale(1.62, rows[1]), letter, 'ink');
+      scene.camera(rows, { alpha: 0.16, lamp: false });
+    }
+    if (!s.free) scene.ball(scale(1.5, angles[1]), 0.075, 'B');
+    if (!s.free) scene.camera(angles, { alpha: 0.3, colour: 'B', lamp: false });
+    scene.ball(scale(1.5, D[1]), 0.085, 'accent');
+    if (s.track.length > 1) scene.tube(s.track.map((rows) => scale(1.54, rows[1])), 0.024, 'D');
+  },
+  'it-moves'(scene, s, { D }) {
+    const { told } = motion(s.time);
+    if (!s.free) {
+      scene.camera(told, { alpha: 0.34, colour: 'B', lamp: false });
+      scene.triad('B', told, { reach: 1.25, alpha: 0.7, thick: 0.018, labels: false });
+      const since = Math.max(0, s.time - 6), at = (kind) => Array.from({ length: 40 }, (_, k) => scale(1.5, motion(mix(since, s.time, k / 39))[kind][1]));
+      if (s.time > 0.2) {
+        scene.tube(at('D'), 0.016, 'D');
+        scene.tube(at('told'), 0.013, 'B');
+      }
+    }
+    scene.triad('D', D, { reach: 1.5, labels: false });
+  },
+};
+
+export const FOUR = { axis: unit([0.5, 0.35, 0.8]) };
+
+function starAnd(scene, at) {
+  scene.star(scale(1.95, at));
+}
+
+// What an arrow of length 1 shows along the hand's arrows: its shadows, which are dot products.
+function shadows(scene, row, along) {
+  const tip = scale(REACH, row);
+  scene.arrow(ZERO, tip, 'D', { thick: 0.045 });
+  for (const k of along) {
+    const foot = scale(REACH * row[k], IDENTITY[k]);
+    if (Math.abs(row[k]) > 0.02) scene.rod(ZERO, foot, 0.055, 'accent');
+    scene.dashes(tip, foot, 0.012, 'accent', 11);
+    scene.ball(foot, 0.055, 'accent');
+  }
+}
+
+// The camera at a moment: where the angles do not say all.
+export function dcmOf(s) {
+  const dcm = moved(s);
+  if (!s.carry) return dcm;
+  const to = quaternionFromDcm(dcm);
+  return dcmFromQuaternion(slerp(s.carry.from, dot(s.carry.from, to) < 0 ? scale(-1, to) : to, s.carry.part));
+}
+
+function moved(s) {
+  if (s.stop === 'one-turn' && !s.free) {
+    const { axis, angle } = axisOf(s.start);
+    return turnedFrame(axis, -angle * s.part, frames(s.start).D);
+  }
+  if (s.stop === 'four-numbers' && !s.free) return dcmFromAxisAngle(FOUR.axis, s.whole);
+  if (s.stop === 'not-home') return simpleDcm('y', s.turn);
+  if (s.stop === 'between-poses' && !s.free) return ways(s.part).one;
+  if (s.stop === 'it-moves' && !s.free) return motion(s.time).D;
+  return frames(s.angles).D;
+}
+
+export function viewOf(s) {
+  const fixed = viewFrom(deg(s.eye[0]), deg(s.eye[1]));
+  if (s.ride < 0.001) return fixed;
+  // The eye goes with the camera from the pose that it had when the eye went over: the picture does not jump.
+  const riding = multiply(fixed, transpose(frames(poses([0, 12, 0])[0]).D), frames(s.angles).D);
+  const [from, to] = [fixed, riding].map(quaternionFromDcm);
+  return dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, s.ride));
+}
+
+// What a state holds besides what a stop moves.
+export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17], ride: 0, away: 0, lit: 0, part: 0, whole: 0, turn: 0,
+  passed: 0, together: 0, apart: 0, time: 0, start: GENERIC, free: false, track: [] };
+
+// All that is seen in a state: { items, labels, view, frames }.
+export function sceneOf(state) {
+  const s = { ...REST, ...state }, stop = STOPS.find((one) => one.id === s.stop), scene = new Scene();
+  const D = dcmOf(s), angles = stop.by === 'camera' && (s.carry || !s.free) ? anglesNear(D, s.angles) : s.angles;
+  const all = { ...frames(angles), D };
+  s.view = viewOf(s);
+  s.right = s.view[0];
+  s.D = D;
+  const shown = { ground: stop.ground ?? 1, machine: stop.machine, camera: stop.camera, A: stop.A, D: stop.D, ...state.shown };
+  scene.ground(shown.ground);
+  scene.machine(all, shown.machine, shown.camera);
+  if (shown.A > 0.02) scene.triad('A', IDENTITY, { alpha: shown.A });
+  if (shown.D > 0.02) scene.triad('D', D, { alpha: shown.D, reach: stop.id === 'looking-back' ? 1.2 : REACH });
+  SHOWS[s.stop]?.(scene, s, all);
+  return { items: scene.items, labels: scene.labels, view: s.view, frames: all };
+}
+
+// ---- words -------------------------------------------------------------------------------------------------
+
+const WINDS = ['north', 'north-east', 'east', 'south-east', 'south', 'south-west', 'west', 'north-west'];
+
+// Which way a camera looks, in words.
+export function lookOf(dcm) {
+  const [x, y, z] = dcm, height = Math.round(Math.asin(Math.max(-1, Math.min(1, y[2]))) * 180 / PI);
+  if (Math.abs(height) >= 88) return `straight ${height > 0 ? 'up' : 'down'}`;
+  const heading = (Math.atan2(y[0], y[1]) * 180 / PI + 360) % 360;
+  const wind = WINDS[Math.round(heading / 45) % 8];
+  const high = height === 0 ? 'towards the horizon' : `${Math.abs(height)} degrees ${height > 0 ? 'up' : 'down'}`;
+  // The roll: the angle from the upright direction across the line of sight to the camera's own z.
+  const level = unit(cross(y, [0, 0, 1])), upright = cross(level, y);
+  const roll = Math.round(Math.atan2(dot(z, level), dot(z, upright)) * 180 / PI);
+  const rolled = roll === 0 ? 'level' : Math.abs(roll) > 178 ? 'upside down' : `rolled ${Math.abs(roll)} degrees to the ${roll > 0 ? 'right' : 'left'}`;
+  return `${wind}, ${high}, ${rolled}`;
+}
+
+// ---- labels ------------------------------------------------------------------------------------------------
+
+// Places for the labels, in pixels from the middle, right and down: each beyond its point, and none on another.
+// `sizes` gives width and height of each.
+export function placed(labels, view, half, sizes, [wide, high]) {
+  const boxes = labels.map((label, k) => {
+    const [x, y] = project(view, label.at).map((v) => v * half), [u, v] = project(view, label.from).map((w) => w * half);
+    const out = Math.hypot(x - u, y - v), [w, h] = sizes[k], far = label.still ? 0 : 6 + 0.5 * Math.hypot(w, h) * 0.8;
+    const way = out > 3 ? [(x - u) / out, (y - v) / out] : [0.7, 0.7];
+    return { x: x + far * way[0], y: -(y + far * way[1]), w, h, fixed: label.still };
+  });
+  for (let round = 0; round < 24; round += 1) {
+    let moved = false;
+    boxes.forEach((a, i) => boxes.slice(0, i).forEach((b) => {
+      const over = (a.w + b.w) / 2 + 2 - Math.abs(a.x - b.x), under = (a.h + b.h) / 2 + 1 - Math.abs(a.y - b.y);
+      if (over <= 0 || under <= 0) return;
+      moved = true;
+      const side = over < under ? 'x' : 'y', push = (Math.min(over, under) / 2 + 0.5) * (a[side] < b[side] ? -1 : 1);
+      if (!a.fixed) a[side] += b.fixed ? 2 * push : push;
+      if (!b.fixed) b[side] -= a.fixed ? 2 * push : push;
+    }));
+    if (!moved) break;
+  }
+  for (const box of boxes) {
+    box.x = Math.max(-wide / 2 + box.w / 2 + 2, Math.min(wide / 2 - box.w / 2 - 2, box.x));
+    box.y = Math.max(-high / 2 + box.h / 2 + 2, Math.min(high / 2 - box.h / 2 - 2, box.y));
+  }
+  return boxes.map(({ x, y }) => [x, y]);
+}

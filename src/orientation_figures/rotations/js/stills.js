@@ -1,0 +1,33 @@
+// Writes down what is seen at the moment of each stop that stands for it on paper: `python -m tools.rotations`.
+import { COURSE, CROOKED, EYES, GENERIC, HALF, REST, TARGET, DISTANCE, GROUND, LIGHT, RIM, placed, project, sceneOf } from './scene.js';
+import { AXES } from '../../moving/js/mathematics.js';
+import { LABELS } from '../../moving/js/glyphs.js';
+import { STOPS } from './stops.js';
+
+const SIZE = 440;
+const round = (value) => (Array.isArray(value) ? value.map(round) : typeof value === 'number' ? Math.round(value * 1e4) / 1e4 + 0 : value);
+const sizeOf = ({ text }) => {
+  if (!LABELS[text]) return [9 * text.length, 14];
+  const [left, top, right, bottom] = LABELS[text].ink;
+  return [(right - left) * 0.02 + 4, (bottom - top) * 0.02 + 4];
+};
+
+// The state of a stop at a moment of it, when it was entered in a pose.
+export function stateAt(stop, t, start = stop.id === 'one-turn' ? CROOKED : GENERIC) {
+  return { ...REST, eye: EYES[stop.id] ?? REST.eye, stop: stop.id, t, start, ...COURSE[stop.id](t, start) };
+}
+
+const stills = STOPS.map((stop) => {
+  const state = stateAt(stop, stop.still), { items, labels, view, frames } = sceneOf(state);
+  const places = placed(labels, view, SIZE / 2, labels.map(sizeOf), [SIZE, SIZE]);
+  return { id: stop.id, before: stop.before, after: stop.after, angles: round(state.angles), frames: round(Object.values(frames)), view: round(view),
+    items: items.map(({ shape, of, rows, origin, size, colour, alpha, casts }) => [shape, round(of), round(rows), round(origin), round(size), colour, round(alpha), casts ? 1 : 0]),
+    labels: labels.map(({ at, text, colour }, k) => [text, LABELS[text] && colour !== 'muted' ? 1 : 0, colour, places[k].map((value) => Math.round(10 * value) / 10), round(at)]) };
+});
+// Two moments of each, with what the camera's arrows are then: the tests hold them against the Python of the book.
+const tried = STOPS.flatMap((stop) => [0.37, 0.83].map((t) => {
+  const state = stateAt(stop, t), { frames } = sceneOf(state);
+  return { id: stop.id, t, state: { ...state, shown: undefined }, frames };
+}));
+const seen = [[0.3, -0.4, 0.9], [1, 0.2, -1.1]].map((point) => [point, project(stills[0].view, point)]);
+process.stdout.write(JSON.stringify({ size: SIZE, half: HALF, target: TARGET, distance: DISTANCE, ground: GROUND, rim: RIM, light: LIGHT, axes: AXES, stills, ...(process.argv.includes('--tried') && { tried, seen }) }));

@@ -1,0 +1,679 @@
+// The figure of the essay in the page: it stays while the text goes past, the text moves it, and the reader may take it
+// in hand at any moment. What is seen follows what is wanted, a little later and gently.
+import { carriedBy, fragmentOf } from '../../moving/js/address.js';
+import { add, dcmFromQuaternion, dot, multiply, quaternionFromDcm, scale, slerp, times, transpose } from '../../moving/js/mathematics.js';
+import { calm, element, put, words, write } from '../../moving/js/shared.js';
+import { LABELS } from '../../moving/js/glyphs.js';
+import { Sensors } from '../../moving/js/phone.js';
+import { AT_READER, COURSE, CROOKED, EYES, FROM, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
+  project, sceneOf, turnedAlong, turnedFrame, ways, wrapped } from './scene.js';
+import { Painter } from './paint.js';
+import { STOPS } from './stops.js';
+
+const PLACE = 'rotations';
+const DEGREES = 180 / Math.PI, PI = Math.PI;
+const say = (angle) => `${Math.round(angle * DEGREES)} degrees`;
+// What the reader can set: its name, from, to, one step, how many of its units are one of the state's, and the unit.
+const DIALS = {
+  psi: ['first motor', -180, 180, 1, DEGREES, '°', 0], theta: ['second motor', -180, 180, 1, DEGREES, '°', 1], phi: ['third motor', -180, 180, 1, DEGREES, '°', 2],
+  away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
+  together: ['both mirrors together', 0, 55, 1, 55, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
+  whole: ['turn of the camera', 0, 720, 1, DEGREES, '°'], turn: ['turn of the camera', 0, 720, 1, DEGREES, '°'],
+  passed: ['cable passed round the camera', 0, 100, 1, 100, '%'], time: ['time', 0, 24, 0.1, 1, 's'],
+};
+const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
+const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
+const stopOf = (id) => STOPS.find((one) => one.id === id);
+const fadesOf = (stop) => ({ ground: 1, ...stop });
+
+class World {
+  constructor(figure, sections) {
+    this.figure = figure;
+    this.sections = sections;
+    this.state = { ...REST, angles: [...AT_READER], eye: [...REST.eye] };
+    this.goal = { t: 0, angles: [...AT_READER], eye: [...REST.eye] };
+    for (const name of SCALARS) this.goal[name] = 0;
+    this.shown = Object.fromEntries(FADES.map((name) => [name, fadesOf(STOPS[0])[name]]));
+    this.set = new Set();      // what the reader has set in this stop
+    this.carry = null;         // the way of the camera from where it was to where this stop has it
+    this.began = new Set();
+    this.build();
+    this.painter = new Painter(this.canvas);
+    this.recolour();
+    new ResizeObserver(() => this.resize()).observe(this.stage);
+    this.resize();
+    this.listen();
+    this.enter(STOPS[0].id);
+    this.takeUp();
+  }
+
+  // ---- what it is made of --------------------------------------------------------------------------------
+
+  build() {
+    this.canvas = element('canvas', { tabindex: '0', role: 'application', 'aria-roledescription': 'camera gimbal',
+      'aria-label': 'A camera gimbal. The arrow keys turn the camera, comma and full stop roll it, with Shift the arrow keys turn '
+        + 'the view, Home gives it back to the text.', 'data-lm-suppress-shortcuts': 'true' });
+    this.names = element('div', { class: 'names', 'aria-hidden': 'true' });
+    this.seen = element('p', { class: 'look', 'aria-hidden': 'true' });
+    this.heard = element('p', { class: 'unseen', role: 'status' });
+    this.numbers = element('div', { class: 'nine', hidden: true });
+    this.dials = element('div', { class: 'dials' });
+    const pressed = element('button', { type: 'button', 'aria-pressed': 'false', click: () => {
+      this.numbers.hidden = !this.numbers.hidden;
+      put(pressed, 'aria-pressed', String(!this.numbers.hidden));
+      this.wake();
+    } }, 'Numbers');
+    const link = element('button', { type: 'button', click: () => this.copyAddress() }, 'Copy the address');
+    this.phone = element('button', { type: 'button', hidden: true, click: () => this.askPhone() }, 'Turn it with this phone');
+    if ('DeviceOrientationEvent' in window && matchMedia('(pointer: coarse)').matches) this.phone.hidden = false;
+    this.stage = element('div', { class: 'scene' }, this.canvas, this.names, this.numbers);
+    this.figure.append(element('div', { class: 'world-live' }, this.stage, this.seen, this.heard, this.dials,
+      element('div', { class: 'tools' }, pressed, link, this.phone)));
+  }
+
+  recolour() {
+    this.painter.recolour(getComputedStyle(this.figure));
+    this.wake();
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.stage;
+    if (!clientWidth || !clientHeight) return;
+    this.half = Math.min(clientWidth, clientHeight) / 2;
+    this.painter.resize(clientWidth, clientHeight);
+    this.wake();
+  }
+
+  listen() {
+    const { canvas } = this;
+    canvas.addEventListener('pointerdown', (event) => this.hold(event));
+    canvas.addEventListener('pointermove', (event) => this.move(event));
+    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => this.release(event));
+    // A finger on the machine takes it; beside it, the page scrolls.
+    canvas.addEventListener('touchstart', (event) => { if (this.partAt(this.at(event.touches[0]))) event.preventDefault(); }, { passive: false });
+    canvas.addEventListener('keydown', (event) => this.press(event));
+    canvas.addEventListener('dblclick', () => this.giveBack());
+    canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+    canvas.addEventListener('webglcontextrestored', () => location.reload());
+    addEventListener('scroll', () => this.follow(), { passive: true });
+    addEventListener('resize', () => this.follow());
+    addEventListener('hashchange', () => this.takeUp());
+    new MutationObserver(() => this.recolour()).observe(document.documentElement, { attributeFilter: ['data-theme'] });
+    this.follow();
+  }
+
+  // ---- the text moves it -----------------------------------------------------------------------------------
+
+  // Which stop is being read, and how much of it.
+  follow() {
+    if (!this.sections.length || this.bound) return;
+    const below = this.figure.getBoundingClientRect();
+    // Beside the text the line at which one reads is in the middle of the window; below the figure it is lower.
+    const narrow = below.width > 0.8 * innerWidth, line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
+    let now = this.sections[0], part = 0;
+    for (const section of this.sections) {
+      const { top, height } = section.place.getBoundingClientRect();
+      if (top <= line) [now, part] = [section, Math.min(1, (line - top) / (0.85 * height))];
+    }
+    this.enter(now.id);
+    this.goal.t = calm() ? stopOf(now.id).still : part;
+    if (this.state.free && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
+    this.wake();
+  }
+
+  enter(id) {
+    if (this.state.stop === id && this.began.has(id)) return;
+    const stop = stopOf(id), before = dcmOf(this.state), { free } = this.state, first = !this.began.size;
+    this.began = new Set([id]);
+    this.state.stop = id;
+    this.state.t = 0;
+    this.state.free = false;
+    this.state.track = [];
+    this.set.clear();
+    this.heldAt = null;
+    for (const name of SCALARS) if (!['ride'].includes(name)) this.state[name] = 0;
+    // From the pose that the reader left the one turn leads home; a pose that is nearly home would show nothing.
+    const angles = anglesNear(before, this.state.angles);
+    this.state.angles = angles;
+    // At the last stop it stands as it was left.
+    this.state.start = id === 'your-turn' || (free && axisOf(angles).angle > 0.6) ? angles : CROOKED;
+    if (!first && stop.by === 'camera') this.carry = { from: quaternionFromDcm(before), since: null };
+    this.goal.eye = [...EYES[id] ?? REST.eye];
+    this.showDials(stop);
+    if (!first) this.tell(`${stop.before}`);
+    this.passed = false;
+    if (!this.sections.length) this.play();
+  }
+
+  // Alone, in somebody else's page, a stop runs by itself once.
+  play() {
+    const begin = performance.now(), length = calm() ? 1 : 7000;
+    const tick = () => {
+      if (this.state.free || this.set.size) return;
+      this.goal.t = calm() ? stopOf(this.state.stop).still : Math.min(1, (performance.now() - begin) / length);
+      this.wake();
+      if (this.goal.t < 1 && !calm()) requestAnimationFrame(tick);
+    };
+    tick();
+  }
+
+  // What the text wants now.
+  wanted() {
+    const { state, goal } = this, course = COURSE[state.stop](state.t, state.start);
+    if (course.angles && !state.free) goal.angles = course.angles;
+    for (const name of SCALARS) if (!this.set.has(name)) goal[name] = course[name] ?? 0;
+    state.lit = this.set.has('lit') ? state.lit : course.lit ?? 0;
+  }
+
+  takeBack() {
+    const before = this.shownDcm();
+    this.state.free = false;
+    this.set.clear();
+    this.state.track = [];
+    if (stopOf(this.state.stop).by === 'camera') this.carry = { from: quaternionFromDcm(before), since: null };
+    this.wake();
+  }
+
+  giveBack() {
+    this.goal.eye = [...EYES[this.state.stop] ?? REST.eye];
+    this.takeBack();
+  }
+
+  shownDcm() { return this.picture ? this.picture.frames.D : dcmOf(this.state); }
+
+  // ---- one picture after another ---------------------------------------------------------------------------
+
+  wake() {
+    this.frame ||= requestAnimationFrame((now) => this.tick(now));
+  }
+
+  tick(now) {
+    this.frame = 0;
+    const begun = performance.now(), { state, goal } = this;
+    const passed = Math.min(0.1, this.before ? (now - this.before) / 1000 : 0.016);
+    const rate = (seconds) => (calm() ? 1 : 1 - Math.exp(-passed / seconds));
+    let still = true;
+    const towards = (from, to, seconds, near) => {
+      if (Math.abs(to - from) < near) return to;
+      still = false;
+      return from + (to - from) * rate(seconds);
+    };
+    state.t = towards(state.t, goal.t, 0.3, 1e-3);
+    this.wanted();
+    // To an angle that the text wants by the short way, to one of the reader's as it was moved.
+    state.angles = state.angles.map((angle, k) => {
+      const to = state.free ? goal.angles[k] : angle + wrapped(goal.angles[k] - angle);
+      return towards(angle, to, state.free ? 0.035 : 0.22, 5e-4);
+    });
+    state.eye = state.eye.map((angle, k) => towards(angle, goal.eye[k], 0.12, 0.02));
+    for (const name of SCALARS) state[name] = towards(state[name], goal[name], this.set.has(name) ? 0.05 : name === 'ride' ? 0.4 : 0.15, 1e-4);
+    const fades = fadesOf(stopOf(state.stop));
+    for (const name of FADES) this.shown[name] = towards(this.shown[name], fades[name], 0.3, 2e-3);
+    state.shown = this.shown;
+    if (this.carry) {
+      this.carry.since ??= now;
+      const part = calm() ? 1 : Math.min(1, (now - this.carry.since) / 900);
+      state.carry = part < 1 ? { from: this.carry.from, part: part * part * (3 - 2 * part) } : null;
+      if (part >= 1) this.carry = null;
+      still = false;
+    } else state.carry = null;
+    this.picture = sceneOf(state);
+    this.draw();
+    this.script = performance.now() - begun;
+    this.pace(now, still);
+    this.before = still ? 0 : now;
+    if (!still) this.wake();
+  }
+
+  draw() {
+    this.painter.paint(this.picture);
+    this.drawNames();
+    const look = this.words();
+    write(this.seen, look);
+    if (!this.numbers.hidden) this.drawNumbers();
+    this.showValues();
+    if (!this.passed && this.state.t > 0.9) {
+      this.passed = true;
+      this.tell(stopOf(this.state.stop).after);
+    }
+    this.figure.dataset.state = this.state.stop;
+  }
+
+  // Where graphics are drawn by the processor, fewer points are better than few pictures.
+  pace(now, still) {
+    if (still || !this.before) { this.slow = 0; return; }
+    const long = now - this.before > 55;
+    this.slow = long ? (this.slow ?? 0) + 1 : 0;
+    if (this.slow > 6 && this.painter.renderer.dpr > 0.6) {
+      this.slow = 0;
+      this.painter.resize(this.painter.wide, this.painter.high, Math.max(0.6, this.painter.renderer.dpr * 0.7));
+    }
+  }
+
+  drawNames() {
+    const { labels, view } = this.picture;
+    this.written ??= new Map();
+    const used = new Set(), boxes = [];
+    for (const label of labels) {
+      let name = `${label.text} ${label.colour}`;
+      while (used.has(name)) name += '+';
+      used.add(name);
+      if (!this.written.has(name)) {
+        const span = element('span', { class: `name ${label.colour}` });
+        span.append(...(LABELS[label.text] && label.colour !== 'muted' ? words(`$${label.text}$`) : [label.text]));
+        this.names.append(span);
+        this.written.set(name, { span, size: [span.offsetWidth, span.offsetHeight] });
+      }
+      boxes.push(this.written.get(name));
+    }
+    for (const [name, { span }] of this.written) span.hidden = !used.has(name);
+    const { clientWidth: wide, clientHeight: high } = this.stage;
+    placed(labels, view, this.half, boxes.map(({ size }) => size), [wide, high]).forEach(([x, y], k) => {
+      const [w, h] = boxes[k].size;
+      boxes[k].span.style.transform = `translate(${(wide / 2 + x - w / 2).toFixed(1)}px, ${(high / 2 + y - h / 2).toFixed(1)}px)`;
+    });
+  }
+
+  drawNumbers() {
+    const { D } = this.picture.frames, q = this.quaternion(D);
+    const number = (value) => (value < -5e-4 ? '\u2212' : '\u2007') + Math.abs(value).toFixed(3);
+    if (!this.cells) {
+      this.cells = Array.from({ length: 13 }, () => element('span', {}));
+      const row = (head, from, to) => element('div', {}, element('b', {}, head), ...this.cells.slice(from, to));
+      this.numbers.append(...['x', 'y', 'z'].map((axis, k) => row(`$\\hat{d}_${axis}$`, 3 * k, 3 * k + 3)), row('$q$', 9, 13));
+    }
+    D.flat().concat(q).forEach((value, k) => {
+      write(this.cells[k], number(value));
+      this.cells[k].classList.toggle('lit', this.state.stop === 'nine-shadows' && Math.floor(k / 3) === this.state.lit && k < 9);
+    });
+  }
+
+  // The quaternion that goes on from the last one: of q and -q the nearer.
+  quaternion(dcm) {
+    let q = quaternionFromDcm(dcm);
+    if (this.state.stop === 'four-numbers' && !this.state.free) {
+      const half = this.state.whole / 2;
+      if (dot(q, [Math.cos(half), 0, 0, 0]) < 0) q = scale(-1, q);
+    } else if (this.q && dot(q, this.q) < 0) q = scale(-1, q);
+    if (this.state.stop === 'not-home') q = [Math.cos(this.state.turn / 2), 0, Math.sin(this.state.turn / 2), 0];
+    this.q = q;
+    return q;
+  }
+
+  // ---- words -----------------------------------------------------------------------------------------------
+
+  words() {
+    const { state } = this, { D } = this.picture.frames, look = `The camera looks ${lookOf(D)}.`;
+    const more = {
+      'one-motor': () => `First motor ${say(state.angles[0])}: ${Math.cos(state.angles[0]).toFixed(2)} of the arrow falls on one arrow of the hand, ${Math.sin(state.angles[0]).toFixed(2)} on the other.`,
+      'nine-shadows': () => `The shadows of the arrow d ${'xyz'[state.lit]} are ${D[state.lit].map((entry) => entry.toFixed(2)).join(', ')}.`,
+      'three-are-enough': () => this.beside(D),
+      lock: () => {
+        const margin = Math.abs(Math.abs(wrapped(state.angles[1])) - PI / 2);
+        return margin < deg(1) ? `${look} Locked: the first and the third motor turn about one line.`
+          : `${look} The axes of the first and the third motor are ${say(margin < PI / 2 ? margin : PI - margin)} apart.`;
+      },
+      'one-turn': () => `${look} From here home is one turn of ${say(axisOf(state.start).angle * (1 - state.part))}.`,
+      'two-mirrors': () => `The mirrors stand ${say(deg(35 + 30 * state.apart))} apart, and the arrow has turned ${say(deg(70 + 60 * state.apart))}.`,
+      'four-numbers': () => `Turned ${say(state.whole)}: the point stands at ${say(state.whole / 2)}.`,
+      'not-home': () => this.cable(),
+      'between-poses': () => this.way(D),
+      'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the small turns that the instrument added up are ${say(apart(D, motion(state.time).told))} off.`),
+    }[state.stop];
+    const held = this.phoneWords ?? (more ? more() : look);
+    return held.replaceAll('-0.00', '0.00');
+  }
+
+  beside(D) {
+    const aside = Math.acos(Math.max(-1, Math.min(1, dot(D[1], STAR)))), look = `The camera looks ${lookOf(D)}.`;
+    if (aside > deg(4)) return `${look} The star is ${say(aside)} away from where it looks.`;
+    return lookOf(D).endsWith('level') ? `There: on the star, and level. Three motors were enough.` : `On the star. Now level it: ${lookOf(D).split(', ')[2]}.`;
+  }
+
+  cable() {
+    const { turn, passed } = this.state, turns = turn / (2 * PI);
+    const whole = [0, 1, 2].find((one) => Math.abs(turns - one) < 0.01);
+    if (whole === undefined) return `The camera has turned ${say(turn)}, and the cable has followed.`;
+    if (whole === 0) return 'The camera is as it was, and the cable is flat.';
+    if (passed < 0.02) return `After ${whole === 1 ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it holds ${whole === 1 ? 'one turn' : 'two turns'}.`;
+    if (passed < 0.98) return 'The camera stands still while the cable is passed round it.';
+    return whole === 1 ? 'Passed round: the twist is still there, the other way. It will not go away.' : 'Passed round: the cable is flat. Two turns are none.';
+  }
+
+  way(D) {
+    const needed = [0, 1].map((k) => turnedAlong(Array.from({ length: 97 }, (_, i) => ways(i / 96)[['one', 'angles'][k]])));
+    const { track, free } = this.state;
+    if (!free) return `The one turn takes ${say(needed[0])}; the way in angles, red, turns the camera through ${say(needed[1])} in all.`;
+    const left = apart(D, frames(TO).D), taken = turnedAlong(track);
+    if (left > deg(15)) return `Your way so far: ${say(taken)}. Pose 1 is ${say(left)} away.`;
+    return `Your way: ${say(taken + left)}. The one turn: ${say(needed[0])}. In angles: ${say(needed[1])}.`;
+  }
+
+  // Heard when it has rested.
+  tell(text) {
+    clearTimeout(this.wait);
+    this.wait = setTimeout(() => { this.heard.textContent = text; }, 500);
+  }
+
+  // ---- the reader takes it in hand ---------------------------------------------------------------------------
+
+  at(event) {
+    const box = this.canvas.getBoundingClientRect();
+    return [event.clientX - box.left - box.width / 2, box.top + box.height / 2 - event.clientY];
+  }
+
+  onScreen(point) { return project(this.picture.view, point).slice(0, 2).map((entry) => entry * this.half); }
+
+  // What lies under the pointer: an arm, with the point of it, or the camera.
+  partAt(at) {
+    if (!this.picture) return null;
+    const { B, C } = this.picture.frames, stop = stopOf(this.state.stop), found = [];
+    const far = (point) => Math.hypot(...this.onScreen(point).map((entry, k) => entry - at[k]));
+    if (Math.hypot(at[0], at[1] - this.onScreen([0, 0, 0])[1]) < 0.3 * this.half) found.push({ part: 'D', near: 0.1 });
+    if (stop.machine > 0.5 || stop.id === 'one-motor') {
+      for (const [part, u, v, radius] of [['B', B[0], B[2], 1.05], ['C', C[0], C[1], 0.77]]) {
+        for (let k = 0; k <= 24; k += 1) {
+          const a = PI + PI * k / 24, point = add(scale(radius * Math.cos(a), u), scale(radius * Math.sin(a), v));
+          if (far(point) < 20) found.push({ part, point, near: dot(this.picture.view[2], point) - 0.01 * far(point) });
+        }
+      }
+    }
+    return found.sort((a, b) => b.near - a.near)[0] ?? null;
+  }
+
+  seize() {
+    const { state, goal } = this;
+    this.heldAt = goal.t;
+    this.phoneWords = null;
+    if (state.free) return;
+    let dcm = this.shownDcm();
+    if (state.stop === 'between-poses') {
+      dcm = frames(FROM).D;
+      state.track = [dcm];
+    }
+    goal.angles = anglesNear(dcm, state.angles);
+    state.angles = [...goal.angles];
+    this.carry = null;
+    state.free = true;
+  }
+
+  hold(event) {
+    if (this.held || event.button > 0) return;
+    const at = this.at(event), found = this.partAt(at);
+    if (!found && event.pointerType === 'touch') return;
+    this.held = { pointer: event.pointerId, at, ...found };
+    if (found && this.state.stop !== 'not-home') this.seize();
+    this.canvas.setPointerCapture(event.pointerId);
+    put(this.canvas, 'data-held', '');
+  }
+
+  move(event) {
+    const at = this.at(event);
+    if (!this.held) {
+      if (event.pointerType === 'mouse') put(this.canvas, 'data-over', String(Boolean(this.partAt(at))));
+      return;
+    }
+    if (this.held.pointer !== event.pointerId) return;
+    const moved = [at[0] - this.held.at[0], at[1] - this.held.at[1]];
+    this.held.at = at;
+    const { goal, state } = this, { part } = this.held;
+    if (!part) {
+      goal.eye = [goal.eye[0] - 0.4 * moved[0], Math.max(-20, Math.min(85, goal.eye[1] - 0.4 * moved[1]))];
+    } else if (state.stop === 'not-home') {
+      this.dial('turn', Math.max(0, Math.min(4 * PI, goal.turn + moved[0] / 60)));
+    } else if (part === 'D') {
+      this.turnBy(moved);
+    } else {
+      const k = part === 'B' ? 0 : 1, axis = k ? this.picture.frames.B[0] : [0, 0, 1];
+      this.along(k, axis, moved);
+    }
+    this.wake();
+  }
+
+  // As a ball under the hand: the front goes where the pointer goes.
+  turnBy([right, up]) {
+    const { goal, state } = this, turn = Math.hypot(right, up) / (0.75 * this.half);
+    if (!turn) return;
+    const axis = times(transpose(this.picture.view), [-up, right, 0]);
+    const before = frames(goal.angles).D, dcm = turnedFrame(axis, turn, before);
+    goal.angles = anglesNear(dcm, goal.angles);
+    if (state.stop === 'between-poses') state.track = [...state.track, dcm].slice(-400);
+  }
+
+  // An arm goes as far along its circle as the pointer does.
+  along(k, axis, moved) {
+    const point = this.held.point, small = 0.02, ahead = turnedPoint(axis, small, point);
+    const [from, to] = [this.onScreen(point), this.onScreen(ahead)];
+    const way = [(to[0] - from[0]) / small, (to[1] - from[1]) / small], size = way[0] ** 2 + way[1] ** 2 + (0.25 * this.half) ** 2;
+    const angle = Math.max(-0.3, Math.min(0.3, (moved[0] * way[0] + moved[1] * way[1]) / size));
+    this.goal.angles = this.goal.angles.map((one, i) => (i === k ? one + angle : one));
+    this.held.point = turnedPoint(axis, angle, point);
+  }
+
+  release(event) {
+    if (this.held?.pointer !== event.pointerId) return;
+    const { part } = this.held;
+    this.held = null;
+    this.canvas.removeAttribute('data-held');
+    if (!part) return;
+    this.letGo();
+  }
+
+  // What follows when it is let go, by hand or by key.
+  letGo() {
+    const { state, goal } = this;
+    this.wake();
+    if (state.stop === 'one-turn' && state.free) {
+      state.start = goal.angles;
+      state.angles = [...goal.angles];
+      state.free = false;
+      state.part = 0;
+      this.run('part', 1, 3000);
+    }
+    requestAnimationFrame(() => { if (this.picture) this.tell(this.words()); });
+  }
+
+  // Goes on by itself.
+  run(name, to, length) {
+    this.set.add(name);
+    const from = this.goal[name] = 0, begin = performance.now();
+    const tick = () => {
+      if (this.held || !this.set.has(name)) return;
+      const part = calm() ? 1 : Math.min(1, (performance.now() - begin) / length);
+      this.goal[name] = from + (to - from) * part;
+      this.wake();
+      if (part < 1) requestAnimationFrame(tick);
+    };
+    tick();
+  }
+
+  press(event) {
+    const step = deg(event.altKey ? 1 : 5), { goal } = this;
+    const turn = { ArrowLeft: [0, step], ArrowRight: [0, -step], ArrowUp: [1, step], ArrowDown: [1, -step], ',': [2, -step], '.': [2, step] }[event.key];
+    if (event.key === 'Home') this.giveBack();
+    else if (turn && event.shiftKey && event.key.startsWith('Arrow')) {
+      const [dx, dy] = { ArrowLeft: [6, 0], ArrowRight: [-6, 0], ArrowUp: [0, 6], ArrowDown: [0, -6] }[event.key];
+      goal.eye = [goal.eye[0] + dx, Math.max(-20, Math.min(85, goal.eye[1] + dy))];
+    } else if (turn && this.state.stop === 'not-home') this.dial('turn', Math.max(0, Math.min(4 * PI, goal.turn + 3 * turn[1])));
+    else if (turn) {
+      this.seize();
+      goal.angles = goal.angles.map((angle, k) => (k === turn[0] ? angle + turn[1] : angle));
+      if (this.state.stop === 'between-poses') this.state.track = [...this.state.track, frames(goal.angles).D].slice(-400);
+      this.letGo();
+    } else if (this.state.stop === 'nine-shadows' && '123xyz'.includes(event.key)) {
+      this.state.lit = '123xyz'.indexOf(event.key) % 3;
+      this.set.add('lit');
+      this.letGo();
+    } else return;
+    event.preventDefault();
+    this.wake();
+  }
+
+  // ---- dials -------------------------------------------------------------------------------------------------
+
+  showDials(stop) {
+    this.open = stop.dials.map((name) => {
+      const [title, min, max, step, factor, sign, motor, zero = 0] = DIALS[name];
+      const field = element('input', { type: 'range', min, max, step, 'aria-label': title, input: () => {
+        const value = (Number(field.value) - zero) / factor;
+        if (motor >= 0 && motor !== null) this.motor(motor, value); else this.dial(name, value);
+        this.wake();
+      }, change: () => this.letGo() });
+      const value = element('output', {});
+      return { name, field, value, factor, sign, motor, zero, title, row: element('label', { class: `dial${motor >= 0 && motor !== null ? ` motor-${motor}` : ''}` }, element('span', {}, title), field, value) };
+    });
+    this.dials.replaceChildren(...this.open.map(({ row }) => row));
+    if (stop.id === 'nine-shadows') {
+      this.dials.append(element('div', { class: 'tools' }, ...['x', 'y', 'z'].map((axis, k) => element('button', { type: 'button', click: () => {
+        this.state.lit = k;
+        this.set.add('lit');
+        this.heldAt = this.goal.t;
+        this.letGo();
+      } }, `Shadows of $\\hat{d}_${axis}$`))));
+    }
+  }
+
+  showValues() {
+    for (const { name, field, value, factor, sign, motor, zero, title } of this.open) {
+      const now = motor >= 0 && motor !== null ? wrapped(this.state.angles[motor]) : this.state[name];
+      const shown = String(Number((now * factor + zero).toFixed(factor === 1 ? 1 : 0)) + 0);
+      if (document.activeElement !== field || !this.set.has(name)) field.value = shown;
+      write(value, `${shown}${sign}`);
+      put(field, 'aria-valuetext', `${title}: ${shown} ${{ '°': 'degrees', '%': 'per cent', s: 'seconds' }[sign]}`);
+    }
+  }
+
+  motor(k, value) {
+    this.seize();
+    this.goal.angles = this.goal.angles.map((angle, i) => (i === k ? angle + wrapped(value - angle) : angle));
+  }
+
+  dial(name, value) {
+    if (stopOf(this.state.stop).by === 'camera' && this.state.free) this.takeBack();
+    this.set.add(name);
+    this.heldAt = this.goal.t;
+    this.goal[name] = value;
+  }
+
+  // ---- addresses ---------------------------------------------------------------------------------------------
+
+  content() {
+    const { state, goal } = this, round = (value) => Math.round(value * 1e4) / 1e4;
+    const set = Object.fromEntries([...this.set].filter((name) => SCALARS.includes(name)).map((name) => [name, round(goal[name])]));
+    return { stop: state.stop, t: round(goal.t), eye: goal.eye.map(round), ...(state.free && { angles: goal.angles.map(round) }), ...set };
+  }
+
+  async copyAddress() {
+    const address = location.href.split('#')[0] + fragmentOf(PLACE, this.content());
+    try {
+      await navigator.clipboard.writeText(address);
+      this.tell('The address is copied. Whoever opens it sees the gimbal as it stands now.');
+      write(this.seen, 'The address is copied. Whoever opens it sees the gimbal as it stands now.');
+    } catch {
+      history.replaceState(null, '', address);   // then it is in the bar of addresses
+    }
+  }
+
+  // What an address carries may come from anybody: it is taken up as far as a reader could have entered it.
+  takeUp() {
+    let carried = null;
+    try {
+      carried = carriedBy(location.hash);
+    } catch (error) {
+      this.tell(error.message);
+      write(this.seen, error.message);
+      return;
+    }
+    if (carried?.place !== PLACE) return;
+    const { stop, t, eye, angles, ...rest } = carried.content, known = stopOf(stop);
+    if (!known) return;
+    const numbers = (list, count, most) => Array.isArray(list) && list.length === count && list.every((one) => Number.isFinite(one) && Math.abs(one) <= most);
+    const share = t >= 0 && t <= 1 ? t : 0, section = this.sections.find((one) => one.id === stop);
+    if (section) {
+      const { top, height } = section.place.getBoundingClientRect();
+      scrollTo({ top: scrollY + top - 0.55 * innerHeight + share * 0.85 * height + 1, behavior: 'instant' });
+      this.follow();
+    } else {
+      this.enter(stop);
+      this.goal.t = share;
+    }
+    this.state.t = this.goal.t;
+    if (numbers(eye, 2, 360)) this.goal.eye = [eye[0], Math.max(-20, Math.min(85, eye[1]))];
+    if (numbers(angles, 3, 100)) {
+      this.seize();
+      this.goal.angles = angles;
+    }
+    for (const name of SCALARS) {
+      const dial = DIALS[name];
+      if (dial && Number.isFinite(rest[name]) && rest[name] >= 0 && rest[name] * dial[4] + (dial[7] ?? 0) <= dial[2] + 1e-6) {
+        this.set.add(name);
+        this.goal[name] = rest[name];
+      }
+    }
+    this.heldAt = this.goal.t;
+    this.wake();
+  }
+
+  // ---- the reader's own phone --------------------------------------------------------------------------------
+
+  async askPhone() {
+    for (const kind of [window.DeviceOrientationEvent]) {
+      if (!kind?.requestPermission) continue;
+      if (await kind.requestPermission().catch(() => 'denied') !== 'granted') {
+        this.phoneWords = 'The sensors were refused. The gimbal turns under your finger all the same.';
+        this.wake();
+        return;
+      }
+    }
+    const sensors = new Sensors(), name = 'ondeviceorientationabsolute' in window ? 'deviceorientationabsolute' : 'deviceorientation';
+    let first = null;
+    addEventListener(name, (event) => {
+      if (!this.canvas.isConnected || !sensors.orientation(event) || this.held) return;
+      this.seize();
+      // As the standard has it, and this gimbal too: z-x-y from the ground to the phone, whose top edge is the lens.
+      this.goal.angles = anglesNear(frames(sensors.angles).D, this.goal.angles);
+      const q = this.quaternion(frames(sensors.angles).D), margin = Math.abs(Math.abs(sensors.angles[1]) - PI / 2);
+      first ??= q;
+      const along = dot(first, q);
+      this.phoneWords = `The camera looks where the top of your phone points: ${lookOf(frames(sensors.angles).D)}.`
+        + (margin < deg(8) ? ' You hold it upright: this is gimbal lock.' : along < -0.985 ? ' Once round: you are back, and q is now \u2212q.' : '');
+      this.wake();
+    });
+    this.phoneWords = 'Waiting for the sensors of this device ...';
+    this.wake();
+    setTimeout(() => {
+      if (first) return;
+      this.phoneWords = 'No sensor answers here. The gimbal turns under your finger all the same.';
+      this.wake();
+    }, 3000);
+  }
+}
+
+const turnedPoint = (axis, angle, point) => {
+  const c = Math.cos(angle), s = Math.sin(angle), along = dot(axis, point);
+  const [x, y, z] = axis, [a, b, d] = point, across = [y * d - z * b, z * a - x * d, x * b - y * a];
+  return point.map((entry, k) => c * entry + s * across[k] + (1 - c) * along * axis[k]);
+};
+
+for (const figure of document.querySelectorAll('.world:not([data-ready], [data-stills])')) {
+  const sections = [...document.querySelectorAll('[data-stop]')].map((still) => ({ id: still.dataset.stop, place: still.closest('section') ?? still, still }));
+  try {
+    figure.world = new World(figure, sections);
+    figure.dataset.ready = '';
+  } catch (error) {
+    if (error.message !== 'WebGL') throw error;
+    // Without WebGL the stills take turns in the place of the figure.
+    figure.dataset.stills = '';
+    const still = figure.querySelector('.still');
+    const show = () => {
+      const line = 0.55 * innerHeight, now = sections.filter(({ place }) => place.getBoundingClientRect().top <= line).at(-1) ?? sections[0];
+      const drawing = now?.still.querySelector('svg');
+      if (drawing && still.dataset.shown !== now.id) {
+        still.replaceChildren(drawing.cloneNode(true));
+        still.dataset.shown = now.id;
+      }
+    };
+    addEventListener('scroll', show, { passive: true });
+    show();
+  }
+}

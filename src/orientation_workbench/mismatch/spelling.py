@@ -1,0 +1,85 @@
+"""How programs print numbers: what is to be looked past, as patterns that Python and JavaScript both understand.
+
+Every pattern is tried without regard to case, with ``^`` and ``$`` at each line, letters and digits being those of
+ASCII. In a replacement ``$1`` is the first group.
+"""
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+#: A number as it stands in a text: no part of a name, with a unit or the suffix of a type behind it.
+NUMBER_IN_TEXT = rf"(?<![\w.]){NUMBER}(?=(?:[fld]|deg(?:rees)?|rad(?:ians)?)?(?![\w.]))"
+#: A name and the number that follows it.
+NAMED = r"""["']?([a-z_][\w.]*)["')\]]*\s*[:=]?\s*[\[(]?\s*(?=[-+.]?[.\d])"""
+COMMENT = r"(#|//|%).*"
+#: Places, speeds and covariances, whose value stands behind their name, or below it, set in.
+NOT_TURNS = (
+    r"""["']?\b\w*(?:position|translation|header|stamp|location|covariance|velocity|acceleration|scale|twist|linear"""
+    r"""|angular|tvec)\w*["']?\s*[:=]\s*"""
+)
+VALUE = r"""(?:\{[^}]*\}|\[[^\]]*\]|[\w.]*\([^)]*\)|"[^"\n]*")"""
+DEGREES = r"\u00b0|\bdeg(?:rees)?\b|\d(?:deg)"
+RADIANS = r"\brad(?:ians?)?\b"
+#: What names of angles say: these are turns about z, y and x.
+YAW_PITCH_ROLL = {"sequence": "zyx", "axes of the turns": "body fixed", "places": "123"}
+#: Names of the three angles where none stands at its number: what that says of their order.
+ORDERS_OF_ANGLES = (
+    (r"\brpy\b|\broll\W{1,3}pitch\W{1,3}yaw\b", YAW_PITCH_ROLL | {"places": "321"}),
+    (r"\bypr\b|\byaw\W{1,3}pitch\W{1,3}roll\b", YAW_PITCH_ROLL),
+)
+#: The innermost of brackets in brackets.
+INNERMOST = r"[\[({]([^\[\](){}]*)[\])}]"
+NOT_A_NUMBER = r"(?<![a-z])[-+]?(nan|inf(?:inity)?)(?![a-z])"
+#: What would have to be worked out first.
+ARITHMETIC = r"\b(?:m_|np\.|math\.)?pi\b|\bsqrt\s*\(|\u221a|\u03c0"
+#: A quaternion as a sum of its parts.
+SUM = r"\d\s*[*.]?\s*i\b[^a-z]*\d\s*[*.]?\s*j\b[^a-z]*\d\s*[*.]?\s*k\b"
+SIGNS_OF_A_SUM = ((r"\+\s*-\s*(?=[.\d])", "-"), (r"([-+])\s+(?=[.\d])", "$1"))
+PART_OF_A_SUM = rf"({NUMBER})\s*[*.]?\s*([ijk])\b"
+SCALAR_OF_A_SUM = rf"(?<![\w.=+-])({NUMBER})(?![\w.])"
+
+#: In this order: pattern and what takes its place.
+CLEANING = (
+    ("[\u00a0\u2000-\u200b\u202f\u3000]", " "),
+    ("[\u2212\u2013\ufe63\uff0d]", "-"),
+    (r"(\d)d([-+]\d)", "$1e$2"),
+    # The report of ROS's tf2_echo says each orientation several times.
+    (r"(in quaternion[^\[]*\[[^\]]*\])[\s\S]*?(?=at time|(?![\s\S]))", "$1\n"),
+    (r"^.*\bat time.*$", " "),
+    # Of an element of URDF the place is not the turn.
+    (r'\bxyz\s*=\s*"[^"]*"(?=[^>]*\b(?:rpy|quat|wxyz)\b)', " "),
+    (r'(\b(?:rpy|quat|wxyz)\s*=\s*"[^"]*"[^>]*)\bxyz\s*=\s*"[^"]*"', "$1"),
+    # Texts in quotation marks, as names of files and of devices, and the place of an entry before its value.
+    (r'(?<![\w"])"(?=[^"\n]*[a-z_/])(?![^"\n]*\d\.\d)[^"\n]*"(?!\s*[:=])', " "),
+    (r"(?<![\w'])'[\w:/.,-]*[a-z][\w:/.,-]*'(?!\s*[:=])", " "),
+    (r"\b(?:size|shape|dims?)\b\W{0,3}[\[(][\d\s,]*[\])]", " "),
+    (r"\b\d+\s*[x\u00d7]\s*\d+\b", " "),
+    (r"\bwith indices.*$", " "),
+    (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
+    (r"""["']?\b(?:seq|secs?|nsecs?|nanosecs?|id|index|rows|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
+     r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""", " "),
+    # Stamps of time, and the marks of a list.
+    (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
+    (r"^(\s*)-\s+(?=[-+.]?\d)", "$1"),
+)  # fmt: skip
+
+
+def whole_spelling():
+    """All of it as plain data, for the page."""
+    return {
+        "number": NUMBER_IN_TEXT,
+        "named": NAMED,
+        "comment": COMMENT,
+        "not turns": NOT_TURNS,
+        "value": VALUE,
+        "degrees": DEGREES,
+        "radians": RADIANS,
+        "yaw pitch roll": YAW_PITCH_ROLL,
+        "orders of angles": [list(entry) for entry in ORDERS_OF_ANGLES],
+        "innermost": INNERMOST,
+        "not a number": NOT_A_NUMBER,
+        "arithmetic": ARITHMETIC,
+        "sum": SUM,
+        "signs of a sum": [list(entry) for entry in SIGNS_OF_A_SUM],
+        "part of a sum": PART_OF_A_SUM,
+        "scalar of a sum": SCALAR_OF_A_SUM,
+        "cleaning": [list(entry) for entry in CLEANING],
+    }

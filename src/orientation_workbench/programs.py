@@ -1,0 +1,377 @@
+"""What the numbers of each program mean: one table, for the converter, the printed card and the workbench.
+
+A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives the transpose of this book's
+:math:`{}^A\\mathbf{C}^N`), a ``scalar`` (``'first'`` or ``'last'``) and a ``unit`` of its angles. Its ``lines`` are
+the forms that it takes, each with the line of code for it. In a line, ``{w} {x} {y} {z}`` are the parts of a
+quaternion or of a vector, ``{a} {b} {c}`` three angles in the order of the turns and ``{ax} {ay} {az}`` the same by
+their axes; ``{s}`` is the sequence, ``{S}`` the same in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their
+numbers from 0; ``{m}`` a matrix, row by row. ``sequences`` names the only ones where there are not all twelve.
+``version`` is the one that was run, and empty where the table follows the manual alone, which is at ``manual`` and was
+read in November 2026.
+
+What two programs can be expected to differ by is said by some more, each left out where the manual has nothing on it:
+``angles`` are the choices for three numbers by that program, as
+:data:`~orientation_workbench.mismatch.table.KINDS` calls them; ``three numbers`` says that they are a rotation vector;
+``printed`` is the order in which it prints a quaternion, if it takes it in another; ``inverse`` are forms, besides the
+matrix, that mean the inverse of this book's; ``body`` and ``world`` are where x, y and z of a thing and of its world
+point to. East counts as forward there and north as left, as ROS has it.
+"""
+
+FLU, FRD, RDF = ["forward", "left", "up"], ["forward", "right", "down"], ["right", "down", "forward"]
+RUB, LUF = ["right", "up", "back"], ["left", "up", "forward"]
+ROLL_PITCH_YAW = {"sequence": "xyz", "axes of the turns": "space fixed", "unit": "radians"}
+
+FORMS = ("matrix", "quaternion", "body fixed angles", "space fixed angles", "axis times angle")
+TAIT_BRYAN = ["xyz", "yzx", "zxy", "xzy", "zyx", "yxz"]
+OTHER = "another program"
+
+PROGRAMS = {
+    "this book": {
+        "version": "",
+        "manual": "",
+        "matrix": "as here",
+        "scalar": "first",
+        "unit": "radians",
+        "lines": {
+            "matrix": "np.array({m})",
+            "quaternion": "dcm_from_quaternion(({w}, {x}, {y}, {z}))",
+            "body fixed angles": "dcm_from_body_fixed(({a}, {b}, {c}), '{s}')",
+            "space fixed angles": "dcm_from_space_fixed(({a}, {b}, {c}), '{s}')",
+            "axis times angle": "dcm_from_rotation_vector(({x}, {y}, {z}))",
+        },
+    },
+    "SymPy mechanics": {
+        "version": "1.14.0",
+        "manual": "https://docs.sympy.org/latest/modules/physics/vector/api/classes.html",
+        "matrix": "as here",
+        "scalar": "first",
+        "unit": "radians",
+        "lines": {
+            "matrix": "A.orient_dcm(N, sm.Matrix({m}))",
+            "quaternion": "A.orient_quaternion(N, ({w}, {x}, {y}, {z}))",
+            "body fixed angles": "A.orient_body_fixed(N, ({a}, {b}, {c}), '{s}')",
+            "space fixed angles": "A.orient_space_fixed(N, ({a}, {b}, {c}), '{s}')",
+        },
+    },
+    "SciPy": {
+        "version": "1.17.1",
+        "manual": "https://docs.scipy.org/doc/scipy/reference/generated/scipy.spatial.transform.Rotation.html",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "radians",
+        "lines": {
+            "matrix": "Rotation.from_matrix({m})",
+            "quaternion": "Rotation.from_quat(({x}, {y}, {z}, {w}))",
+            "body fixed angles": "Rotation.from_euler('{S}', ({a}, {b}, {c}))",
+            "space fixed angles": "Rotation.from_euler('{s}', ({a}, {b}, {c}))",
+            "axis times angle": "Rotation.from_rotvec(({x}, {y}, {z}))",
+        },
+    },
+    "pytransform3d": {
+        "version": "3.17.0",
+        "manual": "https://dfki-ric.github.io/pytransform3d/",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "lines": {
+            "matrix": "np.array({m})",
+            "quaternion": "pr.matrix_from_quaternion(({w}, {x}, {y}, {z}))",
+            "body fixed angles": "pr.matrix_from_euler(({a}, {b}, {c}), {i}, {j}, {k}, extrinsic=False)",
+            "space fixed angles": "pr.matrix_from_euler(({a}, {b}, {c}), {i}, {j}, {k}, extrinsic=True)",
+            "axis times angle": "pr.matrix_from_compact_axis_angle(({x}, {y}, {z}))",
+        },
+    },
+    "transforms3d": {
+        "version": "0.4.2",
+        "manual": "https://matthew-brett.github.io/transforms3d/",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "lines": {
+            "matrix": "np.array({m})",
+            "quaternion": "quat2mat(({w}, {x}, {y}, {z}))",
+            "body fixed angles": "euler2mat({a}, {b}, {c}, 'r{s}')",
+            "space fixed angles": "euler2mat({a}, {b}, {c}, 's{s}')",
+        },
+    },
+    "Eigen (C++)": {
+        "version": "eigenpy 3.13.0",
+        "manual": "https://eigen.tuxfamily.org/dox/group__TutorialGeometry.html",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "printed": "xyzw",
+        "lines": {
+            "quaternion": "Quaterniond({w}, {x}, {y}, {z})",
+            "body fixed angles": "AngleAxisd({a}, Vector3d::Unit{A}()) * AngleAxisd({b}, Vector3d::Unit{B}())"
+            " * AngleAxisd({c}, Vector3d::Unit{C}())",
+            "space fixed angles": "AngleAxisd({c}, Vector3d::Unit{C}()) * AngleAxisd({b}, Vector3d::Unit{B}())"
+            " * AngleAxisd({a}, Vector3d::Unit{A}())",
+        },
+    },
+    "MuJoCo model": {
+        "version": "4.0.0",
+        "manual": "https://mujoco.readthedocs.io/en/stable/modeling.html#frame-orientations",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "degrees",
+        "angles": {"sequence": "xyz", "axes of the turns": "body fixed"},
+        "lines": {
+            "quaternion": '<body quat="{w} {x} {y} {z}"/>',
+            "body fixed angles": '<compiler eulerseq="{s}"/> <body euler="{a} {b} {c}"/>',
+            "space fixed angles": '<compiler eulerseq="{S}"/> <body euler="{a} {b} {c}"/>',
+        },
+    },
+    "OpenCV": {
+        "version": "5.0.0",
+        "manual": "https://docs.opencv.org/4.x/d9/d0c/group__calib3d.html",
+        "matrix": "transposed",
+        "scalar": "",
+        "unit": "radians",
+        "three numbers": "rotation vector",
+        "lines": {
+            "matrix": "np.array({m})",
+            "axis times angle": "cv2.Rodrigues(np.array([{x}, {y}, {z}], float))[0]",
+        },
+    },
+    "ROS tf2 (C++)": {
+        "version": "",
+        "manual": "https://docs.ros2.org/foxy/api/tf2/classtf2_1_1Matrix3x3.html",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "radians",
+        "sequences": {"space fixed angles": ["xyz"]},
+        "angles": ROLL_PITCH_YAW,
+        "body": FLU,
+        "world": FLU,
+        "lines": {
+            "quaternion": "tf2::Quaternion({x}, {y}, {z}, {w})",
+            "space fixed angles": "q.setRPY({a}, {b}, {c});",
+        },
+    },
+    "MATLAB Aerospace": {
+        "version": "",
+        "manual": "https://www.mathworks.com/help/aerotbx/ug/angle2dcm.html",
+        "matrix": "as here",
+        "scalar": "first",
+        "unit": "radians",
+        "angles": {"sequence": "zyx", "axes of the turns": "body fixed"},
+        "lines": {
+            "quaternion": "quat2dcm([{w} {x} {y} {z}])",
+            "body fixed angles": "angle2dcm({a}, {b}, {c}, '{S}')",
+        },
+    },
+    "MATLAB Robotics": {
+        "version": "",
+        "manual": "https://www.mathworks.com/help/robotics/ref/eul2rotm.html",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "angles": {"sequence": "zyx", "axes of the turns": "body fixed"},
+        "lines": {
+            "quaternion": "quat2rotm([{w} {x} {y} {z}])",
+            "body fixed angles": "eul2rotm([{a} {b} {c}], '{S}')",
+        },
+    },
+    "Blender": {
+        "version": "",
+        "manual": "https://docs.blender.org/api/current/mathutils.html#mathutils.Euler",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "sequences": {"space fixed angles": TAIT_BRYAN},
+        "angles": {"sequence": "xyz", "axes of the turns": "space fixed"},
+        "body": ["left", "back", "up"],
+        "world": ["left", "back", "up"],
+        "lines": {
+            "matrix": "Matrix({m})",
+            "quaternion": "Quaternion(({w}, {x}, {y}, {z}))",
+            "space fixed angles": "Euler(({ax}, {ay}, {az}), '{S}')",
+        },
+    },
+    "OpenCV solvePnP": {
+        "version": "",
+        "manual": "https://docs.opencv.org/4.x/d5/d1f/calib3d_solvePnP.html",
+        "matrix": "as here",
+        "scalar": "",
+        "unit": "radians",
+        "three numbers": "rotation vector",
+        "inverse": ["rotation vector"],
+        "body": RDF,
+    },
+    "COLMAP": {
+        "version": "",
+        "manual": "https://colmap.github.io/format.html",
+        "matrix": "as here",
+        "scalar": "first",
+        "unit": "radians",
+        "inverse": ["quaternion"],
+        "body": RDF,
+    },
+    "OpenGL view": {
+        "version": "",
+        "manual": "https://registry.khronos.org/OpenGL-Refpages/gl2.1/xhtml/gluLookAt.xml",
+        "matrix": "as here",
+        "scalar": "",
+        "unit": "radians",
+        "body": RUB,
+    },
+    "nerfstudio": {
+        "version": "",
+        "manual": "https://docs.nerf.studio/quickstart/data_conventions.html",
+        "matrix": "transposed",
+        "scalar": "",
+        "unit": "radians",
+        "body": RUB,
+    },
+    "PyTorch3D": {
+        "version": "",
+        "manual": "https://pytorch3d.org/docs/cameras",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "body": LUF,
+    },
+    "kornia": {
+        "version": "",
+        "manual": "https://kornia.readthedocs.io/en/latest/geometry.conversions.html",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+    },
+    "three.js": {
+        "version": "",
+        "manual": "https://threejs.org/docs/pages/Euler.html",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "radians",
+        "angles": {"sequence": "xyz", "axes of the turns": "body fixed"},
+        "body": LUF,
+        "world": LUF,
+    },
+    "glTF": {
+        "version": "",
+        "manual": "https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "radians",
+        "body": LUF,
+        "world": LUF,
+    },
+    "Unity": {
+        "version": "",
+        "manual": "https://docs.unity3d.com/ScriptReference/Quaternion.Euler.html",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "degrees",
+        "angles": {"sequence": "zxy", "axes of the turns": "space fixed", "places": "231"},
+        "body": ["right", "up", "forward"],
+        "world": ["right", "up", "forward"],
+    },
+    "Unreal": {
+        "version": "",
+        "manual": "https://dev.epicgames.com/documentation/en-us/unreal-engine/API/Runtime/Core/Math/TRotator",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "degrees",
+        "angles": {"sequence": "zyx", "axes of the turns": "body fixed", "places": "213", "signs": "+--"},
+        "body": ["forward", "right", "up"],
+        "world": ["forward", "right", "up"],
+    },
+    "PX4": {
+        "version": "",
+        "manual": "https://docs.px4.io/main/en/msg_docs/VehicleAttitude.html",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "angles": {"sequence": "zyx", "axes of the turns": "body fixed", "places": "321"},
+        "body": FRD,
+        "world": ["left", "forward", "down"],
+    },
+    "Isaac Lab 2": {
+        "version": "",
+        "manual": "https://isaac-sim.github.io/IsaacLab/main/source/migration/migrating_from_isaacgymenvs.html",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "body": FLU,
+        "world": FLU,
+    },
+    "Isaac Lab 3": {
+        "version": "",
+        "manual": "https://github.com/isaac-sim/IsaacLab/pull/4437",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "radians",
+        "body": FLU,
+        "world": FLU,
+    },
+    "Drake": {
+        "version": "",
+        "manual": "https://drake.mit.edu/doxygen_cxx/classdrake_1_1math_1_1_roll_pitch_yaw.html",
+        "matrix": "transposed",
+        "scalar": "first",
+        "unit": "radians",
+        "angles": ROLL_PITCH_YAW,
+    },
+    "PyBullet": {
+        "version": "",
+        "manual": "https://github.com/bulletphysics/bullet3/issues/4407",
+        "matrix": "transposed",
+        "scalar": "last",
+        "unit": "radians",
+        "angles": ROLL_PITCH_YAW,
+    },
+    "URDF": {
+        "version": "",
+        "manual": "https://wiki.ros.org/urdf/XML/joint",
+        "matrix": "transposed",
+        "scalar": "",
+        "unit": "radians",
+        "angles": ROLL_PITCH_YAW,
+        "body": FLU,
+        "world": FLU,
+    },
+    "BVH": {
+        "version": "",
+        "manual": "https://research.cs.wisc.edu/graphics/Courses/cs-838-1999/Jeff/BVH.html",
+        "matrix": "transposed",
+        "scalar": "",
+        "unit": "degrees",
+        "angles": {"axes of the turns": "body fixed"},
+    },
+}
+
+#: Those for which there is a line of code.
+WITH_CODE = {program: facts for program, facts in PROGRAMS.items() if "lines" in facts}
+
+
+def program_named(words):
+    """The one program whose name has these words at the start of one of its own, whatever their case.
+
+    Raises
+    ------
+    ValueError
+        If none has, or several.
+    """
+    given = words.casefold()
+    exact = [program for program in PROGRAMS if program.casefold() == given]
+    found = exact or [program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"]
+    if len(found) != 1:
+        which = ", ".join(found or PROGRAMS)
+        raise ValueError(f"{words!r} names {'several programs' if found else 'no program that is known here'}: {which}")
+    return found[0]
+
+
+def expected_of(program):
+    """What the numbers of a program mean by its manual, in the words of the table of mix-ups."""
+    facts = PROGRAMS[program]
+    order = facts.get("printed") or {"first": "wxyz", "last": "xyzw", "": None}[facts["scalar"]]
+    return {
+        "declared": {"unit": facts["unit"]} | ({"order": order} if order else {}) | facts.get("angles", {}),
+        "inverse": [*(["matrix"] if facts["matrix"] == "transposed" else []), *facts.get("inverse", ())],
+        "three numbers": facts.get("three numbers", "Euler angles"),
+        "body": facts.get("body"),
+        "world": facts.get("world"),
+        "manual": facts["manual"],
+    }

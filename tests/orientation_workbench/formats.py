@@ -1,0 +1,512 @@
+"""One recording as many instruments, telephones, drones and robots write it down.
+
+After what their makers document and what people have published, headings and odd lines included. Each gives text or
+bytes, and what it says of each sensor: in how many of its units one radian per second, one m/s² or one microtesla is.
+"""
+
+import io
+import json
+import zipfile
+from typing import NamedTuple
+
+import numpy as np
+from simulated_recordings import GRAVITY, simulate
+
+DEG = 180 / np.pi
+SEED = 4
+
+
+class Form(NamedTuple):
+    """A file, what one unit of the simulation is in it by sensor, and whether it tells the rate."""
+
+    content: bytes
+    scales: dict
+    counted: bool = False
+    called: str = "recording"
+
+
+def recording():
+    return simulate(SEED, poses=6)
+
+
+def _table(names, columns, separator=",", number="{:.7g}", head=(), end="", comma=False):
+    rows = [separator.join(number.format(value) for value in row) + end for row in np.column_stack(columns)]
+    if comma:
+        rows = [row.replace(".", ",") for row in rows]
+    return "\n".join([*head, *([separator.join(names)] if names else []), *rows, ""]).encode()
+
+
+def _parts():
+    found = recording()
+    return found, *(found[kind] for kind in ("time", "gyroscope", "accelerometer", "magnetometer", "quaternion"))
+
+
+def _gravity(found):
+    return found["truth"].inv().apply([0, 0, GRAVITY])
+
+
+def _zipped(files):
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return content.getvalue()
+
+
+def phyphox_zip():
+    """phyphox, CSV: a zip of a table for each sensor, in quotes, and two about the telephone."""
+    _, time, gyr, acc, mag, _ = _parts()
+
+    def one(stem, unit, values):
+        names = ['"Time (s)"', *(f'"{stem}{axis} ({unit})"' for axis in "xyz")]
+        return _table(names, (time, values), number="{:.9E}")
+
+    return Form(
+        _zipped(
+            {
+                "Gyroscope.csv": one("Gyroscope ", "rad/s", gyr),
+                "Accelerometer.csv": one("Acceleration ", "m/s^2", acc),
+                "Magnetometer.csv": one("Magnetic field ", "µT", mag),
+                "meta/device.csv": '"property","value"\n"version","1.1.11"\n"build","1011104"\n',
+                "meta/time.csv": '"event","experiment time","system time","system time text"\n'
+                '"START",0.000000000E0,1.642499117E9,"2022-01-18 10:45:17.461 UTC+01:00"\n'
+                '"PAUSE",3.096120000E1,1.642499148E9,"2022-01-18 10:45:48.422 UTC+01:00"\n',
+            }
+        ),
+        {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1},
+    )
+
+
+def phyphox_table():
+    """Blanks and units in the headings, semicolons and decimal commas."""
+    _, time, gyr, acc, mag, _ = _parts()
+    units = {"Gyroscope": "rad/s", "Acceleration": "m/s^2", "Magnetic field": "µT"}
+    names = ["Time (s)", *(f"{one} {axis} ({unit})" for one, unit in units.items() for axis in "xyz")]
+    return Form(
+        _table(names, (time, gyr, acc, mag), ";", comma=True), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
+    )
+
+
+def sensor_logger():
+    """A zip of one table for each sensor, z before y before x; the accelerometer without gravity; beside settings."""
+    found, time, gyr, acc, mag, quaternion = _parts()
+    clock = (1.7e18 + 1e9 * time, time)
+    gravity = _gravity(found)
+
+    def one(values, names="zyx"):
+        rows = (
+            ",".join([f"{k:.0f}", f"{t:.9f}", *(f"{value:.8f}" for value in row)])
+            for k, t, row in zip(*clock, values, strict=True)
+        )
+        return "\n".join([",".join(["time", "seconds_elapsed", *names]), *rows])
+
+    angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
+    return Form(
+        _zipped(
+            {
+                "Gyroscope.csv": one(gyr[:, ::-1]),
+                "Accelerometer.csv": one((acc - gravity)[:, ::-1]),
+                "Gravity.csv": one(gravity[:, ::-1]),
+                "TotalAcceleration.csv": one(acc[:, ::-1]),
+                "Magnetometer.csv": one(mag[:, ::-1]),
+                "Orientation.csv": one(
+                    np.column_stack([quaternion[:, ::-1], angles]), ["qz", "qy", "qx", "qw", "roll", "pitch", "yaw"]
+                ),
+                "Metadata.csv": "version,device name,recording epoch time\n3,phone,1700000000000\n",
+                "Annotation.csv": "time,seconds_elapsed,text,millisecond_press_duration\n",
+            }
+        ),
+        {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1, "quaternion": 1, "angles": 1},
+    )
+
+
+def sensor_logger_json():
+    found, entries = recording(), []
+    for k, time in enumerate(found["time"]):
+        for sensor in ("gyroscope", "accelerometer", "magnetometer"):
+            x, y, z = found[sensor][k].round(6)
+            entries.append({"sensor": sensor, "seconds_elapsed": time, "x": x, "y": y, "z": z})
+    return Form(json.dumps(entries).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
+
+
+def lists_in_json():
+    """A list for each sensor, with names of their own."""
+    found, content = recording(), {}
+    for kind, stem in (("gyroscope", "g"), ("accelerometer", "a")):
+        content[f"{kind}Sensor"] = [
+            {f"{stem}{axis}": part for axis, part in zip("xyz", row, strict=True)}
+            | {"timeStamp": round(1.48e12 + 1e3 * t)}
+            for t, row in zip(found["time"], found[kind].round(6).tolist(), strict=True)
+        ]
+    return Form(json.dumps(content).encode(), {"gyroscope": 1, "accelerometer": 1})
+
+
+def sensor_log():
+    """SensorLog of the App Store: everything in one table, times of several clocks, and gravity in its own columns."""
+    found, time, gyr, acc, mag, quaternion = _parts()
+    gravity = _gravity(found) / GRAVITY
+    names = ["loggingTime(txt)", "loggingSample(N)", "accelerometerTimestamp_sinceReboot(s)"]
+    names += [f"accelerometerAcceleration{axis}(G)" for axis in "XYZ"] + ["gyroTimestamp_sinceReboot(s)"]
+    names += [f"gyroRotation{axis}(rad/s)" for axis in "XYZ"] + ["motionTimestamp_sinceReboot(s)"]
+    names += [f"motionUserAcceleration{axis}(G)" for axis in "XYZ"] + [f"motionGravity{axis}(G)" for axis in "XYZ"]
+    names += [f"motionMagneticField{axis}(µT)" for axis in "XYZ"] + [f"motionQuaternion{axis}(R)" for axis in "XYZW"]
+    columns = [7e4 + time, acc / GRAVITY, 7e4 + time, gyr, 7e4 + time, acc / GRAVITY - gravity, gravity, mag]
+    columns.append(np.roll(quaternion, -1, axis=1))
+    body = _table(None, columns, number="{:.9f}").decode().splitlines()
+    rows = [f"2024-02-06T10:11:{int(t) % 60:02}.{int(1000 * t) % 1000:03}+01:00,{k},{row}"
+            for k, (t, row) in enumerate(zip(time, body, strict=True))]  # fmt: skip
+    scales = {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1, "quaternion": 1}
+    return Form("\n".join([",".join(names), *rows]).encode(), scales)
+
+
+def andro_sensor():
+    """AndroSensor: semicolons, three accelerations, angles last, and a date that is no number."""
+    found, time, gyr, acc, mag, _ = _parts()
+    gravity = _gravity(found)
+    names = []
+    for stem, unit in (("ACCELEROMETER", "m/s²"), ("GRAVITY", "m/s²"), ("LINEAR ACCELERATION", "m/s²"),
+                       ("GYROSCOPE", "rad/s"), ("MAGNETIC FIELD", "μT")):  # fmt: skip
+        names += [f"{stem} {axis} ({unit})" for axis in "XYZ"]
+    names += ["SOUND LEVEL (dB)", "Time since start in ms ", "YYYY-MO-DD HH-MI-SS_SSS"]
+    columns = [acc, gravity, acc - gravity, gyr, mag, np.full(len(time), 41.3), np.round(1000 * time)]
+    text = _table(None, columns, ";", "{:.6f}").decode().splitlines()
+    text = [
+        f"{row};2014-01-12 15:20:{int(t) % 60:02}_{int(1000 * t) % 1000:03}" for t, row in zip(time, text, strict=True)
+    ]
+    scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
+    return Form("\n".join([";".join(names), *text]).encode(), scales)
+
+
+def physics_toolbox():
+    """Physics Toolbox Sensor Suite: g-force, linear acceleration, turning and field, in short names."""
+    found, time, gyr, acc, mag, _ = _parts()
+    names = "time;gFx;gFy;gFz;ax;ay;az;wx;wy;wz;p;Bx;By;Bz".split(";")
+    columns = [time, acc / GRAVITY, acc - _gravity(found), gyr, np.full(len(time), 1013.2), mag]
+    return Form(
+        _table(names, columns, ";", "{:.6f}"), {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1}
+    )
+
+
+def motion_sense():
+    """Core Motion in a data set: a column without a name that counts, angles, gravity, turning, acceleration."""
+    found, time, gyr, acc, _, _ = _parts()
+    gravity = _gravity(found) / GRAVITY
+    names = [""] + [f"attitude.{one}" for one in ("roll", "pitch", "yaw")]
+    names += [f"{one}.{axis}" for one in ("gravity", "rotationRate", "userAcceleration") for axis in "xyz"]
+    angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
+    columns = [np.arange(len(time)), angles, gravity, gyr, acc / GRAVITY - gravity]
+    return Form(_table(names, columns), {"gyroscope": 1, "accelerometer": 1 / GRAVITY}, counted=True)
+
+
+def meta_wear():
+    """MbientLab: a table for each sensor; which it is, its unit says, and its file's name."""
+    _, time, gyr, acc, _, _ = _parts()
+    head = "epoc (ms),timestamp (+0100),elapsed (s)"
+
+    def one(values, unit):
+        rows = (
+            f"{1.5e12 + 1000 * t:.0f},2018-09-07T19.17.{int(t) % 60:02}.{int(1000 * t) % 1000:03},{t:.3f},"
+            + ",".join(f"{part:.4f}" for part in row)
+            for t, row in zip(time, values, strict=True)
+        )
+        return "\n".join([f"{head},x-axis ({unit}),y-axis ({unit}),z-axis ({unit})", *rows])
+
+    files = {"MetaWear_2018_F1_A.csv": one(acc / GRAVITY, "g"), "MetaWear_2018_F1_G.csv": one(DEG * gyr, "deg/s")}
+    return Form(_zipped(files), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY})
+
+
+def xsens_mtw():
+    """MT Manager: remarks, tabs, columns that hold nothing, a counter, and the rate among the remarks."""
+    _, time, gyr, acc, mag, quaternion = _parts()
+    head = ["// Start Time: Unknown", "// Sample rate: 100.0Hz", "// Scenario: 4.9", "// Firmware Version: 4.0.2"]
+    names = ["PacketCounter", "SampleTimeFine", "Year", "Month", "Day", "Second", "UTC_Valid"]
+    names += [f"{stem}_{axis}" for stem in ("Acc", "Gyr", "Mag") for axis in "XYZ"]
+    names += [f"Quat_q{k}" for k in range(4)]
+    rows = [
+        "\t".join([f"{20_000 + k:05}", *[""] * 6, *(f"{part:.6f}" for part in row)])
+        for k, row in enumerate(np.column_stack([acc, gyr, mag / 45, quaternion]))
+    ]
+    scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1 / 45, "quaternion": 1}
+    return Form("\r\n".join([*head, "\t".join(names), *rows, ""]).encode(), scales)
+
+
+def movella_dot():
+    """Its settings above the table, a comma at each end, microseconds that are called SampleTimeFine, degrees."""
+    _, time, gyr, acc, mag, quaternion = _parts()
+    head = ["sep=,", "DeviceTag:,DOT-1", "FirmwareVersion:,2.0.0", "AppVersion:,v2021.0", "SyncStatus:,Synced",
+            "OutputRate:,100Hz", "FilterProfile:,General", "Measurement Mode:,Custom Mode 1",
+            "StartTime:,2023-05-09_10-24-58-310_CET", "© Xsens Technologies B. V. 2005-2023", ""]  # fmt: skip
+    names = ["PacketCounter", "SampleTimeFine", *(f"Quat_{axis}" for axis in "WXYZ")]
+    names += [f"{stem}_{axis}" for stem in ("Acc", "Gyr", "Mag") for axis in "XYZ"] + ["Status"]
+    columns = [np.arange(len(time)), np.round(3.1e8 + 1e6 * time), quaternion, acc, DEG * gyr, mag / 45, 0 * time]
+    return Form(
+        _table(names, columns, number="{:.10g}", head=head, end=","),
+        {"gyroscope": DEG, "accelerometer": 1, "magnetometer": 1 / 45, "quaternion": 1},
+    )
+
+
+def x_io():
+    _, time, gyr, acc, mag, _ = _parts()
+    names = ["Packet number", *(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")]
+    names += [f"Accelerometer {axis} (g)" for axis in "XYZ"] + [f"Magnetometer {axis} (G)" for axis in "XYZ"]
+    columns = [4711 + np.arange(len(time)), DEG * gyr, acc / GRAVITY, mag / 100]
+    scales = {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 0.01}
+    return Form(_table(names, columns, number="{:.9g}"), scales, counted=True)
+
+
+def shimmer():
+    """Three lines above the numbers: names with what they are at their ends, kinds, and units."""
+    _, time, gyr, acc, mag, _ = _parts()
+    names = [f"Shimmer_4F_{kind}_{axis}_CAL" for kind in ("Gyro", "Accel_LN", "Mag") for axis in "XYZ"]
+    head = ["sep=\t", "\t".join(["Shimmer_4F_Timestamp_CAL", *names]), "\t".join(["CAL"] * 10)]
+    head.append("\t".join(["ms", *["deg/s"] * 3, *["m/(s^2)"] * 3, *["local_flux"] * 3]))
+    return Form(
+        _table(None, (1000 * time, DEG * gyr, acc, mag), "\t", head=head),
+        {"gyroscope": DEG, "accelerometer": 1, "magnetometer": 1},
+    )
+
+
+def pico_quake():
+    """Remarks with signs of numbers, short names without units, and a column that counts."""
+    _, time, gyr, acc, _, _ = _parts()
+    head = ["# PLab PicoQuake Data", "# Time: 2024-04-21 15:54:46.333682, Device: D4E9 (E6632891E36F2029)",
+            "# Num. samples: 10000, Duration: 5.0 s", "# Config: data_rate = 100.0 Hz, filter = 42 Hz, acc_range = 4 g",
+            "# Integrity: True, Skipped samples: 0"]  # fmt: skip
+    names = ["count", "a_x", "a_y", "a_z", "g_x", "g_y", "g_z"]
+    columns = [np.arange(1, len(time) + 1), acc / GRAVITY, DEG * gyr]
+    return Form(_table(names, columns, head=head), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY})
+
+
+def gyroflow():
+    """Counts, with their scales in the lines above."""
+    _, time, gyr, acc, _, _ = _parts()
+    head = ["GYROFLOW IMU LOG", "version,1.3", "id,custom_logger_name", "orientation,YxZ", "note,development_test",
+            "fwversion,FIRMWARE_0.1.0", "timestamp,1644159993", "vendor,potatocam", "tscale,0.001",
+            "gscale,0.00122173047", "ascale,0.00048828125"]  # fmt: skip
+    columns = [1000 * time, gyr / 0.00122173047, acc / GRAVITY / 0.00048828125]
+    return Form(
+        _table(["t", "gx", "gy", "gz", "ax", "ay", "az"], columns, number="{:.0f}", head=head),
+        {"gyroscope": 1, "accelerometer": 1 / GRAVITY},
+    )
+
+
+def betaflight():
+    """Blackbox as its decoder writes it: settings in quotes, then very many columns, of which six are wanted."""
+    _, time, gyr, acc, _, _ = _parts()
+    head = ['"Product","Blackbox flight data recorder by Nicholas Sherlock"', '"firmwareType","Cleanflight"',
+            '"acc_1G","2048"', '"gyro_scale","0x3f800000"']  # fmt: skip
+    names = ["loopIteration", "time", *(f"axisP[{k}]" for k in range(3)), *(f"rcCommand[{k}]" for k in range(4))]
+    names += [*(f"gyroADC[{k}]" for k in range(3)), *(f"accSmooth[{k}]" for k in range(3))]
+    names += [*(f"motor[{k}]" for k in range(4)), "flightModeFlags (flags)"]
+    random = np.random.default_rng(1)
+    count = len(time)
+    columns = [np.arange(count), 4e7 + 1e6 * time, random.normal(scale=30, size=(count, 3)).round(),
+               np.tile([3, -2, 0, 1200], (count, 1)), DEG * gyr, 2048 * acc / GRAVITY,
+               random.integers(1100, 1900, (count, 4)), 0 * time]  # fmt: skip
+    names = [f'"{name}"' for name in names]
+    return Form(_table(names, columns, ", ", "{:.9g}", head=head), {"gyroscope": DEG, "accelerometer": 2048 / GRAVITY})
+
+
+def ardupilot():
+    """Lines of several kinds, each beginning with its name; two instruments take turns, and angles that were wanted."""
+    found, time, gyr, acc, mag, _ = _parts()
+    lines = ["FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns",
+             "FMT, 1, 2, IMU, QBffffffIIf, TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T",
+             "FMT, 1, 2, MAG, QBhhh, TimeUS,I,MagX,MagY,MagZ",
+             "FMT, 1, 2, ATT, Qffff, TimeUS,DesRoll,Roll,DesPitch,Pitch,DesYaw,Yaw",
+             "PARM, 1, ACRO_BAL_PITCH, 1"]  # fmt: skip
+    random = np.random.default_rng(2)
+    yaw, pitch, roll = found["truth"].as_euler("ZYX", degrees=True).T
+    for k, t in enumerate(time):
+        for number in (0, 1):
+            other = 0.01 * random.normal(size=6) * number
+            six = ", ".join(f"{one:.6f}" for one in np.concatenate([gyr[k], acc[k]]) + other)
+            lines.append(f"IMU, {1e6 * t:.0f}, {number}, {six}, 0, 0, 41.2")
+        lines.append(f"MAG, {1e6 * t:.0f}, 0, " + ", ".join(f"{10 * one:.1f}" for one in mag[k]))
+        lines.append(f"ATT, {1e6 * t:.0f}, 0, {roll[k]:.3f}, 0, {pitch[k]:.3f}, 0, {yaw[k] % 360:.3f}")
+    scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 10, "angles": 1}
+    return Form("\n".join(lines).encode(), scales)
+
+
+def px4():
+    """ulog2csv: a table for each topic, the accelerometer's time counted from the gyroscope's."""
+    _, time, gyr, acc, mag, quaternion = _parts()
+    stamp = 1.2e7 + 1e6 * time
+    combined = ["timestamp", *(f"gyro_rad[{k}]" for k in range(3)), "gyro_integral_dt",
+                "accelerometer_timestamp_relative", *(f"accelerometer_m_s2[{k}]" for k in range(3)),
+                "accelerometer_integral_dt", "accelerometer_clipping"]  # fmt: skip
+    attitude = ["timestamp", *(f"q[{k}]" for k in range(4)), *(f"delta_q_reset[{k}]" for k in range(4))]
+    attitude.append("quat_reset_counter")
+    dt, none = np.full(len(time), 5000.0), 0 * time
+    files = {
+        "log_sensor_combined_0.csv": _table(combined, [stamp, gyr, dt, none, acc, dt, none], number="{:.10g}"),
+        "log_vehicle_magnetometer_0.csv": _table(
+            [
+                "timestamp",
+                "timestamp_sample",
+                "device_id",
+                *(f"magnetometer_ga[{k}]" for k in range(3)),
+                "calibration_count",
+            ],
+            [stamp, stamp, none + 396825, mag / 100, none + 1],
+            number="{:.10g}",
+        ),
+        "log_vehicle_attitude_0.csv": _table(
+            attitude, [stamp, quaternion, none + 1, none, none, none, none], number="{:.10g}"
+        ),
+        "log_cpuload_0.csv": _table(["timestamp", "load", "ram_usage"], [stamp, dt / 1e4, dt / 2e4], number="{:.10g}"),
+    }
+    return Form(_zipped(files), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01, "quaternion": 1})
+
+
+def rostopic():
+    """As `rostopic echo -p` writes it: nanoseconds, a frame's name, and covariances between the vectors."""
+    _, time, gyr, acc, _, quaternion = _parts()
+    names = ["%time", "field.header.seq", "field.header.stamp", "field.header.frame_id"]
+    names += [f"field.orientation.{one}" for one in "xyzw"] + [f"field.orientation_covariance{k}" for k in range(9)]
+    names += [f"field.angular_velocity.{axis}" for axis in "xyz"]
+    names += [f"field.angular_velocity_covariance{k}" for k in range(9)]
+    names += [f"field.linear_acceleration.{axis}" for axis in "xyz"]
+    names += [f"field.linear_acceleration_covariance{k}" for k in range(9)]
+    covariance = ",".join(["0.0025", "0.0", "0.0"] * 3)
+    lines = [",".join(names)]
+    for k, t in enumerate(time):
+        stamp = f"{1_700_000_000 * 10**9 + round(1e9 * t)}"
+        vectors = [",".join(f"{one:.8f}" for one in row[k]) for row in (np.roll(quaternion, -1, axis=1), gyr, acc)]
+        lines.append(f"{stamp},{k},{stamp},imu_link," + ",".join(f"{one},{covariance}" for one in vectors))
+    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
+
+
+def rostopic_in_blocks():
+    """As `rostopic echo` and `ros2 topic echo` print messages: one after another, parted by three hyphens."""
+    _, time, gyr, acc, _, quaternion = _parts()
+    lines = []
+    for k, t in enumerate(time):
+        lines += ["header:", "  stamp:", f"    sec: {1_700_000_000 + int(t)}", f"    nanosec: {round(1e9 * (t % 1))}"]
+        lines += ["  frame_id: imu_link", "orientation:"]
+        lines += [f"  {axis}: {part!r}" for axis, part in zip("xyzw", np.roll(quaternion[k], -1).tolist(), strict=True)]
+        lines += ["orientation_covariance: [0.0025, 0.0, 0.0, 0.0, 0.0025, 0.0, 0.0, 0.0, 0.0025]", "angular_velocity:"]
+        lines += [f"  {axis}: {part!r}" for axis, part in zip("xyz", gyr[k].tolist(), strict=True)]
+        lines += ["angular_velocity_covariance:", *["- 0.02"] * 9, "linear_acceleration:"]
+        lines += [f"  {axis}: {part!r}" for axis, part in zip("xyz", acc[k].tolist(), strict=True)]
+        lines.append("---")
+    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
+
+
+def bagpy():
+    _, time, gyr, acc, _, quaternion = _parts()
+    names = ["Time", "header.seq", "header.stamp.secs", "header.stamp.nsecs", "header.frame_id"]
+    names += [f"orientation.{one}" for one in "xyzw"] + [f"orientation_covariance_{k}" for k in range(9)]
+    names += [f"{one}.{axis}" for one in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
+    lines = [",".join(names)]
+    for k, t in enumerate(time):
+        numbers = [*np.roll(quaternion[k], -1), *[0.0] * 9, *gyr[k], *acc[k]]
+        lines.append(f"{1.7e9 + t:.6f},{k},{1_700_000_000 + int(t)},{round(1e9 * (t % 1))},imu,"
+                     + ",".join(f"{one:.8f}" for one in numbers))  # fmt: skip
+    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
+
+
+def euroc():
+    """A flying machine of a laboratory: nanoseconds, units such as rad s^-1, turning first."""
+    _, time, gyr, acc, _, _ = _parts()
+    names = [
+        "#timestamp [ns]",
+        *(f"w_RS_S_{axis} [rad s^-1]" for axis in "xyz"),
+        *(f"a_RS_S_{axis} [m s^-2]" for axis in "xyz"),
+    ]
+    rows = [
+        f"{1_403_636_579_758_555_392 + round(1e9 * t)}," + ",".join(f"{one:.16g}" for one in (*g, *a))
+        for t, g, a in zip(time, gyr, acc, strict=True)
+    ]
+    return Form("\r\n".join([",".join(names), *rows]).encode(), {"gyroscope": 1, "accelerometer": 1})
+
+
+def uzh_fpv():
+    _, time, gyr, acc, _, _ = _parts()
+    names = "# id timestamp ang_vel_x ang_vel_y ang_vel_z lin_acc_x lin_acc_y lin_acc_z"
+    columns = [np.arange(len(time)), 1.54e9 + time, gyr, acc]
+    return Form(_table(None, columns, " ", "{:.15g}", head=[names]), {"gyroscope": 1, "accelerometer": 1})
+
+
+def tum():
+    """A remark with the names, blanks between numbers, seconds since 1970; turning before pushes."""
+    _, time, gyr, acc, _, _ = _parts()
+    head = ["# IMU of a table in motion", "# file: 'desk.bag'", "# timestamp wx wy wz ax ay az"]
+    return Form(_table(None, [1.3e9 + time, gyr, acc], " ", "{:.14g}", head=head), {"gyroscope": 1, "accelerometer": 1})
+
+
+def oxiod():
+    """No headings: time, three angles, turning, gravity of length one, the rest of the acceleration, the field."""
+    found, time, gyr, acc, mag, _ = _parts()
+    gravity = _gravity(found) / GRAVITY
+    angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
+    columns = [time, angles, gyr, gravity, acc / GRAVITY - gravity, mag]
+    return Form(
+        _table(None, columns, number="{:.6f}"), {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1}
+    )
+
+
+def gnss_logger():
+    """Lines that begin with what they hold, their headings among the remarks, and two clocks."""
+    _, time, gyr, acc, mag, _ = _parts()
+    lines = ["# ", "# Version: v3.0.5.6 Platform: 13", "#"]
+    kinds = {"Accel": ("Mps2", acc), "Gyro": ("RadPerSec", gyr), "Mag": ("MicroT", mag)}
+    for name, (unit, _) in kinds.items():
+        lines.append(
+            f"# {name},utcTimeMillis,elapsedRealtimeNanos," + ",".join(f"{name}{axis}{unit}" for axis in "XYZ")
+        )
+    for k, t in enumerate(time):
+        for name, (_, values) in kinds.items():
+            clock = f"{1.7e12 + 1000 * t:.0f},{9.1e13 + 1e9 * t:.0f}"
+            lines.append(f"{name},{clock}," + ",".join(f"{one:.6f}" for one in values[k]))
+    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
+
+
+def repo_imu():
+    """A stick with an instrument: names of one line above, units of the next, semicolons."""
+    _, time, gyr, acc, mag, quaternion = _parts()
+    names = ["Time", *(f"Quat {one}" for one in "WXYZ")]
+    names += [f"{stem} {axis}" for stem in ("Acc", "Gyro", "Magn") for axis in "XYZ"]
+    head = [";".join(names), ";".join(["s", *["-"] * 4, *["m/s^2"] * 3, *["rad/s"] * 3, *["uT"] * 3])]
+    columns = [time, quaternion, acc, gyr, mag]
+    scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1, "quaternion": 1}
+    return Form(_table(None, columns, ";", "{:.8f}", head=head), scales)
+
+
+def no_headings():
+    _, time, gyr, acc, mag, quaternion = _parts()
+    scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1, "quaternion": 1}
+    return Form(_table(None, [time, gyr, acc, mag, quaternion], "\t", "{:.6f}"), scales)
+
+
+def arduino():
+    """What a small board prints: a word before each line, counts, no time."""
+    _, _, gyr, acc, _, _ = _parts()
+    counts = np.column_stack([acc / GRAVITY * 16384, DEG * gyr * 131]).round()
+    rows = ["a/g:\t" + "\t".join(f"{one:.0f}" for one in row) for row in counts]
+    text = "\n".join(
+        ["Initializing I2C devices...", "Testing device connections...", "MPU6050 connection successful", *rows]
+    )
+    return Form(text.encode(), {"gyroscope": DEG * 131, "accelerometer": 16384 / GRAVITY}, counted=True)
+
+
+def matlab_mobile():
+    """Written by a spreadsheet of a German office: decimal commas, a date and time of the day."""
+    _, time, gyr, acc, mag, _ = _parts()
+    names = [
+        "Timestamp",
+        *(f"{stem}_{axis}" for stem in ("AngularVelocity", "Acceleration", "MagneticField") for axis in "XYZ"),
+    ]
+    rows = [
+        f"2024-03-01 12:{int(t) // 60:02}:{t % 60:06.3f};" + ";".join(f"{one:.6f}".replace(".", ",") for one in row)
+        for t, row in zip(time, np.column_stack([gyr, acc, mag]), strict=True)
+    ]
+    return Form(
+        "\n".join([";".join(names), *rows]).encode("utf-16"), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
+    )
+
+
+FORMS = [phyphox_zip, phyphox_table, sensor_logger, sensor_logger_json, lists_in_json, sensor_log, andro_sensor,
+         physics_toolbox, motion_sense, meta_wear, xsens_mtw, movella_dot, x_io, shimmer, pico_quake, gyroflow,
+         betaflight, ardupilot, px4, rostopic, rostopic_in_blocks, bagpy, euroc, uzh_fpv, tum, oxiod, gnss_logger,
+         repo_imu, no_headings, arduino, matlab_mobile]  # fmt: skip

@@ -1,0 +1,35 @@
+"""A recording that is dropped onto the workbench: what the cell shows, and that the page hands over the file."""
+
+import base64
+import re
+
+from simulated_recordings import as_text, faulty, simulate
+
+from orientation_workbench.recording.page import judged
+
+
+def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert repr(judged()) == "no recording yet"
+    (tmp_path / "dropped").mkdir()
+    assert "no recording yet" in judged()._repr_html_()
+    (tmp_path / "dropped" / "walk <1>.csv").write_text(faulty("hard iron", 3)[0], "utf8")
+    found = judged()
+    shown = found._repr_html_()
+    kept = base64.b64decode(
+        re.search(r'download="report.html" href="data:text/html;base64,([^"]+)"', shown)[1]
+    ).decode()
+    assert "<title>walk &lt;1&gt;.csv on the bench</title>" in kept
+    for page in (shown, kept):
+        assert re.search(r'<tr class="wrong"><td>wrong</td><th scope="row">offset of the magnetometer', page)
+        assert page.count("<svg") >= 3 and "<1>" not in page and "<script" not in page
+    assert "offset of the magnetometer" in repr(found)
+
+
+def test_what_cannot_be_judged_says_why_with_line_and_column(tmp_path):
+    (tmp_path / "letter.txt").write_text("Dear all,\nI am here.\nBye\n", "utf8")
+    assert "letter.txt cannot be judged" in repr(judged(tmp_path)) and "Line 2" in repr(judged(tmp_path))
+    lines = as_text(simulate(2, poses=2)).splitlines()
+    (tmp_path / "letter.txt").write_text("\n".join(line if k % 9 else line.replace(",", ",x", 1)
+                                                   for k, line in enumerate(lines)), "utf8")  # fmt: skip
+    assert "line 10, column 2" in judged(tmp_path)._repr_html_()

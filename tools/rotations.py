@@ -1,0 +1,27 @@
+"""``python -m tools.rotations``: write down the scenes of the essay's stops, from the scripts that its page runs."""
+
+import json
+import subprocess
+from pathlib import Path
+
+from notebook_pages.page import ESBUILD
+from notebook_pages.paths import NODE
+from orientation_figures import rotations
+
+FILE = rotations.FOLDER / "scenes.json"
+
+
+def written(*arguments):
+    """What ``js/stills.js`` writes, as text."""
+    command = [NODE, ESBUILD, "--bundle", "--platform=node", "--log-level=error", rotations.FOLDER / "js" / "stills.js"]
+    script = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    run = [NODE, "-", *arguments]
+    return subprocess.run(run, input=script, capture_output=True, text=True, check=True).stdout
+
+
+def main():
+    Path(FILE).write_text(json.dumps(json.loads(written()), separators=(",", ":")) + "\n", "utf8")
+
+
+if __name__ == "__main__":
+    main()
