@@ -133,6 +133,9 @@ def _explain(chosen):
         if found.verdict == "named":
             print("It is mended by (NumPy and SciPy; `second` is one pose)")
             print(f"    {mend.python_line(found.chains[0])}")
+            print("in C++ with Eigen, as the first program's matrix,")
+            print(f"    {mend.cpp_line(found.chains[0])}")
+            print(f"for the matrices are {mend.formula(found.chains[0])}.")
         if chosen.all:
             for chain in found.chains[1:]:
                 print("or: " + "; ".join(chain.words() or ["both mean the same"]))
@@ -151,4 +154,6 @@ def as_data(explanation):
         "others": [chain.words() for chain in explanation.chains[1:]],
         "further pose": explanation.further_pose,
         "mended by": mend.python_line(explanation.chains[0]) if explanation.verdict == "named" else "",
+        "mended in C++ by": mend.cpp_line(explanation.chains[0]) if explanation.verdict == "named" else "",
+        "formula": mend.formula(explanation.chains[0]) if explanation.verdict == "named" else "",
     }

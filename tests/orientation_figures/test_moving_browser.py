@@ -198,7 +198,7 @@ def test_keys_alone(open_figure, kind):
     # One stop for each group of radio buttons, and for each table of numbers.
     controls = page.eval_on_selector_all(
         ".live :is(input:not([type=radio]:not(:checked)), select:not(:disabled), textarea, "
-        "[role=application], button:not([tabindex='-1'], :disabled))",
+        "[role=application], a[href], button:not([tabindex='-1'], :disabled))",
         "all => all.filter(one => one.checkVisibility({ visibilityProperty: true })).length",
     )
     assert len(stops) == controls and "svg" in {tag.lower() for tag in tags}

@@ -13,20 +13,22 @@ from test_mismatch import BAD, QUATERNIONS, SPELLED, SPELLINGS, both_sides, know
 
 from notebook_pages.paths import NODE
 from orientation import quaternion_from_dcm, random_orientations, simple_dcm
+from orientation_figures.moving.workbench import EXAMPLES
 from orientation_workbench import explain
 from orientation_workbench.mismatch import mend, table
 
 SCRIPTS = REPOSITORY / "src" / "orientation_figures" / "moving" / "js"
 PROGRAM = """
 import { readFileSync } from 'node:fs';
-import { explain, mendingLine } from '%s';
+import { eigenLine, explain, formulaOf, mendingLine } from '%s';
 const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
 console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs }) => {
   try {
     const found = explain(first, second, table, { firstDeclared: declared[0], secondDeclared: declared[1], noise,
       firstProgram: programs[0], secondProgram: programs[1] });
     return { verdict: found.verdict, faults: found.faults, left: found.chains.length, residual: found.residual,
-      further: found.furtherPose, mended: found.verdict === 'named' ? mendingLine(found.chains[0]) : '' };
+      further: found.furtherPose,
+      mended: found.verdict === 'named' ? [mendingLine, eigenLine, formulaOf].map((one) => one(found.chains[0])) : [] };
   } catch (error) { return { error: error.message }; }
 })));
 """
@@ -49,7 +51,8 @@ def in_python(case):
         return {"error": str(error)}
     return {"verdict": found.verdict, "faults": list(found.faults), "left": len(found.chains),
             "residual": found.residual, "further": found.further_pose,
-            "mended": mend.python_line(found.chains[0]) if found.verdict == "named" else ""}  # fmt: skip
+            "mended": [write(found.chains[0]) for write in (mend.python_line, mend.cpp_line, mend.formula)]
+            if found.verdict == "named" else []}  # fmt: skip
 
 
 def case(first, second, declared=({}, {}), noise=0.0, programs=("", "")):
@@ -77,6 +80,8 @@ def special():
         yield case(spelling.format(**parts), printed([dcm], 6))
     for one in PASTED:
         yield case(one["first"], one["second"], one["known"])
+    for first, second, *_ in EXAMPLES.values():
+        yield case(first, second)
     for text in SPELLED.values():
         yield case(text, printed([dcm], 6))
     for first, second in itertools.product(
@@ -104,3 +109,11 @@ def test_both_say_the_same(count):
         if "residual" in wanted and wanted["residual"] is not None:
             assert found.pop("residual") == pytest.approx(wanted.pop("residual"), rel=1e-6, abs=1e-9), one
         assert found == wanted, one
+
+
+def test_every_example_of_the_page_shows_what_it_is_there_for():
+    verdicts = []
+    for first, second, *sides in EXAMPLES.values():
+        programs = [side.get("program") for side in sides] or [None, None]
+        verdicts.append(explain(first, second, first_program=programs[0], second_program=programs[1]).verdict)
+    assert verdicts == ["named"] * 7 + ["undecided", "unrelated"]

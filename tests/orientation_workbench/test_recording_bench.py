@@ -31,20 +31,29 @@ def test_one_wrong_thing_makes_its_light_red(kind):
 
 
 @pytest.mark.long
-def test_of_two_hundred_wrong_recordings_nearly_all_are_found_and_honest_ones_are_left_alone():
+@pytest.mark.parametrize("first", [200, 204, 208, 212, 216])
+def test_of_two_hundred_wrong_recordings_nearly_all_are_found(first):
+    """Of 240 recordings with one wrong thing in each, its light is red in 95 of 100, a fifth of them at a time."""
+    seeds = range(first, first + 4)
     missed = [
         (kind, seed)
         for kind in FAULTS
-        for seed in range(200, 217)
+        for seed in seeds
         if examine(faulty(kind, seed)[0], judged=False).light(FAULTS[kind][0]) != "wrong"
     ]
-    assert len(missed) <= 10, missed
+    assert len(missed) <= 0.05 * len(FAULTS) * len(seeds), missed
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", [700, 725, 750, 775])
+def test_of_a_hundred_honest_recordings_hardly_one_is_blamed(first):
     blamed = [
-        seed
-        for seed in range(700, 740)
-        if any(verdict.light == "wrong" for verdict in examine(as_text(simulate(seed), quaternion=True)).verdicts)
+        (seed, verdict.about)
+        for seed in range(first, first + 25)
+        for verdict in examine(as_text(simulate(seed), quaternion=True)).verdicts
+        if verdict.light == "wrong"
     ]
-    assert len(blamed) <= 2, blamed
+    assert len(blamed) <= 1, blamed
 
 
 def test_an_honest_recording_has_no_red_light_and_its_numbers_are_right():
@@ -222,11 +231,11 @@ def test_the_code_of_the_report_corrects_the_file_as_the_bench_did():
 # --- numbers ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(40, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.long)])
 def test_an_unknown_scale_of_the_gyroscope_is_found_to_three_per_cent(count):
     random = np.random.default_rng(count)
     for seed in range(count):
-        recording, scale = simulate(seed, poses=5), random.uniform(0.5, 2)
+        recording, scale = simulate(seed, poses=4 + seed % 3), random.uniform(0.5, 2)
         recording["gyroscope"] = recording["gyroscope"] / scale
         found = examine(as_text(recording), judged=False).facts["scale of the gyroscope"]
         assert found == pytest.approx(scale, rel=0.03)
@@ -241,7 +250,7 @@ def spoilt_by_iron(seed, poses, random):
     return recording | {"magnetometer": recording["magnetometer"] @ soft.T + hard}
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(40, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.long)])
 def test_soft_and_hard_iron_are_taken_away_to_a_degree_of_heading(count):
     random = np.random.default_rng(count)
     for seed in range(count):

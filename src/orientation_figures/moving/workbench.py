@@ -12,23 +12,51 @@ from .state import Numbers
 
 UNKNOWN = "not known"
 NOTHING_KNOWN = {"program": UNKNOWN, "kind": UNKNOWN, "sequence": UNKNOWN}
-#: Cases as they are met, each with what both programs gave: two poses of a camera in its gimbal.
+#: Cases as they are met, most with the numbers of a public thread: what both programs gave, and what is known of each.
 EXAMPLES = {
     "A quaternion, scalar last for scalar first": (
         "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",
         "0.3602 -0.0702 0.1343 0.9205\n-0.2150 0.5873 0.3421 0.7011",
     ),
-    "A camera's matrix, world to camera for camera to world": (
-        "0.9541 0.1967 0.2260\n-0.2978 0.7307 0.6144\n-0.0443 -0.6535 0.7559",
-        "0.9541 -0.2978 -0.0443\n0.1967 0.7307 -0.6535\n0.2260 0.6144 0.7559",
+    "One matrix, two quaternions: Eigen and RBDL (rbdl 107)": (
+        "Eigen quaternion:\n 0.0505867i + 0.72037j + -0.683741k + -0.104906",
+        "RBDL quaternion:\n 0.0505867\n  0.72037\n-0.683741\n 0.104906",
+    ),
+    "Roll, pitch, yaw: fixed axes or turned ones (moveit_calibration 132)": (
+        "q = [-0.0372638, -0.0326999, 0.773564, 0.631776]",
+        "(0.0035234877615449344, -0.09913217272764203, 1.7720752160631836)",
+        {"program": "ROS tf2 (C++)"},
+        {"program": "ROS tf2 (C++)"},
+    ),
+    "A lamp and a camera out of Blender, in glTF (glTF-Blender-IO 438)": (
+        "<Quaternion (w=0.5709, x=0.1691, y=0.2722, z=0.7559)>\n<Quaternion (w=0.7805, x=0.4835, y=0.2087, z=0.3369)>",
+        '"rotation": [0.16907575, 0.75588035, -0.27217138, 0.57094753]\n'
+        '"rotation": [0.48353603, 0.33687159, -0.20870360, 0.78048271]',
+    ),
+    "Angles in Unity (Quaternion.js 12)": (
+        "w = 0.87851f; x = -0.24479f; y = -0.18215f; z = 0.36758f;",
+        "(x: 342.77, y: 328.43, z: 50.31)",
+    ),
+    "A camera of COLMAP, read into nerfstudio": (
+        "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",
+        "0.9541 0.1967 0.2260\n-0.2978 0.7044 0.6443\n-0.0325 -0.6820 0.7307\n"
+        "0.0758 0.2272 -0.9709\n-0.7324 0.6734 0.1004\n0.6766 0.7035 0.2175",
+        {"program": "COLMAP"},
+        {"program": "nerfstudio"},
     ),
     "An autopilot in NED and FRD, ROS in ENU and FLU": (
-        "0.9541 0.1967 0.2260\n-0.2978 0.7307 0.6144\n-0.0443 -0.6535 0.7559",
-        "0.1967 0.9541 -0.2260\n-0.7307 0.2978 0.6144\n0.6535 0.0443 0.7559",
+        "0.9541 0.1967 0.2260\n-0.2978 0.7045 0.6442\n-0.0325 -0.6819 0.7307",
+        "0.1967 0.9541 -0.2260\n-0.7045 0.2978 0.6442\n0.6819 0.0325 0.7307",
     ),
     "Level and turned about the vertical only: more than one answer": (
         "0.8776 0.4794 0\n-0.4794 0.8776 0\n0 0 1",
         "0.8776 -0.4794 0\n0.4794 0.8776 0\n0 0 1",
+    ),
+    "A matrix that is no rotation (pytorch3d 155)": (
+        "tensor([[[ 0.8888,  0.0357, -0.4569],\n         [-0.4552,  0.1834, -0.8713],\n"
+        "         [ 0.0528,  0.9824,  0.1793]]], device='cuda:0')",
+        "tensor([[[ 0.8888,  0.1516, -0.4325],\n         [-0.4552,  0.1834, -0.8713],\n"
+        "         [ 0.0528, -0.9713, -0.2321]]], device='cuda:0')",
     ),
 }
 
@@ -73,7 +101,7 @@ class WorkbenchFigure(MovingFigure):
 
     kind = "workbench"
     sheet = (-330, -172, 330, 172)
-    room = (800, 1010)
+    room = (1070, 1480)
     first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(sync=True, state=True)
     second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(sync=True, state=True)
     first_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)

@@ -26,7 +26,8 @@ class Explanation(NamedTuple):
     ``verdict`` is ``'same'``, ``'named'``, ``'undecided'`` or ``'unrelated'``. ``chains`` holds one chain for
     each reading of the numbers that is left, simplest first, and ``faults`` the words of the first.
     ``further_pose`` says which pose would decide between them, and is empty where nothing is open.
-    ``residual`` is what is left by the first chain, in degrees.
+    ``residual`` is what is left by the first chain, in degrees. ``mirrored`` names the side, ``'first'`` or
+    ``'second'``, whose matrix has the determinant -1 where the other's has not; else it is empty.
     """
 
     verdict: str
@@ -35,6 +36,7 @@ class Explanation(NamedTuple):
     chains: tuple
     further_pose: str
     poses: int
+    mirrored: str
 
     def __str__(self) -> str:
         return "\n".join(sentences(self))
@@ -115,8 +117,10 @@ def explain(
 
 def _verdict(classes, readings, one, other, sides, tried, noise):
     poses = len(sides[0][0].numbers)
+    hands = [np.linalg.det(side.dcms[0, 0]) > 0 for side in (one, other)]
+    mirrored = "" if hands[0] == hands[1] else ("first", "second")[hands.index(False)]
     if not classes:
-        return Explanation("unrelated", (), None, (), "", poses)
+        return Explanation("unrelated", (), None, (), "", poses, mirrored)
     best = classes[0]
     tolerance = max(one.doubts[0] + other.doubts[0], search.SINGLE_PRECISION) + noise
     expected = tried * min(1.0, (1.5 * tolerance) ** 3 / (6 * math.pi)) ** poses
@@ -124,7 +128,7 @@ def _verdict(classes, readings, one, other, sides, tried, noise):
     verdict = "same" if best.faults == 0 else "named" if decided else "undecided"
     further = "" if decided else _further_pose(classes, readings, sides)
     residual = math.degrees(2 * math.asin(min(1.0, best.residual / 2)))
-    return Explanation(verdict, tuple(best.words()), residual, tuple(classes), further, poses)
+    return Explanation(verdict, tuple(best.words()), residual, tuple(classes), further, poses, mirrored)
 
 
 # --- which chains say the same ---------------------------------------------------------------------------
@@ -239,6 +243,8 @@ def sentences(explanation):
     more = f"{left - 1} other reading{'s' * (left != 2)}"
     if explanation.verdict == "unrelated":
         yield f"These are not the same motion: no mix-up of up to {table.MOST_FAULTS} faults explains {several}."
+        if explanation.mirrored:
+            yield f"The {explanation.mirrored} side's matrix has the determinant -1: a mirror image, and no rotation."
         return
     if explanation.verdict == "same":
         yield "Both sides give the same orientation" + (f" in {several}." if left > 1 else ".")
@@ -248,7 +254,7 @@ def sentences(explanation):
         yield f"The numbers cannot decide. The simplest reading of {several} is " + _count(explanation.faults) + ":"
     for fault in explanation.faults:
         yield f"- {fault}"
-    if explanation.verdict != "same" or explanation.residual > 1e-3:
+    if explanation.residual > 1e-3:
         yield f"What is left then is {explanation.residual:.2g} degrees."
     if explanation.further_pose:
         if left > 1:

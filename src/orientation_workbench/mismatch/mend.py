@@ -70,7 +70,8 @@ def _write_in_python(reading, matrix):
     if kind == "matrix":
         return matrix
     # The transpose of a transpose is not written.
-    there = matrix[:-2] if matrix.endswith(".T") and matrix.count("@") == 0 else f"({matrix}).T"
+    bare = f"({matrix})" if "@" in matrix else matrix
+    there = matrix[:-2] if matrix.endswith(".T") and "@" not in matrix else f"{bare}.T"
     if kind == "quaternion":
         return f"Rotation.from_matrix({there}).as_quat()" + _subscript(_index("xyzw", choices["order"]))
     if kind == "Euler angles":
@@ -137,21 +138,20 @@ def tried(chain, first, second, tolerance):
 
 
 def formula(chain):
-    """The relation in the book's notation, with the signed permutations written out."""
-    relation = chain.relation
-    middle = r"\mathbf{M}_1^T" if relation["inverse"] else r"\mathbf{M}_1"
-    left = "" if _is_identity(relation["body"]) else _tex(table.axes_matrix(relation["body"]))
-    right = "" if _is_identity(relation["world"]) else _tex(np.transpose(table.axes_matrix(relation["world"])).tolist())
-    if relation.get("body turn") is not None:
-        left = _tex(np.round(relation["body turn"], 4).tolist())
-    if relation.get("world turn") is not None:
-        right = _tex(np.round(relation["world turn"], 4).tolist())
-    return rf"\mathbf{{M}}_2 = {left}\,{middle}\,{right}".replace(r"= \,", "= ").removesuffix(r"\,")
+    """How the second program's matrix follows from the first's, with the signed permutations written out."""
+    relation, parts = chain.relation, []
+    for whose in ("body", "world"):
+        rows = relation.get(f"{whose} turn")
+        if rows is None and not _is_identity(relation[whose]):
+            rows = np.array(table.axes_matrix(relation[whose]))
+            rows = rows if whose == "body" else rows.T
+        parts.append([] if rows is None else [_rows(rows)])
+    return " ".join(["M2 =", *parts[0], "M1^T" if relation["inverse"] else "M1", *parts[1]])
 
 
-def _tex(rows):
+def _rows(matrix):
     return (
-        r"\begin{bmatrix}" + r" \\ ".join(" & ".join(f"{entry:g}" for entry in row) for row in rows) + r"\end{bmatrix}"
+        "[" + ", ".join("[" + ", ".join(f"{entry + 0:.6g}" for entry in row) + "]" for row in np.round(matrix, 4)) + "]"
     )
 
 

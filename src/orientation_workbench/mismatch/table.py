@@ -20,6 +20,7 @@ import functools
 import itertools
 
 from orientation import PROPER_EULER, SEQUENCES
+from orientation.mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
 
 from ..programs import PROGRAMS, expected_of
 from .spelling import whole_spelling
@@ -38,7 +39,7 @@ def _orders():
     known = {"wxyz": 0.0, "xyzw": 0.0, "wzyx": 1.1, "zyxw": 1.1, "xywz": 1.0}
     words = {
         "wxyz": "the scalar part stands first (w, x, y, z)",
-        "xyzw": "the scalar part stands last (x, y, z, w)",
+        "xyzw": f"{SCALAR_LAST} (x, y, z, w)",
     }
     for letters in itertools.permutations("wxyz"):
         order = "".join(letters)
@@ -57,7 +58,7 @@ def _sequences():
 def _places():
     words = {
         "123": "the angles are printed in the order of the turns",
-        "321": "the angles are printed in reverse, the last turn first",
+        "321": f"{REVERSED}, the last turn first",
     }
     ordinal = {"1": "first", "2": "second", "3": "third"}
     for digits in itertools.permutations("123"):
@@ -71,8 +72,7 @@ def _signs():
     ordinal = ("first", "second", "third")
     for signs in itertools.product("+-", repeat=3):
         negative = [ordinal[k] for k in range(3) if signs[k] == "-"]
-        which = " and the ".join(negative)
-        words = f"the sign of the {which} angle is reversed" if negative else "the signs are as they should be"
+        words = wrong_sign(*negative) if negative else "the signs are as they should be"
         yield choice("".join(signs), words, 0.2, len(negative))
 
 
@@ -130,9 +130,9 @@ SHARED = (("order", "xyzw"), ("axes of the turns", "space fixed"), ("unit", "deg
 
 #: The inverse orientation, in the words of what is pasted.
 INVERSE = {
-    "matrix": "the transpose: the orientation the other way round",
-    "quaternion": "the conjugate: the orientation the other way round (so is a JPL quaternion)",
-    "Euler angles": "the inverse: the orientation the other way round",
+    "matrix": TRANSPOSE,
+    "quaternion": f"{CONJUGATE} (so is a JPL quaternion)",
+    "Euler angles": "the inverse, the orientation the other way round",
     "rotation vector": "the turn in the other sense",
     "axis and angle": "the turn in the other sense",
 }
@@ -406,18 +406,49 @@ FURTHER_POSES = (
 )
 
 
-#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation.
+#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation: the section, and a
+#: checked question on that very fault.
 TAUGHT = {
-    "order": ("chapters/convention-card.html", "The convention card"),
-    "sequence": ("chapters/euler-angles.html", "Euler angles"),
-    "axes of the turns": ("chapters/successive-orientations.html", "Successive orientations"),
-    "places": ("chapters/euler-angles.html", "Euler angles"),
-    "signs": ("chapters/simple-orientations.html", "Simple orientations"),
-    "unit": ("chapters/convention-card.html", "The convention card"),
-    "place of the angle": ("chapters/axis-and-angle.html", "Axis and angle"),
-    "inverse": ("chapters/direction-cosine-matrices.html", "Direction cosine matrices"),
-    "axes": ("chapters/cases-from-practice.html", "Cases from practice"),
-    "turn": ("chapters/cases-from-practice.html", "Cases from practice"),
+    "order": (
+        ("chapters/convention-card.html#four-questions", "The convention card"),
+        ("exercises/convention-card.html#two-messages", "Two messages"),
+    ),
+    "sequence": (
+        ("chapters/euler-angles.html#the-twelve-sequences", "The twelve sequences"),
+        ("exercises/euler-angles.html#four-frames-one-after-another", "Four frames, one after another"),
+    ),
+    "axes of the turns": (
+        ("chapters/euler-angles.html#body-fixed", "Body fixed"),
+        ("exercises/convention-card.html#angles-from-scipy", "Angles from SciPy"),
+    ),
+    "places": (
+        ("chapters/successive-orientations.html#order-matters", "Order matters"),
+        ("exercises/convention-card.html#eight-lines-of-code", "Eight lines of code"),
+    ),
+    "signs": (
+        ("chapters/simple-orientations.html#who-has-turned-you-or-the-vector", "Who has turned, you or the vector?"),
+        ("exercises/simple-orientations.html#a-bicycle-crank", "A bicycle crank"),
+    ),
+    "unit": (
+        ("chapters/convention-card.html#four-questions", "The convention card"),
+        ("exercises/simple-orientations.html#a-ship-s-heading", "A ship's heading"),
+    ),
+    "place of the angle": (
+        ("chapters/axis-and-angle.html#a-direction-that-stays", "Axis and angle"),
+        ("exercises/axis-and-angle.html#a-folding-bicycle", "A folding bicycle"),
+    ),
+    "inverse": (
+        ("chapters/simple-orientations.html#the-way-back", "The way back"),
+        ("exercises/convention-card.html#a-game-engine", "A game engine"),
+    ),
+    "axes": (
+        ("chapters/convention-card.html#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
+        ("exercises/cases-from-practice.html#which-way-is-the-phone-pointing", "Which way is the phone pointing?"),
+    ),
+    "turn": (
+        ("chapters/convention-card.html#exercises", "Hand and eye"),
+        ("exercises/cases-from-practice.html#a-knee-from-two-boxes", "A knee, from two boxes"),
+    ),
 }
 
 

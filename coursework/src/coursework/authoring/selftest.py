@@ -474,7 +474,8 @@ def _too_weak(finding, weakest, declared, budget):
     found = weakest[finding.name]
     if found == finding.attack or found.tries >= min(declared.get(finding.name) or BUDGET, budget):
         return []
-    return [f"One of its variants can be guessed: {found}. {DECLARED} says how many tries it withstands."]
+    line = f'"{finding.name}": {rounded_down(found.tries)}'
+    return [f"One of its variants can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}: {line}"]
 
 
 def attack_kept(question, text, budget, folder):

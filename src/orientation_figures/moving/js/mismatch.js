@@ -394,14 +394,26 @@ function gapOf(relation, first, second) {
   return gap;
 }
 
+// The relations as they depart from what is expected, and those of up to so many faults: kept, for they are thousands.
+const KEPT = new WeakMap();
+function expectedRelations(mirrored, expected, table) {
+  if (!KEPT.has(table)) KEPT.set(table, new Map());
+  const kept = KEPT.get(table), key = JSON.stringify([mirrored, expected]);
+  if (!kept.has(key)) {
+    const relations = relationsOf(mirrored, table).map((relation) => beyond(relation, expected));
+    kept.set(key, { relations, within: [0, 1, 2, 3].map((most) => relations.filter(({ faults }) => faults <= most)) });
+  }
+  return kept.get(key);
+}
+
 function chainsOf(first, second, noise, table, expected) {
   const mirrored = (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
   const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
-  const relations = relationsOf(mirrored !== aside, table).map((relation) => beyond(relation, expected)), within = [0, 1, 2, 3].map((most) => relations.filter(({ faults }) => faults <= most));
+  const { relations, within } = expectedRelations(mirrored !== aside, expected, table);
   const fits = [];
   let tried = 0;
   for (const one of first) {
-    let turned = null;
+    const turned = [];   // made as they are needed: those of few faults come first
     for (const other of second) {
       const shared = one.reading.shared.length && other.reading.shared.length;
       const faults = shared ? ofBoth(one.reading, other.reading).faults : one.reading.faults + other.reading.faults, budget = table['most faults'] - faults;
@@ -409,11 +421,11 @@ function chainsOf(first, second, noise, table, expected) {
       tried += within[budget].length;
       const tolerance = Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise;
       if (one.fourth.some((value, pose) => Math.abs(value - other.fourth[pose]) > 12 * tolerance)) continue;
-      turned ??= relations.map((relation) => related(relation, one.dcms[0]).flat());
       const wanted = other.flat[0];
       for (let k = 0; k < within[budget].length; k += 1) {
+        const made = (turned[k] ??= related(relations[k], one.dcms[0]).flat());
         let near = true;
-        for (let entry = 0; near && entry < 9; entry += 1) near = Math.abs(turned[k][entry] - wanted[entry]) <= tolerance;
+        for (let entry = 0; near && entry < 9; entry += 1) near = Math.abs(made[entry] - wanted[entry]) <= tolerance;
         if (!near) continue;
         const relation = relations[k], residual = gapOf(relation, one.dcms, other.dcms);
         if (residual <= tolerance) {
@@ -565,11 +577,13 @@ export function explain(first, second, table, { firstDeclared = {}, secondDeclar
   const { fits, tried } = chainsOf(one, other, noise, table, expectedRelation(programs, sides.map(({ kinds }) => kinds[0]), table));
   let chains = classesOf(fits, sides[0], table);
   if (!chains.length) chains = mountingsOf(one, other, noise, table).slice(0, 1);
-  if (!chains.length) return { verdict: 'unrelated', asTheirManualsSay, faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
+  const hands = [one, other].map((side) => determinant(side[0].dcms[0]) > 0);
+  const mirrored = hands[0] === hands[1] ? '' : ['first', 'second'][hands.indexOf(false)];
+  if (!chains.length) return { verdict: 'unrelated', mirrored, asTheirManualsSay, faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
   const [best] = chains, tolerance = Math.max(one[0].doubt + other[0].doubt, SINGLE_PRECISION) + noise;
   const expected = tried * Math.min(1, (1.5 * tolerance) ** 3 / (6 * Math.PI)) ** counts[0];
   const decided = chains.length === 1 && (best.faults === 0 || expected < BY_CHANCE);
-  return { asTheirManualsSay, verdict: best.faults === 0 ? 'same' : decided ? 'named' : 'undecided', faults: wordsOf(best, table), chains, sides, poses: counts[0],
+  return { asTheirManualsSay, mirrored, verdict: best.faults === 0 ? 'same' : decided ? 'named' : 'undecided', faults: wordsOf(best, table), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,
     furtherPose: decided ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], table) };
 }
@@ -582,7 +596,7 @@ export function drawnDcms(explanation, table, pose) {
   });
 }
 
-// For each of the words of a chain the page of the book that teaches it: [address, title].
+// For each of the words of a chain the section of the book that teaches it and a question on it, each [address, title].
 export function taughtBy({ first, second, relation: whole }, table) {
   const links = [], relation = whole.said ?? whole;
   for (const { kind, words, shared } of [first, second]) {
@@ -627,7 +641,7 @@ function readInPython({ kind, choices }, name) {
 
 function writeInPython({ kind, choices }, matrix) {
   if (kind === 'matrix') return matrix;
-  const there = matrix.endsWith('.T') && !matrix.includes('@') ? matrix.slice(0, -2) : `(${matrix}).T`;
+  const there = matrix.endsWith('.T') && !matrix.includes('@') ? matrix.slice(0, -2) : matrix.includes('@') ? `(${matrix}).T` : `${matrix}.T`;
   if (kind === 'quaternion') return `Rotation.from_matrix(${there}).as_quat()${subscript(indices('xyzw', choices.order))}`;
   if (kind === 'Euler angles') {
     return signed(choices, `Rotation.from_matrix(${there}).as_euler('${letters(choices)}'${inDegrees(choices)})`)
@@ -652,4 +666,42 @@ export function mendingLine({ first, second, relation }) {
   if (relation.world !== SAME_AXES) matrix = `${matrix} @ ${inPython(relation.world)}`;
   if (relation.inverse) matrix = matrix.includes('@') ? `(${matrix}).T` : `${matrix}.T`;
   return writeInPython(first, matrix.replace(/\.T\.T$/, ''));
+}
+
+// ---- the same in C++ with Eigen, and as a formula -----------------------------------------------------------
+
+const eigenMatrix = (rows) => `(Eigen::Matrix3d() << ${rows.flat().map((entry) => String(Number(entry.toPrecision(6)) + 0)).join(', ')}).finished()`;
+
+function eigenTurns(choices) {
+  const inRadians = choices.unit === 'degrees' ? ' * EIGEN_PI / 180' : '';
+  const turns = ['1', '2', '3'].map((which, k) => `Eigen::AngleAxisd(${choices.signs[k] === '-' ? '-' : ''}second[${choices.places.indexOf(which)}]${inRadians}, `
+    + `Eigen::Vector3d::Unit${choices.sequence[k].toUpperCase()}())`);
+  return `(${backwards(turns, choices['axes of the turns'] === 'space fixed').join(' * ')}).toRotationMatrix().transpose()`;
+}
+
+export function eigenLine({ second: { kind, choices }, relation }) {
+  const inRadians = choices.unit === 'degrees' ? ' * EIGEN_PI / 180' : '', last = choices['place of the angle'] === 'last';
+  let code = 'second';
+  if (kind === 'quaternion') code = `Eigen::Quaterniond(${indices(choices.order, 'wxyz').map((k) => `second[${k}]`).join(', ')}).toRotationMatrix().transpose()`;
+  if (kind === 'Euler angles') code = eigenTurns(choices);
+  if (kind === 'rotation vector') code = `Eigen::AngleAxisd(second.norm()${inRadians}, second.normalized()).toRotationMatrix().transpose()`;
+  if (kind === 'axis and angle') {
+    code = `Eigen::AngleAxisd(${last ? 'second[3]' : 'second[0]'}${inRadians}, ${last ? 'second.head<3>()' : 'second.tail<3>()'}.normalized()).toRotationMatrix().transpose()`;
+  }
+  const [body, world] = [relation['body turn'], relation['world turn']];
+  if (body) code = `${eigenMatrix(transpose(body))} * ${code}`;
+  if (world) code = `${code} * ${eigenMatrix(transpose(world))}`;
+  if (relation.body !== SAME_AXES) code = `${eigenMatrix(transpose(axesMatrix(relation.body)))} * ${code}`;
+  if (relation.world !== SAME_AXES) code = `${code} * ${eigenMatrix(axesMatrix(relation.world))}`;
+  if (relation.inverse) code = code.includes('*') ? `(${code}).transpose()` : `${code}.transpose()`;
+  return `Eigen::Matrix3d first = ${code.replace('.transpose().transpose()', '')};`;
+}
+
+const written = (rows) => `[${rows.map((row) => `[${row.map((entry) => String(Number(entry.toFixed(4)) + 0)).join(', ')}]`).join(', ')}]`;
+
+// How the second program's matrix follows from the first's.
+export function formulaOf({ relation }) {
+  const left = relation['body turn'] ?? (relation.body === SAME_AXES ? null : axesMatrix(relation.body));
+  const right = relation['world turn'] ?? (relation.world === SAME_AXES ? null : transpose(axesMatrix(relation.world)));
+  return ['M2 =', left && written(left), relation.inverse ? 'M1^T' : 'M1', right && written(right)].filter(Boolean).join(' ');
 }

@@ -1,5 +1,5 @@
 import { IDENTITY, dcmFromQuaternion, quaternionFromDcm, determinant, scale, slerp } from './mathematics.js';
-import { explain, drawnDcms, mendingLine, taughtBy } from './mismatch.js';
+import { explain, drawnDcms, eigenLine, formulaOf, mendingLine, taughtBy } from './mismatch.js';
 import { carriedBy, fragmentOf } from './address.js';
 import { Sheet, button, calm, change, choice, element, follow, glide, group, liveText, numberField, onceAFrame, open, put, readout, stage,
   write } from './shared.js';
@@ -11,6 +11,7 @@ const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector
 const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers cannot decide.',
   unrelated: 'These are not the same motion.' };
 
+const LANGUAGES = { 'NumPy and SciPy': mendingLine, 'C++ with Eigen': eigenLine, 'A formula': formulaOf };
 const AS_THE_MANUALS_SAY = { same: 'Both give what their manuals say.', named: 'They differ by more than their manuals say:' };
 
 const PLACE = 'workbench', STATE = ['first', 'second', 'first_is', 'second_is', 'noise'], LONGEST = 5000;
@@ -36,7 +37,7 @@ const several = (count, one) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
 export function render({ model, el }) {
   const table = model.get('table'), examples = model.get('examples'), programs = Object.keys(table.programs);
-  let found = null, fault = '', shown = [IDENTITY, IDENTITY], stop = () => {};
+  let found = null, fault = '', drawn = false, shown = [IDENTITY, IDENTITY], stop = () => {};
   const sheet = new Sheet({ bounds: [-330, -172, 330, 172], size: SIZE, changed: () => redraw(),
     name: 'The frames of both programs, each beside the frame N.' });
   const redraw = onceAFrame(draw);
@@ -47,14 +48,14 @@ export function render({ model, el }) {
     const read = element('p', { class: 'read' });
     const is = (name) => model.get(`${side}_is`)[name];
     const set = (values) => change(model, { [`${side}_is`]: { ...model.get(`${side}_is`), ...values } });
-    const kind = choice({ name: `The ${side} numbers are`, options: KINDS, hidden: true, change: (value) => set({ kind: value }) });
-    const sequence = choice({ name: `Sequence of the ${side} angles`, options: [[UNKNOWN, 'sequence not known'], ...SEQUENCES.map((one) => [one, [...one].join('-')])],
+    const kind = choice({ name: `The ${side} numbers are`, options: [[UNKNOWN, 'numbers of any kind'], ...KINDS.slice(1).map((one) => [one, one])], hidden: true, change: (value) => set({ kind: value }) });
+    const sequence = choice({ name: `Sequence of the ${side} angles`, options: [[UNKNOWN, 'any sequence'], ...SEQUENCES.map((one) => [one, [...one].join('-')])],
       hidden: true, change: (value) => set({ sequence: value }) });
-    const program = choice({ name: `The ${side} program`, options: [[UNKNOWN, 'program not known'], ...programs.map((one) => [one, one])], hidden: true,
+    const program = choice({ name: `The ${side} program`, options: [[UNKNOWN, 'any program'], ...programs.map((one) => [one, one])], hidden: true,
       change: (value) => set({ program: value }) });
     const title = ['The first program gives', 'The second program gives'][k];
-    return { field, read, box: group(title, 'side', element('div', { class: 'title' }, title),
-      element('div', { class: 'row-of-controls' }, program.element, kind.element, sequence.element), field, read), show() {
+    return { field, read, box: group(title, 'side', element('div', { class: 'row-of-controls known' }, element('div', { class: 'title' }, title), program.element),
+      field, read, element('div', { class: 'row-of-controls' }, kind.element, sequence.element)), show() {
       program.show(is('program'));
       if (document.activeElement !== field && field.value !== model.get(side)) field.value = model.get(side);
       kind.show(is('kind'));
@@ -62,21 +63,22 @@ export function render({ model, el }) {
       sequence.element.hidden = is('kind') !== 'Euler angles' && is('kind') !== UNKNOWN;
     } };
   });
-  const example = choice({ name: 'An example', options: [['', 'An example'], ...Object.keys(examples).map((name) => [name, name])], hidden: true,
+  const example = choice({ name: 'An example', options: [['', 'Cases from public threads'], ...Object.keys(examples).map((name) => [name, name])], hidden: true,
     change: (name) => {
       if (!name) return;
-      const [first, second] = examples[name];
+      const [first, second, ...known] = examples[name], [firstIs, secondIs] = [0, 1].map((k) => ({ ...NOTHING_KNOWN, ...known[k] }));
       for (const side of sides) side.field.blur();
-      change(model, { first, second, noise: 0, first_is: NOTHING_KNOWN, second_is: NOTHING_KNOWN });
+      change(model, { first, second, noise: 0, first_is: firstIs, second_is: secondIs });
     } });
   const noise = numberField({ name: 'They may differ by, in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
   const verdict = element('div', { class: 'controls answer' });
   const code = element('output', { class: 'result', 'aria-label': 'The line that mends it' });
-  const mend = group('The line that mends it', 'controls line', element('div', { class: 'title' }, 'The line that mends it, in NumPy and SciPy'), code,
-    button('Copy the line', async () => {
+  const language = choice({ name: 'Language of the line', options: Object.keys(LANGUAGES).map((name) => [name, name]), hidden: true, change: () => mended() });
+  const mend = group('The line that mends it', 'controls line', element('div', { class: 'row-of-controls' }, element('div', { class: 'title' }, 'The line that mends it'),
+    language.element, button('Copy the line', async () => {
       await navigator.clipboard.writeText(`${code.textContent}\n`);
       words.say('The line is copied.');
-    }));
+    })), code);
   const post = button('Copy an address that carries this case', async () => {
     try {
       const content = Object.fromEntries(STATE.map((name) => [name, model.get(name)]));
@@ -86,17 +88,19 @@ export function render({ model, el }) {
       words.say(error.message);
     }
   });
-  open(el, element('div', { class: 'controls converter' }, sides[0].box, sides[1].box),
-    element('div', { class: 'controls' }, element('div', { class: 'row-of-controls case' }, example.element,
-      element('label', { class: 'differ' }, 'They may differ by ', noise.element, ' degrees'), post)),
-    verdict, mend, readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$']),
-    element('div', { class: 'across' }, stage(sheet, words)));
+  open(el, stage(sheet, words), element('div', { class: 'across' },
+    readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$'])),
+  element('div', { class: 'controls case' }, example.element),
+  element('div', { class: 'controls converter' }, sides[0].box, sides[1].box), verdict, mend,
+  element('div', { class: 'controls' }, element('div', { class: 'row-of-controls case' },
+    element('label', { class: 'differ' }, 'They may differ by ', noise.element, ' degrees'), post)));
 
   // The orientations at the last pose, reached by one turn from where the drawing stands.
   function glideTo(dcms) {
     stop();
     const proper = dcms.every((dcm) => determinant(dcm) > 0) && shown.every((dcm) => determinant(dcm) > 0);
-    if (calm() || !proper) {
+    if (calm() || !proper || !drawn) {
+      drawn = true;
       shown = dcms;
       redraw();
       return;
@@ -124,13 +128,20 @@ export function render({ model, el }) {
       put(side.field, 'aria-invalid', String(fault.includes(`the ${['first', 'second'][k]} side`)));
       write(side.read, found ? wasRead(found, k, table) : '');
     });
-    verdict.replaceChildren(...(found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'),
-      element('p', {}, `${fault[0].toUpperCase()}${fault.slice(1)}.`)]));
-    const line = found?.verdict === 'named' ? mendingLine(found.chains[0]) : '';
+    put(verdict, 'data-verdict', found?.verdict ?? '');
+    const said = found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'), element('p', {}, `${capital(fault)}.`)];
+    if (said.map((one) => one.outerHTML).join('') !== verdict.innerHTML) verdict.replaceChildren(...said);
+    mended();
+    words.say(found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)].join(' ') : `${capital(fault)}.`);
+    if (found) glideTo(drawnDcms(found, table, found.poses - 1));
+  }
+
+  // Also where both do as their manuals say there may be something to convert.
+  function mended() {
+    const line = found?.verdict === 'named' || (found?.verdict === 'same' && found.asTheirManualsSay)
+      ? LANGUAGES[language.element.querySelector('select').value](found.chains[0]) : '';
     mend.hidden = !line;
     write(code, line);
-    words.say(found ? `${HEADINGS[found.verdict]} ${found.faults.join('; ')}` : fault);
-    if (found) glideTo(drawnDcms(found, table, found.poses - 1));
   }
 
   function draw() {
@@ -157,12 +168,19 @@ export function render({ model, el }) {
   judge();
   draw();
   globalThis.addEventListener?.('hashchange', takeUp);
-  const unfollow = follow(model, STATE, judge);
+  const unfollow = follow(model, STATE, onceAFrame(judge));
   return () => {
     globalThis.removeEventListener?.('hashchange', takeUp);
     unfollow();
   };
 }
+
+const headingOf = ({ verdict, asTheirManualsSay }) => (asTheirManualsSay && AS_THE_MANUALS_SAY[verdict]) || HEADINGS[verdict];
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
+
+// Where the book teaches it, and a question to try it by.
+const linked = ([[section, title], [question, itsTitle]]) => [element('a', { href: section }, title), ', and a question: ',
+  element('a', { href: question }, itsTitle), '.'];
 
 // What the numbers of one side were taken for.
 function wasRead(found, k, table) {
@@ -176,18 +194,19 @@ const told = (group, value) => ({ order: () => [...value].join(' '), sequence: (
 
 // The answer as the reader sees it; every fault leads to where the book teaches it.
 function answer(found, table) {
-  const best = found.chains[0], parts = [element('p', { class: 'heading' }, found.asTheirManualsSay ? AS_THE_MANUALS_SAY[found.verdict] ?? HEADINGS[found.verdict] : HEADINGS[found.verdict])];
+  const best = found.chains[0], parts = [element('p', { class: 'heading' }, headingOf(found))];
   if (found.verdict === 'unrelated') {
     const poses = found.poses === 1 ? 'this pose' : `these ${found.poses} poses`;
-    return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.`)];
+    return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.${
+      found.mirrored && ` The ${found.mirrored} side's matrix has the determinant −1: a mirror image, and no rotation.`}`)];
   }
   if (found.verdict === 'undecided') parts.push(element('p', {}, 'The simplest reading is:'));
   if (found.faults.length) {
     const links = taughtBy(best, table);
-    parts.push(element('ul', {}, ...found.faults.map((fault, k) => element('li', {}, `${fault[0].toUpperCase()}${fault.slice(1)}. `,
-      ...(links[k] ? [element('a', { href: links[k][0] }, links[k][1])] : [])))));
+    parts.push(element('ul', {}, ...found.faults.map((fault, k) => element('li', {}, `${capital(fault)}. `,
+      ...(links[k] ? linked(links[k]) : [])))));
   }
-  if (found.verdict !== 'same' || found.residual > 1e-3) parts.push(element('p', {}, `What is left then is ${Number(found.residual.toPrecision(2))} degrees.`));
+  if (found.residual > 1e-3) parts.push(element('p', {}, `What is left then is ${Number(found.residual.toPrecision(2))} degrees.`));
   if (found.furtherPose) {
     parts.push(element('p', { class: 'further' }, `To decide, ${found.furtherPose}, and paste that pose as well, on a line of its own.`));
   }

@@ -19,7 +19,7 @@ const DIALS = {
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
   together: ['both mirrors together', 0, 55, 1, 55, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
   whole: ['turn of the camera', 0, 720, 1, DEGREES, '°'], turn: ['turn of the camera', 0, 720, 1, DEGREES, '°'],
-  passed: ['cable passed round the camera', 0, 100, 1, 100, '%'], time: ['time', 0, 24, 0.1, 1, 's'],
+  passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, 24, 0.1, 1, 's'],
 };
 const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
@@ -109,7 +109,9 @@ class World {
     if (!this.sections.length || this.bound) return;
     const below = this.figure.getBoundingClientRect();
     // Beside the text the line at which one reads is in the middle of the window; below the figure it is lower.
-    const narrow = below.width > 0.8 * innerWidth, line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
+    // In the lecture it has the screen, and nobody reads.
+    const narrow = below.width > 0.8 * innerWidth && !document.documentElement.matches('.lecture');
+    const line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
     let now = this.sections[0], part = 0;
     for (const section of this.sections) {
       const { top, height } = section.place.getBoundingClientRect();
@@ -142,7 +144,7 @@ class World {
     this.showDials(stop);
     if (!first) this.tell(`${stop.before}`);
     this.passed = false;
-    if (!this.sections.length) this.play();
+    if ('play' in this.figure.dataset) this.play();
   }
 
   // Alone, in somebody else's page, a stop runs by itself once.

@@ -1,0 +1,163 @@
+"""The kit for tests: five libraries are as their manuals say, and every copy with one thing flipped is caught."""
+
+from importlib import import_module
+
+import ahrs
+import numpy as np
+import pytest
+import pytransform3d.rotations as pr
+import sympy as sm
+import sympy.physics.mechanics as me
+from scipy.spatial.transform import Rotation
+
+import orientation
+from orientation_workbench import assert_convention, convention_of
+from orientation_workbench.programs import expected_of
+
+
+def sympy_matrix(angles):
+    A, N = me.ReferenceFrame("A"), me.ReferenceFrame("N")
+    A.orient_body_fixed(N, tuple(angles), "zxy")
+    return np.array(A.dcm(N), float)
+
+
+def sympy_quaternion(axis, angle):
+    return np.array(sm.Quaternion.from_axis_angle(tuple(axis), angle).args[:4], float)
+
+
+#: For each library a function, what it takes, and what its manual says of it.
+LIBRARIES = {
+    "SciPy's angles": (lambda a: Rotation.from_euler("ZXY", a).as_matrix(), "Euler angles",
+                       {"sequence": "zxy", "inverse": True}),
+    "SciPy's space fixed angles": (lambda a: Rotation.from_euler("zxy", a).as_matrix(), "Euler angles",
+                                   {"sequence": "zxy", "turns": "space fixed", "inverse": True}),
+    "SciPy's vector": (lambda v: Rotation.from_rotvec(v).as_quat(), "rotation vector", {"order": "xyzw"}),
+    "pytransform3d's angles": (lambda a: pr.matrix_from_euler(a, 2, 0, 1, extrinsic=False), "Euler angles",
+                               {"sequence": "zxy", "inverse": True}),
+    "pytransform3d's quaternion": (pr.matrix_from_quaternion, "quaternion", {"inverse": True}),
+    "SymPy's angles": (sympy_matrix, "Euler angles", {"sequence": "zxy"}),
+    "SymPy's quaternion": (sympy_quaternion, "axis and angle", {}),
+    "AHRS's quaternion": (lambda q: ahrs.Quaternion(q).to_DCM(), "quaternion", {"inverse": True}),
+    "AHRS's matrix": (lambda m: ahrs.DCM(m).to_quaternion(), "matrix", {"inverse": True}),
+    "this book's angles": (lambda a: orientation.dcm_from_body_fixed(a, "zxy"), "Euler angles", {"sequence": "zxy"}),
+    "this book's quaternion": (orientation.quaternion_from_dcm, "matrix", {}),
+}  # fmt: skip
+NO_TURN = {
+    "Euler angles": (np.zeros(3),),
+    "rotation vector": (np.zeros(3),),
+    "axis and angle": (np.array([1.0, 0, 0]), 0.0),
+    "quaternion": (np.array([1.0, 0, 0, 0]),),
+    "matrix": (np.eye(3),),
+}
+MIRROR = np.diag([1.0, -1, 1])
+
+
+def with_result(change):
+    return lambda function, takes: lambda *arguments: change(np.asarray(function(*arguments), float))
+
+
+def other_hand(result):
+    return result * [1, -1, 1, -1] if result.shape == (4,) else MIRROR @ result @ MIRROR
+
+
+def inverted(function, takes):
+    """A copy that gives the transpose; of a quaternion the conjugate, wherever its scalar stands."""
+    scalar = np.argmax(np.abs(np.ravel(function(*NO_TURN[takes]))))
+
+    def flipped(*arguments):
+        result = np.asarray(function(*arguments), float)
+        return result.T if result.ndim == 2 else np.where(np.arange(4) == scalar, result, -result)
+
+    return flipped
+
+
+def in_degrees(function, takes):
+    """A copy that reads its angles as degrees, if it takes any."""
+    if takes == "axis and angle":
+        return lambda axis, angle: function(axis, np.radians(angle))
+    return (lambda angles: function(np.radians(angles))) if takes in ("Euler angles", "rotation vector") else None
+
+
+def other_turns(function, takes):
+    return (lambda angles: function(angles[::-1])) if takes == "Euler angles" else None
+
+
+FLIPS = {
+    "transposed or conjugate": inverted,
+    "reordered": with_result(lambda r: r[[1, 2, 0]] if r.ndim == 2 else np.roll(r, -1)),
+    "the other hand": with_result(other_hand),
+    "degrees": in_degrees,
+    "angles reversed": other_turns,
+}
+
+
+@pytest.mark.parametrize("name", LIBRARIES)
+def test_a_library_has_the_convention_of_its_manual(name):
+    function, takes, expected = LIBRARIES[name]
+    assert_convention(function, takes, **expected)
+
+
+@pytest.mark.parametrize("flip", FLIPS)
+@pytest.mark.parametrize("name", LIBRARIES)
+def test_every_flipped_copy_is_caught(name, flip):
+    function, takes, expected = LIBRARIES[name]
+    if (flipped := FLIPS[flip](function, takes)) is None:
+        return  # nothing of that kind goes in
+    with pytest.raises(AssertionError, match="another convention than expected"):
+        assert_convention(flipped, takes, **expected)
+
+
+def test_what_is_found_is_said_in_words():
+    found = convention_of(lambda q: Rotation.from_quat(q).as_matrix(), "quaternion")
+    assert found.takes == {"order": "xyzw"} and found.inverse and "scalar part stands last" in str(found)
+
+
+def test_no_convention_is_told():
+    fixed = np.eye(3)[[1, 2, 0]]
+    with pytest.raises(ValueError, match="by no convention"):
+        convention_of(lambda q: fixed, "quaternion")
+    with pytest.raises(ValueError, match="no rotation"):
+        convention_of(lambda q: 2 * np.eye(3), "quaternion")
+    with pytest.raises(ValueError, match="can take"):
+        convention_of(lambda q: np.eye(3), "spinor")
+    with pytest.raises(ValueError, match="sens is not known"):
+        assert_convention(lambda q: np.eye(3), "quaternion", sens="other")
+
+
+#: Of each program a function from its own quaternion to its matrix, or from a vector, and what that takes to run.
+RUN = {
+    "SciPy": ("scipy", lambda q: Rotation.from_quat(q).as_matrix()),
+    "pytransform3d": ("pytransform3d", pr.matrix_from_quaternion),
+    "transforms3d": ("transforms3d", lambda q: import_module("transforms3d.quaternions").quat2mat(q)),
+    "Eigen (C++)": ("eigenpy", lambda q: import_module("eigenpy").Quaternion(np.array(q)).toRotationMatrix()),
+    "kornia": ("kornia", lambda q: _by_torch("kornia.geometry.conversions", "quaternion_to_rotation_matrix", q)),
+    "PyTorch3D": ("pytorch3d", lambda q: _by_torch("pytorch3d.transforms", "quaternion_to_matrix", q)),
+    "PyBullet": ("pybullet", lambda q: np.reshape(import_module("pybullet").getMatrixFromQuaternion(q), (3, 3))),
+    "Drake": ("pydrake", lambda q: _by_drake(q)),
+    "OpenCV": ("cv2", lambda v: import_module("cv2").Rodrigues(np.array(v))[0]),
+}
+
+
+def _by_torch(module, name, q):
+    torch = import_module("torch")
+    return getattr(import_module(module), name)(torch.tensor(np.array(q))[None])[0].numpy()
+
+
+def _by_drake(q):
+    drake = import_module("pydrake.all")
+    return drake.RotationMatrix(drake.Quaternion(q)).matrix()
+
+
+@pytest.mark.parametrize(
+    "program",
+    [pytest.param(name, marks=() if needs in ("scipy", "pytransform3d") else pytest.mark.long)
+     for name, (needs, _) in RUN.items()],
+)  # fmt: skip
+def test_a_program_answers_as_the_table_of_programs_says(program):
+    """What can be installed is asked; the rest of the table follows the manuals."""
+    needs, function = RUN[program]
+    pytest.importorskip(needs)
+    expected = expected_of(program)
+    found = convention_of(function, expected["three numbers"] if program == "OpenCV" else "quaternion")
+    assert found.inverse == ("matrix" in expected["inverse"]), str(found)
+    assert found.takes.get("order", "wxyz") == expected["declared"].get("order", "wxyz"), str(found)
