@@ -109,7 +109,9 @@ class World {
     if (!this.sections.length || this.bound) return;
     const below = this.figure.getBoundingClientRect();
     // Beside the text the line at which one reads is in the middle of the window; below the figure it is lower.
-    const narrow = below.width > 0.8 * innerWidth, line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
+    // In the lecture it has the screen, and nobody reads.
+    const narrow = below.width > 0.8 * innerWidth && !document.documentElement.matches('.lecture');
+    const line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
     let now = this.sections[0], part = 0;
     for (const section of this.sections) {
       const { top, height } = section.place.getBoundingClientRect();
