@@ -468,7 +468,11 @@ class Ledger:
         Collision
             Somebody else took a step in the meantime.
         """
-        words = words.strip()[:LONGEST_WORDS]
+        words = words.strip()
+        if len(words) > LONGEST_WORDS:
+            raise ValueError(
+                f"This is longer than {LONGEST_WORDS} signs, and nothing of it is cut off: say it in fewer."
+            )
         if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
             raise ValueError(f"An appeal is raised, then under review or rejected, and this is {state!r}.")
         if not words and state != UNDER_REVIEW:
@@ -688,7 +692,7 @@ class Ledger:
         unused = []
         raised = {(*one.key, one.words) for one in self.events if isinstance(one, Appeal)}
         for number, row, fitting in _fitting_rows(path, records, "words"):
-            words = as_written(row.get("words", "")).strip()[:LONGEST_WORDS]
+            words = as_written(row.get("words", "")).strip()
             if not words:
                 continue
             if isinstance(fitting, str):
@@ -699,7 +703,7 @@ class Ledger:
                 continue
             try:
                 self.appeal(record, question, words)
-            except Collision as error:
+            except ValueError as error:
                 unused.append(f"line {number}: {error}")
         return unused
 
