@@ -507,6 +507,11 @@ class _Bench:
             self.say("offset of the magnetometer", UNKNOWN, words, {}, advice)
             self.field = raw / length
             self.facts["strength of the field"] = length
+            uneven, dips = self._unevenness(self.field), self._dips(raw)
+            if uneven > 0.12 or (dips and dips[1] > 8):
+                words = f"its length varies by {uneven:.0%}" + (f", its dip by {dips[1]:.0f}°" if dips else "")
+                words += ": by iron that turns with it, or by iron that it passed; the turns do not tell which"
+                self.say("field", YELLOW, words, {}, "Leave the field out, or record a figure of eight far from iron.")
             return
         unit, length = unit_of_field(fit.strength * np.array([[1.0, 0, 0]]))
         self.say(
