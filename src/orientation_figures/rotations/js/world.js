@@ -6,7 +6,7 @@ import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
 import { AT_READER, COURSE, CROOKED, EYES, FROM, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
-  project, sceneOf, turnedAlong, turnedFrame, ways, wrapped } from './scene.js';
+  project, sceneOf, turnedAlong, turnedFrame, wholeWays, wrapped } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
 
@@ -343,7 +343,7 @@ class World {
   }
 
   way(D) {
-    const needed = [0, 1].map((k) => turnedAlong(Array.from({ length: 97 }, (_, i) => ways(i / 96)[['one', 'angles'][k]])));
+    const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(wholeWays().map((both) => both[kind])));
     const { track, free } = this.state;
     if (!free) return `The one turn takes ${say(needed[0])}; the way in angles, red, turns the camera through ${say(needed[1])} in all.`;
     const left = apart(D, frames(TO).D), taken = turnedAlong(track);
