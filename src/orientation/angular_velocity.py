@@ -4,10 +4,10 @@ The angular velocity :math:`\\boldsymbol{\\omega}` of :math:`A` in :math:`N` is 
 along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in radians per second.
 """
 
-from ._numbers_and_symbols import evaluate
 from ._types import Result, Values
 from .direction_cosines import AXES, DCM_GUARD
 from .euler_angles import layout_of
+from .numbers_and_symbols import Guard, evaluate
 
 
 def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
@@ -280,5 +280,5 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Result:
         (3,),
         ("vector", vector, (3,)),
         ("angular_velocity", angular_velocity, (3,)),
-        guard=(3, excess, explain),
+        guard=Guard(3, excess, explain),
     )

@@ -1,8 +1,8 @@
 """Axis and angle: Euler's theorem, Rodrigues' formula, and back again from 0 to pi."""
 
-from ._numbers_and_symbols import evaluate
 from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
+from .numbers_and_symbols import Guard, evaluate
 from .quaternions import quaternion_components_from_dcm
 
 #: Shortest axis whose direction can be computed; the longest is its inverse.
@@ -29,7 +29,7 @@ def _explain_zero(components, where):
     )
 
 
-AXIS_GUARD = (3, _length_missing, _explain_zero)
+AXIS_GUARD = Guard(3, _length_missing, _explain_zero)
 
 
 def dcm_from_axis_angle(axis: Values, angle: Values) -> Result:

@@ -10,11 +10,11 @@ import itertools
 import math
 from typing import NamedTuple
 
-from ._numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, one_item, symbol_components
 from ._types import Result, Values
 from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
 from .mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
+from .numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, one_item, symbol_components
 from .quaternions import demand_unit_length, product_components
 from .random_points import at_random_points, points_for, put_in, unknowns
 

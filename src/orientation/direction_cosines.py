@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate, is_symbolic, number_array, symbol_components
 from ._types import Result, Values
+from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, is_symbolic, number_array, symbol_components
 from .random_points import at_random_points
 
 AXES = ("x", "y", "z")
@@ -180,7 +180,7 @@ def _explain(entries, where, name="dcm"):
 
 
 #: What every conversion from a direction cosine matrix asks of it first.
-DCM_GUARD = (9, _excess, _explain)
+DCM_GUARD = Guard(9, _excess, _explain)
 
 
 class NearestDCM(NamedTuple):

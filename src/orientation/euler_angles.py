@@ -1,8 +1,8 @@
 """Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
 
-from ._numbers_and_symbols import evaluate, is_symbolic, number_array, one_item, symbol_components
 from ._types import Result, Values
 from .direction_cosines import AXES, DCM_GUARD
+from .numbers_and_symbols import evaluate, is_symbolic, number_array, one_item, symbol_components
 
 #: Sequences whose first and last axes are the same.
 PROPER_EULER = ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy")

@@ -7,9 +7,9 @@ it is the right one depends on them.
 from collections.abc import Callable
 from typing import Any
 
-from ._numbers_and_symbols import number_array
 from ._types import Result, Values
 from .direction_cosines import check_dcm
+from .numbers_and_symbols import number_array
 from .rotation_vector import dcm_from_rotation_vector
 
 ORDERS = (1, 2, 4)

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate, number_array
 from ._types import Result, Values
 from .direction_cosines import DCM_GUARD, check_dcm, nearest_dcm
+from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, number_array
 from .quaternions import dcm_from_quaternion, quaternion_components_from_dcm
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 
@@ -67,7 +67,7 @@ def angle_between(first: Values, second: Values) -> Result:
         (),
         ("first", first, (3, 3)),
         ("second", second, (3, 3)),
-        guard=(18, excess, explain),
+        guard=Guard(18, excess, explain),
         symbols=False,
     )
 

@@ -4,8 +4,8 @@ A direction that is known in a frame :math:`N` (up, north, a star) is measured a
 directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two are fitted.
 """
 
-from ._numbers_and_symbols import number_array
 from ._types import Result, Values
+from .numbers_and_symbols import number_array
 
 #: Sine of the angle below which two directions count as one.
 PARALLEL = 1e-6

@@ -1,8 +1,8 @@
 """Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
 
-from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate
 from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
+from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate
 
 
 def _length_excess(f, scalar, x, y, z):
@@ -37,7 +37,7 @@ def demand_unit_length(entries, name="quaternion", tolerance=TOLERANCE):
         _explain_length(entries, "", name)
 
 
-QUATERNION_GUARD = (4, _length_excess, _explain_length)
+QUATERNION_GUARD = Guard(4, _length_excess, _explain_length)
 
 
 def dcm_from_quaternion(quaternion: Values) -> Result:
@@ -268,7 +268,7 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Res
         ("first", first, (4,)),
         ("second", second, (4,)),
         ("share", share, ()),
-        guard=(8, excess, explain),
+        guard=Guard(8, excess, explain),
         symbols=False,
     )
 

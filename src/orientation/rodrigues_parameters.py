@@ -4,9 +4,9 @@ Both are a stereographic picture of the unit quaternions: a line from the middle
 quaternion -1, through the quaternion meets a flat space of three dimensions in the parameters.
 """
 
-from ._numbers_and_symbols import NUMBERS, TOLERANCE, evaluate
 from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
+from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate
 from .quaternions import dcm_components_from_quaternion, quaternion_components_from_dcm
 
 
@@ -93,7 +93,7 @@ def rodrigues_from_dcm(dcm: Values) -> Result:
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         return x / scalar, y / scalar, z / scalar
 
-    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=(9, excess, explain), symbols=False)
+    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=Guard(9, excess, explain), symbols=False)
 
 
 def dcm_from_modified_rodrigues(vector: Values) -> Result:
@@ -211,4 +211,4 @@ def shadow_of_modified_rodrigues(vector: Values) -> Result:
         square = x * x + y * y + z * z
         return -x / square, -y / square, -z / square
 
-    return evaluate(formula, (3,), ("vector", vector, (3,)), guard=(3, excess, explain))
+    return evaluate(formula, (3,), ("vector", vector, (3,)), guard=Guard(3, excess, explain))

@@ -1,8 +1,8 @@
 """Rotation vectors: the exponential and the logarithm of rotations."""
 
-from ._numbers_and_symbols import evaluate
 from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
+from .numbers_and_symbols import evaluate
 from .quaternions import quaternion_components_from_dcm
 
 

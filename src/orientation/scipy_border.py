@@ -7,9 +7,9 @@ nowhere else.
 
 from typing import Any
 
-from ._numbers_and_symbols import evaluate
 from ._types import Result, Values
 from .direction_cosines import DCM_GUARD
+from .numbers_and_symbols import evaluate
 
 
 def scipy_rotation_from_dcm(dcm: Values) -> Any:

@@ -181,7 +181,7 @@ def _places(question, numbers, near):
     width = _width(question, len(numbers), near)
     return [
         _in_tolerances(number, absolute, relative) / width + offset
-        for number, offset in zip(numbers, _offsets(question["salt"], len(numbers)))
+        for number, offset in zip(numbers, offsets(question["salt"], len(numbers)))
     ]
 
 
@@ -194,7 +194,7 @@ def _in_tolerances(number, absolute, relative):
 
 
 @functools.lru_cache(256)
-def _offsets(salt, count):
+def offsets(salt, count):
     data = hashlib.shake_256(f"{salt} edges of the cells".encode()).digest(8 * count)
     return [int.from_bytes(data[8 * k : 8 * k + 8], "big") / MP.mpf(2) ** 64 for k in range(count)]
 

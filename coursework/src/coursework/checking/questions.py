@@ -67,7 +67,9 @@ def notebook_questions(notebook, variant=0):
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
     text = next((file.read_text("utf8") for folder in places() if (file := folder / name).is_file()), None)
     if text is None and variant:
-        text = next((_fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()), None)
+        from .elsewhere import fetched
+
+        text = next((fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()), None)
     if text is None:
         return {}
     data = json.loads(text)
@@ -82,24 +84,6 @@ def notebook_questions(notebook, variant=0):
     if data["format"] == 3:
         return {name: {**about, "format": 3} for name, about in data["questions"].items()}
     return data["questions"]
-
-
-def _fetched(file, name):
-    """A file from where the pages lie, whose address follows upon that of Python's packages."""
-    import js
-    import pyodide_js
-
-    address = f"{pyodide_js.lockfileBaseUrl}{file.read_text('utf8')}{name}"
-    request = js.XMLHttpRequest.new()
-    try:
-        request.open("GET", address, False)
-        request.send()
-        if request.status == 200:
-            return request.responseText
-        why = f"the server says {request.status}"
-    except Exception as error:  # what the browser throws where there is no network
-        why = str(error)
-    raise RuntimeError(f"Your numbers could not be fetched from {address} ({why}). Is there a network?")
 
 
 def places():
