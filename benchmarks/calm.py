@@ -18,6 +18,7 @@ BOOK = Path(__file__).resolve().parents[1]
 # A box that asks or sets apart: from its fence to the same fence.
 BOX = re.compile(r"^(`{3,}|:{3,})\{(\w[\w-]*)\}.*?^\1$", re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(r"\$\$.*?\$\$(?: \([\w-]+\))?|\$[^$]+\$", re.DOTALL)
+COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)  # a step of the lecture, which no page shows
 ASKS = {"predict": "predictions", "exercise": "exercises", "recap": "recaps"}
 
 
@@ -52,8 +53,9 @@ def measure(path):
                 interrupt()
             continue
         place = 0
-        text, exercises, _ = cell.source.partition("## Exercises\n") if reading else ("", "", "")
-        for box in BOX.finditer(cell.source):
+        source = COMMENT.sub("", cell.source)
+        text, exercises, _ = source.partition("## Exercises\n") if reading else ("", "", "")
+        for box in BOX.finditer(source):
             counts["questions"] += box[0].count("```{question}")
             if box[2] in ASKS:
                 counts[ASKS[box[2]]] += 1

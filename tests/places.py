@@ -13,7 +13,8 @@ PATIENCE = 180_000  # milliseconds, for a busy machine; nothing waits longer tha
 def html_pages():
     """The addresses of all pages of the built site, relative to its root.
 
-    Notebooks in ``lite`` are none, nor is what a server shows where there is no page.
+    Notebooks in ``lite`` are none, nor are the figures for other people's pages, nor what a server shows where there is
+    no page.
     """
     found = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
-    return sorted(str(path) for path in found if path.parts[0] not in ("lite", "404.html"))
+    return sorted(str(path) for path in found if path.parts[0] not in ("lite", "embed", "404.html"))

@@ -124,3 +124,20 @@ def test_a_kind_of_question_has_one_owner(monkeypatch):
     monkeypatch.setattr(plugins, "plugins", lambda: [plugin])
     with pytest.raises(RuntimeError, match="'expression'; there is one already"):
         plugins.kinds.__wrapped__()
+
+
+def private(name):
+    return name.startswith("_") and not name.startswith("__")
+
+
+def test_no_private_name_crosses_a_room():
+    """A module that begins with an underscore is for its folder, a name that does so for its module."""
+    found = []
+    for folder in (*PACKAGES.values(), PAGES):
+        for path in folder.rglob("*.py"):
+            for name in imported(path, folder.parent):
+                *module, last = name.split(".")
+                if name.partition(".")[0] in OURS and (private(last) or any(map(private, module[:-1]))):
+                    inside = module == list(path.relative_to(folder.parent).parent.parts)
+                    found += [] if inside else [f"{path.relative_to(folder.parent)} imports {name}"]
+    assert found == []

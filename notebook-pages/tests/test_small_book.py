@@ -62,6 +62,28 @@ def test_a_prediction_waits_for_the_reader(built):
     assert page(built, "levers").select("#predict-lever")
 
 
+@pytest.mark.parametrize(
+    "typed, read",
+    [
+        ("45°", True),
+        ("45 degrees", True),
+        (" 90/2 ", True),
+        ("45,0", True),
+        ("45 rad", False),
+        ("about 45", False),
+        ("1/0", False),
+    ],
+)
+def test_a_number_is_read_as_one_writes_it(built, browser, typed, read):
+    page = browser.new_page()
+    page.goto((built / "triangles.html").as_uri())
+    box = page.locator("#predict-halves")
+    box.locator(".number input").fill(typed)
+    box.get_by_role("button", name="That is my prediction").click()
+    assert ("number first" in box.get_by_role("status").inner_text()) != read
+    page.close()
+
+
 def test_every_page_with_code_can_be_taken_away(built):
     notebook = nbformat.read(built / "take-away" / "triangles.ipynb", as_version=4)
     assert [cell.source.splitlines()[-1] for cell in notebook.cells if cell.cell_type == "code"] == [

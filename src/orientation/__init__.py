@@ -4,7 +4,6 @@ Direction cosine matrices :math:`{}^A\\mathbf{C}^N` have :math:`A`'s unit vector
 in radians, quaternions have their scalar part first, and sequences are body fixed and lower case.
 """
 
-from ._numbers_and_symbols import SymbolsNotPossible
 from .angular_velocity import (
     angular_velocity_from_dcm_rate,
     angular_velocity_matrix,
@@ -29,6 +28,7 @@ from .filters import MultiplicativeKalmanFilter
 from .frames import Frames
 from .integration import dcms_after_turns, turns_from_angular_velocity
 from .metrics import angle_between, mean_orientation, random_orientations
+from .numbers_and_symbols import SymbolsNotPossible
 from .observations import dcm_from_directions, dcm_from_two_directions, directions_covariance
 from .quaternions import dcm_from_quaternion, interpolate_quaternions, multiply_quaternions, quaternion_from_dcm
 from .rodrigues_parameters import (

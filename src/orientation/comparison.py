@@ -10,10 +10,11 @@ import itertools
 import math
 from typing import NamedTuple
 
-from ._numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, one_item, symbol_components
 from ._types import Result, Values
 from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
+from .mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
+from .numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, one_item, symbol_components
 from .quaternions import demand_unit_length, product_components
 from .random_points import at_random_points, points_for, put_in, unknowns
 
@@ -205,7 +206,7 @@ def _fault(values, tolerance):
 
 def _transpositions(truths):
     yield (
-        "it is the transpose, the orientation the other way round",
+        f"it is {TRANSPOSE}",
         [[entries[3 * column + row] for row in range(3) for column in range(3)] for entries in truths],
     )
 
@@ -259,14 +260,14 @@ def _sequence_mixups(values, sequence, given, symbols):
     yield ("the matrices are multiplied in the other order, which is space fixed", _body_fixed(back, sequence[::-1]))
     if not given and 0 in values[0]:
         return  # two turns are recognised as part of several sequences
-    yield "the angles are in reverse order", _body_fixed(back, sequence)
+    yield REVERSED, _body_fixed(back, sequence)
     for other in SEQUENCES:
         if other != sequence:
             yield f"it is the sequence {other}, not {sequence}", _body_fixed(values, other)
     if not symbols:
         for which, signs in (("first", (-1, 1, 1)), ("second", (1, -1, 1)), ("third", (1, 1, -1))):
             yield (
-                f"the angle of the {which} turn has the wrong sign",
+                wrong_sign(which),
                 _body_fixed([[a * b for a, b in zip(angles, signs)] for angles in values], sequence),
             )
         yield (
@@ -297,10 +298,10 @@ def _quaternion_mixups(truths):
     def rearranged(rule):
         return [rule(*entries) for entries in truths]
 
-    yield ("the scalar part stands last; in this book it stands first", rearranged(lambda a, b, c, d: [b, c, d, a]))
-    yield ("it is the conjugate, the orientation the other way round", rearranged(lambda a, b, c, d: [a, -b, -c, -d]))
+    yield (f"{SCALAR_LAST}; in this book it stands first", rearranged(lambda a, b, c, d: [b, c, d, a]))
+    yield (f"it is {CONJUGATE}", rearranged(lambda a, b, c, d: [a, -b, -c, -d]))
     yield (
-        "it is the conjugate, and the scalar part stands last; in this book it stands first",
+        f"it is the conjugate, and {SCALAR_LAST}; in this book it stands first",
         rearranged(lambda a, b, c, d: [-b, -c, -d, a]),
     )
     yield (

@@ -2,9 +2,9 @@
 
 from typing import Any, NamedTuple
 
-from ._numbers_and_symbols import number_array
 from ._types import Values
 from .direction_cosines import check_dcm
+from .numbers_and_symbols import number_array
 from .rotation_vector import dcm_from_rotation_vector
 
 

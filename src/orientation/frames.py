@@ -2,12 +2,12 @@
 
 from typing import NamedTuple
 
-from ._numbers_and_symbols import is_symbolic, number_array, symbol_components
 from ._types import Result, Values
 from .axis_angle import dcm_from_axis_angle
 from .comparison import same_orientation
 from .direction_cosines import check_dcm, simple_dcm
 from .euler_angles import dcm_from_body_fixed
+from .numbers_and_symbols import is_symbolic, number_array, symbol_components
 from .quaternions import dcm_from_quaternion
 
 

@@ -3,7 +3,7 @@
 import math
 import random
 
-from ._numbers_and_symbols import is_symbolic
+from .numbers_and_symbols import is_symbolic
 
 #: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and two
 #: values beyond half a turn: the root of a square is then not taken for the cosine of the angle, nor

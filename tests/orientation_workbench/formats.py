@@ -506,7 +506,41 @@ def matlab_mobile():
     )
 
 
+def flight_test():
+    """As those who fly name it: p, q and r about the axes, angles as Greek letters, the time of the day."""
+    found, time, gyr, acc, _, _ = _parts()
+    angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
+    names = ["TIME", "P (deg/s)", "Q (deg/s)", "R (deg/s)", "AX (g)", "AY (g)", "AZ (g)", "PHI (deg)", "THETA (deg)",
+             "PSI (deg)"]  # fmt: skip
+    rows = [
+        f"09:{15 + int(t) // 60:02}:{int(t) % 60:02}:{round(1000 * t) % 1000:03},"
+        + ",".join(f"{one:.6f}" for one in row)
+        for t, row in zip(time, np.column_stack([DEG * gyr, acc / GRAVITY, angles]), strict=True)
+    ]
+    return Form(
+        "\n".join([",".join(names), *rows]).encode(), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "angles": 1}
+    )
+
+
+def rates_called_after_angles():
+    _, time, gyr, acc, _, _ = _parts()
+    names = ["time_ms", "yaw_rate", "pitch_rate", "roll_rate", "accel_x", "accel_y", "accel_z"]
+    return Form(_table(names, [np.round(1000 * time), gyr[:, ::-1], acc]), {"gyroscope": 1, "accelerometer": 1})
+
+
+def ros2_table():
+    """As `ros2 topic echo --csv` writes it: no headings, seconds and what is left of them, covariances between."""
+    _, time, gyr, acc, _, quaternion = _parts()
+    lines = []
+    for k, t in enumerate(time):
+        vectors = [",".join(f"{one:.9f}" for one in row[k]) for row in (np.roll(quaternion, -1, axis=1), gyr, acc)]
+        stamp = f"{1_700_000_000 + int(t)},{round(1e9 * (t % 1))},imu_link,"
+        lines.append(stamp + ",".join(f"{one},{','.join(['0.02', '0.0', '0.0'] * 3)}" for one in vectors))
+    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
+
+
 FORMS = [phyphox_zip, phyphox_table, sensor_logger, sensor_logger_json, lists_in_json, sensor_log, andro_sensor,
          physics_toolbox, motion_sense, meta_wear, xsens_mtw, movella_dot, x_io, shimmer, pico_quake, gyroflow,
          betaflight, ardupilot, px4, rostopic, rostopic_in_blocks, bagpy, euroc, uzh_fpv, tum, oxiod, gnss_logger,
-         repo_imu, no_headings, arduino, matlab_mobile]  # fmt: skip
+         repo_imu, no_headings, arduino, matlab_mobile,
+         flight_test, rates_called_after_angles, ros2_table]  # fmt: skip

@@ -1,5 +1,7 @@
 """The bench for recordings: what it must find, on simulated instruments with one thing wrong and on real ones."""
 
+import warnings
+
 import numpy as np
 import pytest
 from formats import DEG, FORMS, GRAVITY, recording
@@ -16,7 +18,7 @@ from orientation_workbench.recording.content import read_content
 from orientation_workbench.recording.field import fit_ellipsoid
 from orientation_workbench.recording.judged import chi_square_bounds
 from orientation_workbench.recording.motion import ASSIGNMENTS, dcm_of_quaternions, readings
-from orientation_workbench.recording.report import as_code
+from orientation_workbench.recording.report import as_code, as_csv
 from orientation_workbench.recording.table import read_tables
 
 DATA = REPOSITORY / "src" / "orientation_recordings" / "data"
@@ -31,20 +33,29 @@ def test_one_wrong_thing_makes_its_light_red(kind):
 
 
 @pytest.mark.long
-def test_of_two_hundred_wrong_recordings_nearly_all_are_found_and_honest_ones_are_left_alone():
+@pytest.mark.parametrize("first", [200, 204, 208, 212, 216])
+def test_of_two_hundred_wrong_recordings_nearly_all_are_found(first):
+    """Of 240 recordings with one wrong thing in each, its light is red in 95 of 100, a fifth of them at a time."""
+    seeds = range(first, first + 4)
     missed = [
         (kind, seed)
         for kind in FAULTS
-        for seed in range(200, 217)
+        for seed in seeds
         if examine(faulty(kind, seed)[0], judged=False).light(FAULTS[kind][0]) != "wrong"
     ]
-    assert len(missed) <= 10, missed
+    assert len(missed) <= 0.05 * len(FAULTS) * len(seeds), missed
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", [700, 725, 750, 775])
+def test_of_a_hundred_honest_recordings_hardly_one_is_blamed(first):
     blamed = [
-        seed
-        for seed in range(700, 740)
-        if any(verdict.light == "wrong" for verdict in examine(as_text(simulate(seed), quaternion=True)).verdicts)
+        (seed, verdict.about)
+        for seed in range(first, first + 25)
+        for verdict in examine(as_text(simulate(seed), quaternion=True)).verdicts
+        if verdict.light == "wrong"
     ]
-    assert len(blamed) <= 2, blamed
+    assert len(blamed) <= 1, blamed
 
 
 def test_an_honest_recording_has_no_red_light_and_its_numbers_are_right():
@@ -194,6 +205,34 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     assert ended.value.code == 3 and "empty" in capsys.readouterr().err
 
 
+def spoilt(kind, change):
+    given = simulate(3, poses=2)
+    return given | {kind: change(given[kind])}
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({kind: values[:9] for kind, values in simulate(3, poses=2).items() if kind != "truth"}, "too few"),
+        (spoilt("time", lambda values: values[::-1]), "goes back"),
+        (spoilt("time", lambda values: 0 * values), "no column of time"),
+        (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
+        (spoilt("accelerometer", lambda values: 0 * values), "never change"),
+        (spoilt("gyroscope", lambda values: 1e12 * values), "turns so fast"),
+        (
+            spoilt("magnetometer", lambda values: np.where(np.arange(len(values))[:, None] % 3, values, np.nan)),
+            "magnetometer: µT",
+        ),
+    ],
+)
+def test_strange_recordings_are_told_and_never_a_crash(given, words):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = examine(as_text(given, quaternion=True), "strange")
+        assert words in " ".join(str(found).split())
+        assert as_csv(found) and as_code(found)
+
+
 def test_the_command_writes_report_and_corrected_recording(tmp_path, capsys):
     (tmp_path / "walk.csv").write_text(as_text(simulate(4, poses=4)), "utf8")
     with pytest.raises(SystemExit) as ended:
@@ -222,11 +261,11 @@ def test_the_code_of_the_report_corrects_the_file_as_the_bench_did():
 # --- numbers ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(40, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.long)])
 def test_an_unknown_scale_of_the_gyroscope_is_found_to_three_per_cent(count):
     random = np.random.default_rng(count)
     for seed in range(count):
-        recording, scale = simulate(seed, poses=5), random.uniform(0.5, 2)
+        recording, scale = simulate(seed, poses=4 + seed % 3), random.uniform(0.5, 2)
         recording["gyroscope"] = recording["gyroscope"] / scale
         found = examine(as_text(recording), judged=False).facts["scale of the gyroscope"]
         assert found == pytest.approx(scale, rel=0.03)
@@ -241,7 +280,7 @@ def spoilt_by_iron(seed, poses, random):
     return recording | {"magnetometer": recording["magnetometer"] @ soft.T + hard}
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(40, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.long)])
 def test_soft_and_hard_iron_are_taken_away_to_a_degree_of_heading(count):
     random = np.random.default_rng(count)
     for seed in range(count):

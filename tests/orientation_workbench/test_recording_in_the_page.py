@@ -24,6 +24,11 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
         assert re.search(r'<tr class="wrong"><td>wrong</td><th scope="row">offset of the magnetometer', page)
         assert page.count("<svg") >= 3 and "<1>" not in page and "<script" not in page
     assert "offset of the magnetometer" in repr(found)
+    rows = re.search(
+        r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"', judged(convention="xyzw")._repr_html_()
+    )
+    corrected = base64.b64decode(rows[1]).decode().splitlines()
+    assert corrected[0].endswith("qx,qy,qz,qw") and len(corrected) == 1 + len(found.examined.time)
 
 
 def test_what_cannot_be_judged_says_why_with_line_and_column(tmp_path):

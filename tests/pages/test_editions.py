@@ -130,6 +130,9 @@ def test_who_kept_an_address_gets_to_where_it_is_now(tmp_path, browser):
     assert abs(page.evaluate(at.format("fig-first-line")) - page.evaluate(at.format("fig-line"))) < 60
     page.goto(f"{address}/index.html")
     note = page.locator("#fig-old")
+    assert not note.is_visible()
+    page.goto(f"{address}/index.html#fig-old")
+    assert note.is_visible()
     assert note.inner_text() == "What stood here has moved: A chapter"
     assert note.locator("a").get_attribute("href") == "chapter.html#fig-line"
     page.context.close()

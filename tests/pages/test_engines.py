@@ -4,6 +4,7 @@ import pytest
 from engines import ENGINES
 from test_live import PAGES, PLAYABLE, QUIET, RESULTS, kinds
 from test_servers import SIZE
+from test_site import stand_as_katex_sets_them
 
 from notebook_pages.execution import STORED
 
@@ -86,3 +87,9 @@ def test_page_opens_and_is_read(engine, site):
     })""")
     assert seen["formulas"] > 20 and seen["font"] and seen["sideways"] <= 0 and seen["buttons"] == len(kinds(QUIET))
     assert seen["size"] == SIZE
+
+
+def test_light_formulas_stand_as_katex_sets_them(engine, site):
+    engine.go(site + "index.html")
+    # WebKit makes lines whole pixels high, and moves all that stands in them.
+    stand_as_katex_sets_them(engine.run, within=2)

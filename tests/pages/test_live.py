@@ -408,6 +408,38 @@ def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
     assert page.try_code(3, "print(repr(a[1]))").strip() == "np.float64(2.0)"
 
 
+def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, site):
+    """Byte by byte, and in place of the one before; the report needs more than this site holds, and says so."""
+    page = Page(context, site, "workbench.html")
+    tagged = "[...document.querySelectorAll('div.cell')].findIndex((cell) => cell.matches('.tag_takes-file')) + 1"
+    number = page.page.evaluate(tagged)
+    sent = []
+    page.page.on("request", lambda request: sent.append(request.post_data))
+    content = bytes(range(256)) * 40
+    name = "a walk.csv"
+    page.page.set_input_files("label.takes-file input", {"name": name, "mimeType": "text/csv", "buffer": content})
+    page.page.wait_for_selector("html.live-busy", state="attached")
+    page.wait()
+    assert "could not be fetched from cdn.jsdelivr.net" in page.below(number)
+    look = "import hashlib, os\nfor name in os.listdir('dropped'):\n"
+    look += "    print(name, hashlib.sha256(open(f'dropped/{name}', 'rb').read()).hexdigest())"
+    assert page.try_code(number, look).split("\n")[:1] == [f"{name} {hashlib.sha256(content).hexdigest()}"]
+    page.page.evaluate(
+        """() => {
+          const given = new DataTransfer();
+          given.items.add(new File(['t,wx\\n'], 'other.csv'));
+          for (const type of ['dragover', 'drop']) document.querySelector('div.cell.tag_takes-file').dispatchEvent(
+            new DragEvent(type, { dataTransfer: given, bubbles: true, cancelable: true }));
+        }"""
+    )
+    page.page.wait_for_function(
+        f"document.querySelectorAll('div.cell')[{number - 1}].textContent.includes('other.csv')"
+    )
+    page.wait()
+    assert page.below(number).split()[0] == "other.csv" and name not in page.below(number)
+    assert page.errors == [] and not any(sent)
+
+
 @pytest.mark.sampled(1, of="pages that start otherwise")
 def test_hidden_code_runs_before_the_cell_below_it(context, site):
     """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the next one."""

@@ -144,6 +144,8 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
         raised = form(form="appeal", state="raised", only=place, words=words)
         assert served.decide(cluster.id, raised).status == 303
         assert served.decide(cluster.id, raised).status == 409  # nothing twice
+        long = form(form="appeal", state="raised", only=place, words="x" * 4_001)
+        assert served.decide(cluster.id, long).status == 409  # and nothing is cut off
         _, text = served.ask(f"/{served.secret}/?show=appeals")
         assert re.findall(r"answer/([0-9a-f]{16})", text) == [cluster.id] and "1 answer waits" in text
         capsys.readouterr()

@@ -14,6 +14,7 @@ from . import (
     first_view,
     fonts,
     install,
+    lecture,
     lite,
     live,
     mathematics,
@@ -21,6 +22,7 @@ from . import (
     moving,
     page,
     pictures,
+    previews,
     progress,
     publish,
     questions,
@@ -32,7 +34,18 @@ from . import (
 
 
 def setup(app):
-    pages = (execution, fonts, mathematics, alternative_text, accessible, questions, exercises, progress, subject_index)
+    pages = (
+        execution,
+        fonts,
+        mathematics,
+        alternative_text,
+        accessible,
+        questions,
+        exercises,
+        progress,
+        lecture,
+        subject_index,
+    )
     for module in (
         exam,
         *pages,
@@ -41,6 +54,7 @@ def setup(app):
         page,
         sidebar,
         search,
+        previews,
         publish,
         pictures,
         moved,

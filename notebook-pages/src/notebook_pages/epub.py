@@ -11,8 +11,7 @@ from string import ascii_lowercase, ascii_uppercase, digits
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree import ElementTree
 
-from .offline import LICENCES
-from .paths import WEBSITE, edition, moment_of_sources, parts
+from .paths import LICENCES_SAID, WEBSITE, edition, moment_of_sources, parts
 from .pdf import article, heading, place
 from .spoken import spoken
 
@@ -169,7 +168,7 @@ def files(site, title, author):
     more = [f"<dc:date>{which.date}</dc:date>"] if which.date else []
     more += [f"<dc:identifier>https://doi.org/{escape(which.doi)}</dc:identifier>"] if which.doi else []
     written["package.opf"] = PACKAGE.format(
-        identifier=identity, title=escape(title), author=escape(author), licences=LICENCES,
+        identifier=identity, title=escape(title), author=escape(author), licences=LICENCES_SAID,
         edition=escape(which.words), more="\n".join(more), moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}",
         items="\n".join(items), spine="\n".join(spine),
     )  # fmt: skip

@@ -6,6 +6,7 @@ a widget for Jupyter. The page shows the still, and one script for each kind of 
 
 import os
 import subprocess
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
@@ -46,13 +47,9 @@ def kinds_on(doctree):
     return list(found)
 
 
-def add_scripts(app, pagename, templatename, context, doctree):
-    kinds = kinds_on(doctree) if doctree is not None else []
-    if not kinds:
-        return
+def scripts_and_styles(kinds):
+    """What a page with these kinds of figures loads, texts by their names; and what its figures fetch later."""
     bundle = named(REGISTERED["figures"])
-    folder = Path(app.outdir) / "_static" / "moving"
-    folder.mkdir(parents=True, exist_ok=True)
     texts, later = {}, {}
     if own := [kind for kind in kinds if kind not in bundle.BUILT]:
         texts |= {"shared.js": bundle.shared_script(), "moving.css": bundle.style() + PAGE_STYLE}
@@ -63,13 +60,38 @@ def add_scripts(app, pagename, templatename, context, doctree):
         name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"  # no older page meets a newer world
         later[name] = script
         texts |= {f"{kind}.js": bundle.LOADER.replace("FILE", name), f"{kind}.css": bundle.built_style(kind)}
-    for name, text in (texts | later).items():
+    return texts, later
+
+
+def write(folder, texts):
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in texts.items():
         (folder / name).write_text(text, "utf8")
-        if name.endswith(".js") and name not in later:
+
+
+def add_scripts(app, pagename, templatename, context, doctree):
+    kinds = kinds_on(doctree) if doctree is not None else []
+    if not kinds:
+        return
+    texts, later = scripts_and_styles(kinds)
+    write(Path(app.outdir) / "_static" / "moving", texts | later)
+    for name in texts:
+        if name.endswith(".js"):
             app.add_js_file(f"moving/{name}", loading_method="defer")
     context["styles"] = [*context["styles"], *(f"moving/{name}" for name in texts if name.endswith(".css"))]
 
 
+def write_embedded(app, exception):
+    """A page for each figure alone, which others put into theirs."""
+    if exception or app.builder.format != "html" or "embedding" not in REGISTERED:
+        return
+    embedding = named(REGISTERED["embedding"])
+    texts, later = scripts_and_styles([*embedding.figures(), *named(REGISTERED["figures"]).BUILT])
+    write(Path(app.outdir) / "_static" / "moving", texts | later)
+    write(Path(app.outdir) / embedding.FOLDER, embedding.files())
+
+
+@cache
 def built(script):
     """The text of a script with all that it imports, those of npm's packages among it."""
     command = [NODE, ESBUILD, "--bundle", "--minify", "--format=iife", "--log-level=warning", script]
@@ -81,3 +103,4 @@ def setup(app):
     app.connect("config-inited", prefer_stills)
     app.connect("doctree-read", drop_widget_state)
     app.connect("html-page-context", add_scripts, priority=960)  # after page.py has set the styles
+    app.connect("build-finished", write_embedded, priority=900)  # before page.py makes the styles small

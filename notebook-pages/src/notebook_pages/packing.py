@@ -126,6 +126,28 @@ class Project:
         return Path(folder, self.wheel_name())
 
 
+class Ready:
+    """A project of which there is only the wheel; the same is asked of it as of a :class:`Project`."""
+
+    def __init__(self, file, packages):
+        self.file, self.packages = REPOSITORY / file, tuple(packages)
+        distribution, self._version = self.file.name.split("-")[:2]
+        self.name = distribution.replace("_", "-")
+
+    def version(self):
+        return self._version
+
+    def sources(self):
+        return [self.file]
+
+    def wheel_name(self):
+        return self.file.name
+
+    def build_wheel(self, folder):
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        return Path(shutil.copy(self.file, folder))
+
+
 def write_zip(target, files):
     """Write contents by name into a zip, always the same way."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
@@ -138,7 +160,12 @@ def write_zip(target, files):
 
 
 #: What the book names, its own project last.
-PROJECTS = [Project(one["project"], one["packages"], one.get("leave-out", ())) for one in REGISTERED.get("wheels", ())]
+PROJECTS = [
+    Ready(one["file"], one["packages"])
+    if "file" in one
+    else Project(one["project"], one["packages"], one.get("leave-out", ()))
+    for one in REGISTERED.get("wheels", ())
+]
 
 
 def build_wheels(folder):

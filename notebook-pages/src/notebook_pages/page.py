@@ -37,6 +37,7 @@ PAGE_SCRIPTS = (
     "copybutton.js",
     "scripts/sphinx-book-theme.js",
     "book.js",
+    "previews.js",
     "questions.js",
     "lecture.js",
     "scripts/pydata-sphinx-theme.js",

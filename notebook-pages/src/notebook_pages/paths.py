@@ -41,6 +41,11 @@ def named(place):
     return getattr(found, name) if name else found
 
 
+#: What may be done with the book, by what it is said of: ``{"Text": ["CC BY 4.0", "https://..."]}``; none is assumed.
+LICENCES = REGISTERED.get("licences", {})
+LICENCES_SAID = " ".join(f"{what}: {name}." for what, (name, _) in LICENCES.items())
+
+
 #: What the book's notebooks import of this repository: the folder of each package, by its name.
 PACKAGES = {
     Path(place).name: REPOSITORY / place for wheel in REGISTERED.get("wheels", ()) for place in wheel["packages"]

@@ -20,8 +20,7 @@ from bs4 import BeautifulSoup, Comment
 from . import fonts, tagged
 from .browser import open_browser
 from .mathematics import to_html
-from .offline import LICENCES
-from .paths import NODE_MODULES, WEBSITE, edition, moment_of_sources, parts
+from .paths import LICENCES_SAID, NODE_MODULES, WEBSITE, edition, moment_of_sources, parts
 from .spoken import spoken
 
 FACES = (
@@ -37,7 +36,7 @@ LONG = 14  # lines of code that need not stay on one page
 # What only a screen can do, or what stands in the way on paper: links to a place beside themselves, the
 # code that draws figures, controls, the list of links on the front page, and what a check says of a blank.
 ONLY_ON_SCREEN = (
-    "a.headerlink, script, details.hide, button, [hidden], .sd-container-fluid, .whole-book, "
+    "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, .whole-book, "
     ".output:has([data-outcome='not attempted'])"
 )
 WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
@@ -270,7 +269,7 @@ def title_page(front, title):
     return (
         f'<header class="title-page"><h1>{escape(title)}</h1><p class="question">{question.get_text()}</p>'
         f"{figure}{beginning}"
-        f"<p class='edition'>{escape(which.words)}<br>{link}Text: CC BY 4.0. Code: BSD 3-Clause.</p></header>"
+        f"<p class='edition'>{escape(which.words)}<br>{link}{LICENCES_SAID}</p></header>"
     )
 
 
@@ -328,7 +327,7 @@ def describe(pdf, title, author):
         said["dc:title"] = title
         said["dc:creator"] = [author]
         said["dc:language"] = {"en"}
-        said["dc:rights"] = LICENCES
+        said["dc:rights"] = LICENCES_SAID
         said["dc:description"] = which.words
         if which.date:
             said["dc:date"] = [which.date]

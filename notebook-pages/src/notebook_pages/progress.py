@@ -111,9 +111,6 @@ def add_scripts(app, pagename, templatename, context, doctree):
     has_table = next(doctree.findall(progress_table), None) is not None
     if has_table or str(app.env.doc2path(pagename)).endswith(".ipynb") and pagename != app.config.root_doc:
         app.add_js_file("progress.js", loading_method="defer", priority=400)  # before what uses it
-    if pagename.startswith("chapters/"):
-        context["lecture"] = True
-        app.add_js_file("lecture.js", loading_method="defer")
     if has_table:
         app.add_js_file("my-progress.js", loading_method="defer")
 

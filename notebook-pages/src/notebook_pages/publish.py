@@ -16,11 +16,9 @@ from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
 from .execution import STORED
-from .paths import edition
+from .paths import LICENCES, LICENCES_SAID, edition
 from .take_away import notebook_address
 
-LICENCE = "https://creativecommons.org/licenses/by/4.0/"
-CODE_LICENCE = "https://opensource.org/license/bsd-3-clause"
 LONGEST = 200  # characters of a description: more is not shown anywhere
 SHORTEST = 50
 #: What stands beside the text.
@@ -81,7 +79,7 @@ def write_head(app, pagename, templatename, context, doctree):
     context["shared_title"] = book if pagename == app.config.root_doc else f"{title} – {book}"
     context["shared_kind"] = "book" if pagename == app.config.root_doc else "article"
     context["edition"] = app.config.book_edition
-    context["licences"] = {"text": LICENCE, "code": CODE_LICENCE}
+    context["licences"] = LICENCES
     repository = context.get("theme_repository_url") or app.config.html_theme_options.get("repository_url") or ""
     context["repository"] = repository
     if repository and doctree is not None:
@@ -106,8 +104,8 @@ def outline(app):
     """The pages as a list in Markdown, with what each is about: for programs that read (https://llmstxt.org)."""
     env, root, address = app.env, app.config.root_doc, app.config.html_baseurl or ""
     lines = [f"# {app.config.html_title}", "", f"> {env.book_descriptions.get(root, '')}", ""]
-    licence = f"Text: CC BY 4.0, {app.config.author}. Code: BSD-3-Clause. Notebooks hold the whole text in Markdown."
-    lines += [licence, "", "## Pages", ""]
+    said = filter(None, [f"By {app.config.author}.", LICENCES_SAID, "Notebooks hold the whole text in Markdown."])
+    lines += [" ".join(said), "", "## Pages", ""]
     for page in in_order(env)[1:]:
         title = env.titles[page].astext()
         is_one = str(env.doc2path(page)).endswith(".ipynb")

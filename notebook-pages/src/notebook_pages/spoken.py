@@ -45,7 +45,7 @@ def parts(node):
 
 def bare(node):
     """The signs of ``node`` without blanks."""
-    return "".join(node.get_text().split()).replace("\u2061", "")
+    return re.sub("[\u2061-\u2064]", "", "".join(node.get_text().split()))  # signs that nobody sees
 
 
 def is_simple(node):

@@ -14,7 +14,7 @@ import nbformat
 
 from .markdown import MarkdownWriter
 from .packing import PROJECTS, write_zip
-from .paths import REGISTERED, REPOSITORY, named, pages
+from .paths import LICENCES_SAID, REGISTERED, REPOSITORY, named, pages
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
@@ -59,12 +59,12 @@ def packages_archive():
 def introduction(title):
     """What the notebook of a page says first, below its title, in a paragraph of one line."""
     if not PROJECTS:
-        return f"{first_words(title)} Text: CC BY 4.0. Code: BSD-3-Clause."
+        return f"{first_words(title)} {LICENCES_SAID}".rstrip()
     return (
         f"{first_words(title)} To run it, install the packages that it "
         f"imports: download `{packages_archive()}` from the page's menu, unpack it, and in its folder `packages` run "
-        f"`python -m pip install -r requirements.txt`. Text: CC BY 4.0. Code: BSD-3-Clause."
-    )
+        f"`python -m pip install -r requirements.txt`. {LICENCES_SAID}"
+    ).rstrip()
 
 
 def make_notebook(app, docname, doctree):
@@ -148,7 +148,10 @@ def pack_exercises(app, exception):
     sources = [path for project in PROJECTS for path in project.sources()]
     newest = max(path.stat().st_mtime for path in [*sources, *EXERCISES.glob("*.ipynb")])
     if not archive.exists() or archive.stat().st_mtime < newest:
-        named(REGISTERED["exercises"])(REPOSITORY, archive)
+        if (ready := REPOSITORY / REGISTERED["exercises"]).suffix == ".zip":
+            shutil.copyfile(ready, archive)
+        else:
+            named(REGISTERED["exercises"])(REPOSITORY, archive)
 
 
 def pack_data(app, exception):

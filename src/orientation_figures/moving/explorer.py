@@ -12,7 +12,6 @@ import traitlets
 from sympy.parsing.sympy_parser import parse_expr
 from sympy.printing.mathml import mathml
 
-from orientation._numbers_and_symbols import NUMBERS
 from orientation.direction_cosines import simple_dcm
 from orientation.euler_angles import (
     PROPER_EULER,
@@ -22,6 +21,7 @@ from orientation.euler_angles import (
     layout_of,
     lock_margin_formula,
 )
+from orientation.numbers_and_symbols import NUMBERS
 
 from ..style import STYLE
 from . import bundle

@@ -4,9 +4,9 @@ import math
 
 import traitlets
 
-from orientation._numbers_and_symbols import NUMBERS
 from orientation.direction_cosines import check_dcm
 from orientation.euler_angles import body_fixed_from_dcm, dcm_from_body_fixed, lock_margin_formula
+from orientation.numbers_and_symbols import NUMBERS
 
 from .figure import MovingFigure
 from .state import Numbers, Sequence

@@ -4,8 +4,8 @@ import math
 
 import traitlets
 
-from orientation._numbers_and_symbols import number_tuples
 from orientation.euler_angles import SEQUENCES
+from orientation.numbers_and_symbols import number_tuples
 
 
 class Numbers(traitlets.TraitType):

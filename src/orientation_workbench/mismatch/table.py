@@ -20,6 +20,7 @@ import functools
 import itertools
 
 from orientation import PROPER_EULER, SEQUENCES
+from orientation.mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
 
 from ..programs import PROGRAMS, expected_of
 from .spelling import whole_spelling
@@ -38,7 +39,7 @@ def _orders():
     known = {"wxyz": 0.0, "xyzw": 0.0, "wzyx": 1.1, "zyxw": 1.1, "xywz": 1.0}
     words = {
         "wxyz": "the scalar part stands first (w, x, y, z)",
-        "xyzw": "the scalar part stands last (x, y, z, w)",
+        "xyzw": f"{SCALAR_LAST} (x, y, z, w)",
     }
     for letters in itertools.permutations("wxyz"):
         order = "".join(letters)
@@ -57,7 +58,7 @@ def _sequences():
 def _places():
     words = {
         "123": "the angles are printed in the order of the turns",
-        "321": "the angles are printed in reverse, the last turn first",
+        "321": f"{REVERSED}, the last turn first",
     }
     ordinal = {"1": "first", "2": "second", "3": "third"}
     for digits in itertools.permutations("123"):
@@ -71,8 +72,7 @@ def _signs():
     ordinal = ("first", "second", "third")
     for signs in itertools.product("+-", repeat=3):
         negative = [ordinal[k] for k in range(3) if signs[k] == "-"]
-        which = " and the ".join(negative)
-        words = f"the sign of the {which} angle is reversed" if negative else "the signs are as they should be"
+        words = wrong_sign(*negative) if negative else "the signs are as they should be"
         yield choice("".join(signs), words, 0.2, len(negative))
 
 
@@ -130,9 +130,9 @@ SHARED = (("order", "xyzw"), ("axes of the turns", "space fixed"), ("unit", "deg
 
 #: The inverse orientation, in the words of what is pasted.
 INVERSE = {
-    "matrix": "the transpose: the orientation the other way round",
-    "quaternion": "the conjugate: the orientation the other way round (so is a JPL quaternion)",
-    "Euler angles": "the inverse: the orientation the other way round",
+    "matrix": TRANSPOSE,
+    "quaternion": f"{CONJUGATE} (so is a JPL quaternion)",
+    "Euler angles": "the inverse, the orientation the other way round",
     "rotation vector": "the turn in the other sense",
     "axis and angle": "the turn in the other sense",
 }

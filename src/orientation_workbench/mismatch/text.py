@@ -108,14 +108,14 @@ def _rows_of_text(text, name):
         text = bare
     text = _without_places(_decimal_points(text))
     if found := _NOT_A_NUMBER.search(text):
-        raise ValueError(f"the {name} side holds {found.group().strip()!r}, which is no number")
+        raise ValueError(f"the {name} side holds '{found.group().strip()}', which is no number")
     if found := _ARITHMETIC.search(text):
-        raise ValueError(f"the {name} side holds {found.group().strip()!r}: paste the numbers that it comes to")
+        raise ValueError(f"the {name} side holds '{found.group().strip()}': paste the numbers that it comes to")
     text = _sums(text)
     if not NUMBER.search(text):
-        shown = text.strip()[:40]
+        shown = " ".join(text.split())[:40]
         raise ValueError(
-            f"the {name} side holds no numbers: {shown!r}" if shown else f"the {name} side is empty: paste its numbers"
+            f"the {name} side holds no numbers: '{shown}'" if shown else f"the {name} side is empty: paste its numbers"
         )
     declared = {"unit": "degrees"} if _DEGREES.search(text) else {"unit": "radians"} if _RADIANS.search(text) else {}
     half = _half(NUMBER.findall(text))

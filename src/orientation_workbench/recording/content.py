@@ -120,6 +120,9 @@ def read_content(source, name=None, rate=None):
         groups += found
         unused += left
     chosen = _roles(groups)
+    for group in groups:
+        if group.called in ("gyroscope", "accelerometer", "magnetometer") and not np.ptp(group.values, axis=0).any():
+            remarks.append(f"{', '.join(group.names)} never change in {len(group.values)} rows")
     remarks += _with_gravity(chosen, groups)
     alone = set(chosen) == {"gyroscope"} and not chosen["gyroscope"].called
     if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
@@ -181,8 +184,19 @@ def _time(table):
                 precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
                 counts = bool(re.search(COUNTS, column.lower()))
                 candidates.append((called + precise + 0.5 * even - counts - 0.01 * k, k))
+    for k in range(len(table.columns) - 1) if not candidates else ():  # the same without headings
+        whole, rest = table.values[:, k], table.values[:, k + 1]
+        if np.ptp(whole) > 0 and (whole == whole.round()).all() and 0 <= rest.min() and 1e8 < rest.max() < 1e9:
+            time = whole - whole[0] + 1e-9 * rest
+            if np.mean(np.diff(time) > 0) > 0.97:
+                return k, time, f"{table.columns[k]} with {table.columns[k + 1]}, in s", False
     if not candidates:
-        return None, np.arange(len(table.values)), "there is no column of time", True
+        words = "there is no column of time"
+        for k, column in enumerate(table.columns):
+            steps = np.diff(table.values[:, k])
+            if re.search(TIME, column.lower()) and (steps < 0).any():
+                words += f": {column} goes back {int((steps < 0).sum())} times"
+        return None, np.arange(len(table.values)), words, True
     k = max(candidates)[1]
     column, values = table.columns[k], table.values[:, k]
     step = np.median(np.diff(values)[np.diff(values) > 0])
@@ -242,6 +256,14 @@ def _groups(table, time_column, time):
             groups.append(Group(kind, called, names, time[rows], table.values[np.ix_(rows, columns)]))
             taken.update(columns)
 
+    rates = [k for k in usable if re.search("roll|pitch|yaw", (name := table.columns[k].lower()))
+             and re.search(r"rate|gyr|omega|veloc|rad/s|deg/s|°/s|dps", name)]  # fmt: skip
+    around = [[k for k in rates if word in table.columns[k].lower()] for word in ("roll", "pitch", "yaw")]
+    letters = [[k for k in usable if re.fullmatch(rf"{one}\W*(?:[\[(].*)?", table.columns[k].lower())] for one in "pqr"]
+    for three in (around, letters):
+        if all(three):
+            add("vector", [places[0] for places in three], "gyroscope")
+    usable = [k for k in usable if k not in taken]
     stems = {}
     for k in usable:
         stem, axis = parts[k]

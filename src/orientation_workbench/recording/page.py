@@ -5,25 +5,29 @@ from html import escape
 from pathlib import Path
 
 from .bench import examine
-from .report import as_fragment, as_html, as_text
+from .report import CONVENTIONS, as_csv, as_fragment, as_html, as_text
 from .table import RecordingError
 
 #: Where the pages put what is dropped.
 DROPPED = "dropped"
+#: Samples of which a page can hold the corrected recording; for more there is the command.
+LONGEST = 30_000
 
 
 class Judged:
-    """A report that a notebook shows as a table with plots, and a link under which it can be saved.
+    """A report that a notebook shows as a table with plots, and links under which it and what it corrects are saved.
 
     Attributes
     ----------
     examined : Examined or None
     words : str
         What there is to say instead of a report.
+    convention : str
+        Of the orientation in the corrected recording.
     """
 
-    def __init__(self, examined=None, words=""):
-        self.examined, self.words = examined, words
+    def __init__(self, examined=None, words="", convention="wxyz"):
+        self.examined, self.words, self.convention = examined, words, convention
 
     def __repr__(self):
         return self.words if self.examined is None else as_text(self.examined)
@@ -32,12 +36,21 @@ class Judged:
         if self.examined is None:
             return f"<p>{escape(self.words)}</p>"
         fragment = as_fragment(self.examined)
-        page = base64.b64encode(as_html(self.examined, fragment).encode()).decode()
-        link = f'<a download="report.html" href="data:text/html;base64,{page}">Save this report as one page</a>'
-        return f"<p>{link}</p>{fragment}"
+        links = [_link("report.html", "text/html", as_html(self.examined, fragment), "Save this report as one page")]
+        if len(self.examined.time) <= LONGEST:
+            corrected = as_csv(self.examined, self.convention)
+            links.append(
+                _link("corrected.csv", "text/csv", corrected, f"Save the corrected recording ({self.convention})")
+            )
+        return f"<p>{' · '.join(links)}</p>{fragment}"
 
 
-def judged(source=DROPPED, rate=None):
+def _link(name, kind, text, words):
+    content = base64.b64encode(text.encode()).decode()
+    return f'<a download="{name}" href="data:{kind};base64,{content}">{words}</a>'
+
+
+def judged(source=DROPPED, rate=None, convention="wxyz"):
     """Put what was dropped, or a file of one's own, on the bench.
 
     Parameters
@@ -46,6 +59,8 @@ def judged(source=DROPPED, rate=None):
         A file, or a folder with files of one recording.
     rate : float, optional
         Samples per second, where the file only counts them.
+    convention : str
+        Of the orientation in the corrected recording: ``wxyz``, ``xyzw`` or ``yaw-pitch-roll``.
 
     Returns
     -------
@@ -57,6 +72,8 @@ def judged(source=DROPPED, rate=None):
     >>> judged('no such place')
     no recording yet
     """
+    if convention not in CONVENTIONS:
+        raise ValueError(f"there is no convention {convention!r}: it is {', '.join(CONVENTIONS)}")
     import matplotlib  # noqa: F401 - a page that does not hold it is asked for it here, not in the middle of the work
 
     path = Path(source)
@@ -65,6 +82,6 @@ def judged(source=DROPPED, rate=None):
         return Judged(words="no recording yet")
     name = ", ".join(one.name for one in files)
     try:
-        return Judged(examine(files if len(files) > 1 else files[0], name, rate))
+        return Judged(examine(files if len(files) > 1 else files[0], name, rate), "", convention)
     except RecordingError as error:
         return Judged(words=f"{name} cannot be judged: {error}")

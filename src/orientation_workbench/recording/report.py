@@ -256,7 +256,9 @@ def plots(examined):
         for one in examined.judgements:
             axes.plot(one.times, one.apart, linewidth=0.8, color="#1f5fbf")
             axes.plot(one.times, one.claims, "--", linewidth=1, color="#c62828")
-        axes.set(xlabel="time (s)", ylabel="tilt (°)", ylim=(0, None))
+        # At either end a run has seen little, and claims little: that would dwarf the rest.
+        usual = np.concatenate([each for one in examined.judgements for each in (one.apart, one.claims)])
+        axes.set(xlabel="time (s)", ylabel="tilt (°)", ylim=(0, 1.5 * np.percentile(usual, 98) + 1e-3))
         kept(
             figure,
             "Solid: by how much the filter run forwards and backwards differ in tilt. Dashed: how much they should by "

@@ -174,11 +174,13 @@ def _number(field, comma=False):
         return float("nan")
     if ":" in field:
         try:
-            return datetime.fromisoformat(field.replace("/", "-").replace("Z", "+00:00")).timestamp()
+            # Some write a colon before the milliseconds.
+            day = re.sub(r"(:\d\d:\d\d)[:_,](\d+)", r"\1.\2", field.replace("/", "-").replace("Z", "+00:00"))
+            return datetime.fromisoformat(day).timestamp()
         except ValueError:
-            clock = re.fullmatch(r"(\d+):(\d\d):(\d\d(?:[.,]\d+)?)", field)
+            clock = re.fullmatch(r"(\d+):(\d\d):(\d\d(?:[.,:]\d+)?)", field)
             if clock:
-                hours, minutes, seconds = (float(part.replace(",", ".")) for part in clock.groups())
+                hours, minutes, seconds = (float(part.replace(",", ".").replace(":", ".")) for part in clock.groups())
                 return 3600 * hours + 60 * minutes + seconds
     return None
 
@@ -215,7 +217,7 @@ def _table(rows, name, comma, numbers=None, columns=None):
         line, row = (sample or rows)[0]
         raise RecordingError(
             f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} columns of numbers, "
-            f"where a recording has three and more. Line {line} begins: {' '.join(row)[:60]!r}"
+            f"where a recording has eight rows and three columns at least. Line {line} begins: {' '.join(row)[:60]!r}"
         )
 
     def values(row):

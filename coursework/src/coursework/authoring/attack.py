@@ -24,7 +24,7 @@ import numpy as np
 
 from ..checking import sealing
 from ..checking.kinds import EXACT, EXACT_WIDTH, FAR, NEAR, PARTS, calls_for, sign_limit, tolerances
-from ..checking.kinds import _offsets as offsets_of
+from ..checking.kinds import offsets as offsets_of
 from ..checking.plugins import kinds, plugins
 from ..checking.points import points
 from ..checking.units import unit

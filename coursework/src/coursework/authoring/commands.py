@@ -1,5 +1,6 @@
-"""The commands of authors: ``coursework new``, ``release``, ``try``, ``selftest`` and ``wheels``."""
+"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``selftest`` and ``wheels``."""
 
+import shlex
 import sys
 from pathlib import Path
 
@@ -19,6 +20,11 @@ def add_commands(commands):
     ):
         release.add_argument(f"--{name}", type=Path, help=f"{says}, if not as course.toml says")
     release.add_argument("--no-archive", action="store_true", help="leave the archive for students out")
+    publish = commands.add_parser("publish", help="make a site: the exercises as pages that check themselves")
+    publish.add_argument("--site", type=Path, help="the folder to make; `site` beside the archive")
+    publish.add_argument(
+        "--room", action="store_true", help="also fetch all wheels that are needed, for a room without a network"
+    )
     trial = commands.add_parser("try", help="show a question as students will meet it, with every reply")
     trial.add_argument("name", metavar="NOTEBOOK/QUESTION", help="a question, or a notebook for all of its questions")
     wheels = commands.add_parser("wheels", help="write the packages of coursework, to be installed elsewhere")
@@ -58,6 +64,15 @@ def release(only, no_archive, **folders):
     if not no_archive:
         print(f"For students: {archive(course)}")
     print(*measure(course, names), sep="\n")
+
+
+def publish(site, room):
+    from .publish import publish as make
+
+    course = _course()
+    page = make(course, site or course.archive.with_name("site"), room)
+    print(f"The site: {page}")
+    print(f"To look at it: python -m http.server --directory {shlex.quote(str(page.parent))}")
 
 
 def wheels(folder):
@@ -118,6 +133,7 @@ COMMANDS = {
     for name, run in (
         ("new", new),
         ("release", release),
+        ("publish", publish),
         ("try", trial),
         ("selftest", selftest),
         ("wheels", wheels),

@@ -104,6 +104,7 @@ Exercises in notebooks that check themselves and hold no answers.
     python -m pip install -r requirements.txt
     coursework try first-steps/area      # what students will hear
     coursework release                   # makes exercises/ and build/exercises.zip
+    coursework publish                   # makes build/site, where notebook-pages is installed
     coursework selftest                  # tries every question, looks for leaks
     coursework grade SUBMISSIONS --out MARKS
 

@@ -195,7 +195,6 @@ def wheel(name, folder):
     patterns, needs, summary = DISTRIBUTIONS[name]
     root = Path(coursework.__file__).parent
     version = _own_version(root)
-    place = f"{name.replace('-', '_')}-{version}"
     files = {
         f"coursework/{path.relative_to(root).as_posix()}": path.read_bytes()
         for pattern in patterns
@@ -205,14 +204,18 @@ def wheel(name, folder):
     if "coursework/__init__.py" in files:
         text = files["coursework/__init__.py"].decode("utf8")
         files["coursework/__init__.py"] = VERSION.sub(f'__version__ = "{version}"', text).encode("utf8")
-    about = ABOUT.format(name=name, version=version, summary=summary) + "".join(
-        f"Requires-Dist: {one.format(version=version)}\n" for one in needs
-    )
-    files |= {
-        f"{place}.dist-info/METADATA": about.encode(),
+    command = "[console_scripts]\ncoursework = coursework.__main__:main\n" if name == "coursework-checks" else ""
+    return write_wheel(folder, name, version, summary, [one.format(version=version) for one in needs], files, command)
+
+
+def write_wheel(folder, name, version, summary, needs, files, entry_points):
+    """Write a wheel of plain files, by their names in it; the same contents give the same bytes."""
+    place = f"{name.replace('-', '_')}-{version}"
+    about = ABOUT.format(name=name, version=version, summary=summary)
+    files = files | {
+        f"{place}.dist-info/METADATA": (about + "".join(f"Requires-Dist: {one}\n" for one in needs)).encode(),
         f"{place}.dist-info/WHEEL": WHEEL.encode(),
-        f"{place}.dist-info/entry_points.txt": b"[console_scripts]\n"
-        + (b"coursework = coursework.__main__:main\n" if name == "coursework-checks" else b""),
+        f"{place}.dist-info/entry_points.txt": entry_points.encode(),
     }
     lines = [f"{name},sha256={_digest(content)},{len(content)}\n" for name, content in sorted(files.items())]
     record = f"{place}.dist-info/RECORD"

@@ -181,7 +181,7 @@ def _places(question, numbers, near):
     width = _width(question, len(numbers), near)
     return [
         _in_tolerances(number, absolute, relative) / width + offset
-        for number, offset in zip(numbers, _offsets(question["salt"], len(numbers)))
+        for number, offset in zip(numbers, offsets(question["salt"], len(numbers)))
     ]
 
 
@@ -194,7 +194,7 @@ def _in_tolerances(number, absolute, relative):
 
 
 @functools.lru_cache(256)
-def _offsets(salt, count):
+def offsets(salt, count):
     data = hashlib.shake_256(f"{salt} edges of the cells".encode()).digest(8 * count)
     return [int.from_bytes(data[8 * k : 8 * k + 8], "big") / MP.mpf(2) ** 64 for k in range(count)]
 
@@ -242,7 +242,7 @@ def _number(question, result):
     except NotSupported as error:
         raise Undecidable(f"The answer holds {error}, whose value is not worked out here.") from None
     except ValueError:
-        raise Fault("not real", "The answer has an imaginary part; what is asked for is real.") from None
+        raise Fault("not real", "The answer has an imaginary part; the question asks for something real.") from None
 
 
 def _imaginary_rest(question, result):
@@ -400,7 +400,7 @@ def _matrix(question, value):
 def _read_function(question, plain):
     value = plain["value"]
     if value[0] != "function":
-        raise Fault("shape", "A function is asked for: give its name, without calling it.")
+        raise Fault("shape", "The question asks for a function: give its name, without calling it.")
     inner = {**question, "kind": question["result"], "symbols": {}}
     if all(map(_blank, value[1])):
         if not value[2]:
@@ -565,7 +565,8 @@ def _unit_vector_fault(question, numbers):
         length = FUNCTIONS.norm(*numbers)
         if abs(length - 1) > slack(question):
             return Fault(
-                "not unit length", f"A unit vector is asked for; this one has length {length_in_words(length)}."
+                "not unit length",
+                f"The question asks for a unit vector; this one has length {length_in_words(length)}.",
             )
     return None
 
@@ -582,11 +583,11 @@ TRANSPOSED = {"transposed": ("the matrix is transposed, and its transpose has an
 SEVERAL = "More than one of these is not right."
 #: Where to begin with each kind of question.
 BEGIN = {
-    "expression": "Name what is known and what is asked for, and write down one equation that connects them.",
-    "vector": "Along which frame are the components asked for? Write the vector down where it is simplest.",
-    "matrix": "Take one entry and work it out alone; then ask which rule gives all the others.",
+    "expression": "Say what you know and what you are looking for, and write down one equation that connects the two.",
+    "vector": "Along which frame does the question want the components? Write the vector down where it is simplest.",
+    "matrix": "Take one entry and work it out by itself; then ask which rule gives all the others.",
     "choice": "Put each of the possibilities to the test on the simplest case that tells them apart.",
-    "words": "Take them one by one, and begin with those that you are sure of; find a test for the others.",
+    "words": "Take them one by one. Begin with those you are sure of, and find a test for the others.",
     "truth values": "Look for an example that breaks a claim; where there is none, look for the proof.",
     "measurement": "Work with the units as with the numbers: what do those that are given make together?",
     "order": "Find the first and the last; then compare two at a time.",
@@ -610,7 +611,7 @@ KINDS = {
     "measurement": Kind(
         begin=BEGIN["measurement"],
         entries=_measurement,
-        wrong="It is a number with a unit; the number, the unit or both are not the right ones.",
+        wrong="It is a number with a unit, but the number, the unit or both are wrong.",
         public=scale_of,
         mistakes=mistakes.of_measurement,
         messages=mistakes.OF_MEASUREMENTS,

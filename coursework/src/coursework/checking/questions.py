@@ -67,7 +67,9 @@ def notebook_questions(notebook, variant=0):
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
     text = next((file.read_text("utf8") for folder in places() if (file := folder / name).is_file()), None)
     if text is None and variant:
-        text = next((_fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()), None)
+        from .elsewhere import fetched
+
+        text = next((fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()), None)
     if text is None:
         return {}
     data = json.loads(text)
@@ -82,24 +84,6 @@ def notebook_questions(notebook, variant=0):
     if data["format"] == 3:
         return {name: {**about, "format": 3} for name, about in data["questions"].items()}
     return data["questions"]
-
-
-def _fetched(file, name):
-    """A file from where the pages lie, whose address follows upon that of Python's packages."""
-    import js
-    import pyodide_js
-
-    address = f"{pyodide_js.lockfileBaseUrl}{file.read_text('utf8')}{name}"
-    request = js.XMLHttpRequest.new()
-    try:
-        request.open("GET", address, False)
-        request.send()
-        if request.status == 200:
-            return request.responseText
-        why = f"the server says {request.status}"
-    except Exception as error:  # what the browser throws where there is no network
-        why = str(error)
-    raise RuntimeError(f"Your numbers could not be fetched from {address} ({why}). Is there a network?")
 
 
 def places():
@@ -257,7 +241,7 @@ def compare(name, question, plain, find):
         reading = read(question, plain)
         if kinds()[question["kind"]].by_a_person:
             words = len(reading.text.split())
-            said = f"A person reads this text of {words} {'word' if words == 1 else 'words'}, and decides."
+            said = f"A person will read this text of {words} {'word' if words == 1 else 'words'} and decide."
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
         reply = _compare(name, question, plain, reading, text, find) if find else _taken_down(name, question, reading)
@@ -360,7 +344,10 @@ def _not_known(name, question, plain, reading, find, content):
             name,
             "wrong",
             "rounded too far",
-            ["This agrees with the exact answer to about three digits, and an exact answer is asked for.", decimals],
+            [
+                "This agrees with the exact answer to about three digits, but the question asks for an exact answer.",
+                decimals,
+            ],
         )
     for (slip, why, turned), content in zip(others, found):
         case = _case_of(question, turned, content)
@@ -397,7 +384,8 @@ def _decimals(question, plain, reading):
     exact = question.get("tolerance") is None and reading.text is None
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
-    return "It holds decimal fractions; an exact answer is asked for: write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+    exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
+    return f"It holds decimal fractions, but the question asks for an exact answer: write {exact_forms}."
 
 
 def _few_digits(question, plain):

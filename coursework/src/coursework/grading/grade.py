@@ -220,8 +220,9 @@ def grade(
     with contextlib.ExitStack() as closing:
         closing.enter_context(store.locked())
         course = Course(solutions, assignments)
+        _demand_submissions(Path(submissions), course)
         try:
-            notebooks, refused = intake.take_in(submissions, course.assignments, roster, student)
+            notebooks, refused = intake.take_in(submissions, course.assignments, roster, student, store.folder)
         except intake.Unfit as error:
             raise NothingToGrade(str(error)) from None
         if not notebooks and not refused:
@@ -305,6 +306,14 @@ def grade(
     _say_guessable(questions, show)
     _say_other_numbers(store, work, questions, show)
     return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
+
+
+def _demand_submissions(submissions, course):
+    """Refuse the folder of the course, or of results, where that of the students' work is asked for."""
+    if course.folder.resolve().is_relative_to(submissions.resolve()):
+        raise NothingToGrade(f"{submissions} holds the notebooks with solutions: name the folder that was handed in.")
+    if (submissions / "records").is_dir() and (submissions / COURSE).is_file():
+        raise NothingToGrade(f"{submissions} holds results of grading: name the folder that was handed in.")
 
 
 def _say_whose(work, refused, roster, store, show):
@@ -485,7 +494,7 @@ def said_of_people(store, standing):
         if names:
             since = " changed since" if names is changed else ""
             whose = ", ".join(in_a_line(name, 60) for name in list(dict.fromkeys(names))[:MOST_SHOWN])
-            yield f"{len(names)} {what[len(names) > 1]}{since} ({whose}): coursework review {store.folder}, {shown!r}."
+            yield f"{len(names)} {what[len(names) > 1]}{since} ({whose}): `coursework review` shows them as {shown!r}."
 
 
 def _say_guessable(questions, show):

@@ -448,7 +448,8 @@ class _Answer(_Page):
             raise web.HTTPError(404)
         self.show_cluster(cluster, self.filters())
 
-    def show_cluster(self, cluster, filters, collision=None, comment="", why=""):
+    def show_cluster(self, cluster, filters, collision=None):
+        """Show an answer; after a collision with everything that was typed."""
         graded, name = self.graded, cluster.id
         graded.read()
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
@@ -480,8 +481,8 @@ class _Answer(_Page):
             pictures=pictures,
             collision=collision,
             seen=" ".join(one.id if one else NONE for one in seen),
-            comment=comment,
-            why=why,
+            typed={one: self.get_body_argument(one, "") for one in TYPED},
+            ticked=self.get_body_arguments("rubric"),
             decisions={one["student"]: graded.standing.decision(one, cluster.question) for one in cluster.members},
             points_of=lambda one: graded.standing.points(one, cluster.mark),
             earlier={one["student"]: graded.earlier(cluster, one) for one in cluster.members},
@@ -523,13 +524,17 @@ class _Answer(_Page):
         deed_of_form = {"decision": self.decide, "appeal": self.appeal, "worths": self.change_worths}
         if self.get_argument("form", "decision") not in deed_of_form:
             raise web.HTTPError(400, "no such form")
-        comment, why = (self.get_argument(one, "")[:LONGEST_WORDS].strip() for one in ("comment", "why"))
+        comment, why, *_ = typed = [self.get_argument(one, "").strip() for one in TYPED]
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         try:
+            if max(map(len, typed)) > LONGEST_WORDS:
+                raise Collision(f"This is longer than {LONGEST_WORDS} signs.")
             stays = deed_of_form[self.get_argument("form", "decision")](cluster, comment, why)
-        except Collision as error:
-            self.set_status(409)
-            self.show_cluster(cluster, filters, collision=error, comment=comment, why=why)
+        except (Collision, OSError) as error:
+            full = isinstance(error, OSError)
+            self.set_status(507 if full else 409)
+            shown = Collision(f"It could not be written: {error.strerror or error}.") if full else error
+            self.show_cluster(cluster, filters, collision=shown)
             return
         # On to the one that came next, though the list may be shorter now.
         later = order[order.index(name) + 1 :] if name in order else []
@@ -551,7 +556,7 @@ class _Answer(_Page):
         rubric = list(dict.fromkeys(line.strip() for line in self.get_arguments("rubric") if line.strip()))
         lines = {line: points for line, points, *_ in graded.lines(cluster, cluster.members[0])}
         made = []
-        if new := self.get_argument("new", "").strip()[:LONGEST_WORDS]:
+        if new := self.get_argument("new", "").strip():
             rubric.append(new)
             if self.get_argument("new_points", "").strip():
                 lines[new] = self.points_said(self.get_argument("new_points"), worth)
@@ -658,6 +663,8 @@ def _history(events, cluster, students):
     return said
 
 
+#: The fields of the page in which a person writes.
+TYPED = ("comment", "why", "words", "new", "new_points", "of")
 #: What the page says in place of a decision where there is none.
 NONE = "-"
 

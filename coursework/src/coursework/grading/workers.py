@@ -52,10 +52,12 @@ def side_by_side(tasks, number, prepare, errors=(), lost=None):
     Raises
     ------
     TaskLost
+    OSError
+        The system refused something in one of the processes.
     RuntimeError
         There was another error in one of the processes; the message shows it.
     """
-    tasks, kinds = iter(tasks), {kind.__name__: kind for kind in errors}
+    tasks, kinds = iter(tasks), {kind.__name__: kind for kind in (*errors, OSError)}
     workers = []
     try:
         for _ in range(number):
@@ -151,6 +153,10 @@ def _work(connection, prepare, asking):
                 say(done=do(message["task"]))
         except (EOFError, BrokenPipeError):
             raise
+        except OSError as error:  # a full disk, say
+            where = f": {error.filename}" if error.filename else ""
+            say(error=["OSError", f"{error.strerror or error}{where}", traceback.format_exc()])
+            connection.recv_bytes()
         except Exception as error:
             say(error=[type(error).__name__, str(error), traceback.format_exc()])
             connection.recv_bytes()  # it is ended from there

@@ -20,7 +20,7 @@ import yaml
 
 from ..live import runtime, scripts
 from ..live.cells import kinds_of_cells
-from ..paths import BUILD, fingerprint, moment_of_sources
+from ..paths import BUILD, LICENCES_SAID, fingerprint, moment_of_sources
 from ..take_away import first_words, is_notebook, notebook_address, notebook_pages
 
 HERE = Path(__file__).parent
@@ -36,7 +36,7 @@ KERNEL_WHEELS = LABEXTENSIONS / EXTENSIONS[0] / "static" / "pypi"
 KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
 NOTE = (
     "> This page of *{title}* runs in your browser. What you change is kept in this browser, on this machine; "
-    "*File > Download* gives you the notebook. Text: CC BY 4.0. Code: BSD-3-Clause."
+    "*File > Download* gives you the notebook." + (f" {LICENCES_SAID}" if LICENCES_SAID else "")
 )
 NUMERICAL = (
     "*From here on, cells of this page compute or draw with NumPy and Matplotlib. The next cell fetches them from "

@@ -33,6 +33,7 @@ RESULTS = REPOSITORY / "_build" / "runtime"
 HIDDEN = {"remove-cell", "remove-input", "remove_cell", "remove_input"}
 ALONE = """
 import json, sys
+from importlib import metadata
 
 sys.path.insert(0, sys.argv[1])
 import session
@@ -50,6 +51,11 @@ messages = []
 shell = session.start(lambda text: messages.append(json.loads(text)))
 OnlyThese.allowed = {"sympy", "mpmath", *sys.argv[2:], "IPython", "session", "plain_numpy", "__main__"}
 shell.lack({} if "everything" in sys.argv else OnlyThese())
+# Nor is anything installed in the page that others bring for it by an entry point.
+every = metadata.entry_points
+metadata.entry_points = lambda **wanted: metadata.EntryPoints(
+    [one for one in every(**wanted) if one.module.partition(".")[0] in OnlyThese.allowed]
+)
 told = []
 for number, code in enumerate(json.load(sys.stdin)):
     outcome = json.loads(shell.run(code, f"cell {number + 1}"))

@@ -51,7 +51,7 @@ function rowsOf(given, name, spelling) {
   text = sums(text, spelling);
   const found = text.match(spelling.number);
   if (!found) {
-    const start = text.trim().slice(0, 40);
+    const start = text.trim().replace(/\s+/g, ' ').slice(0, 40);
     throw new Error(start ? `the ${name} side holds no numbers: '${start}'` : `the ${name} side is empty: paste its numbers`);
   }
   const declared = has(spelling.degrees, text) ? { unit: 'degrees' } : has(spelling.radians, text) ? { unit: 'radians' } : {};
@@ -172,7 +172,11 @@ function quaternionAmong(rows, half) {
   return places.length === 1 || places[0] === 0 ? places[0] : null;
 }
 
-const short = (value, digits = 6) => String(Number(value.toPrecision(digits)));
+// As Python writes it: very large and very small numbers with a power of ten, of two digits.
+function short(value, digits = 6) {
+  const rounded = Number(value.toPrecision(digits)), size = Math.abs(rounded);
+  return size && (size >= 10 ** digits || size < 1e-4) ? rounded.toExponential().replace(/([-+])(\d)$/, '$10$2') : String(rounded);
+}
 const isUnit = (vectors, doubt) => vectors.every((vector) => Math.abs(length(vector) - 1) <= 2 * doubt + SLACK);
 
 function kindsOf(numbers, kind, doubt, name) {

@@ -5,6 +5,7 @@ import { AXES, IDENTITY, add, cross, dcmFromRotationVector, dot, length, multipl
   transpose, unit } from './mathematics.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
+import { carriedBy } from './address.js';
 
 // ---- elements and words --------------------------------------------------------------------------------
 
@@ -663,10 +664,44 @@ export function change(model, values) {
   model.save_changes();
 }
 
+// Whether plain data from anywhere has the form of what is known: numbers for numbers, as many as there were.
+function alike(value, known) {
+  if (typeof known === 'number') return Number.isFinite(value) && Math.abs(value) < 1e6;
+  if (Array.isArray(known)) {
+    const numbers = typeof known[0] === 'number';
+    return Array.isArray(value) && value.length <= 64 && (!numbers || value.length === known.length) && value.every((one) => alike(one, known[0]));
+  }
+  if (known === null || value === null || typeof value !== typeof known) return false;
+  if (typeof known === 'object') return Object.keys(value).every((key) => key in known && alike(value[key], known[key]));
+  return typeof known === 'boolean' || value.length <= 200;
+}
+
+// How a figure stands by the address of its page, which names it by its label, or by its kind where it is alone.
+function carriedTo(figure, name, state) {
+  try {
+    const carried = carriedBy(location.hash), label = figure.parentElement?.closest('figure[id], div[id]')?.id;
+    if (!carried || ![name, label].includes(carried.place)) return {};
+    return Object.fromEntries(Object.entries(carried.content).filter(([key, value]) => key in state && alike(value, state[key])));
+  } catch {
+    return {};   // an address that is not whole opens the figure as it is at first
+  }
+}
+
 export function start(name, render) {
   for (const figure of document.querySelectorAll(`.moving[data-figure="${name}"]:not([data-ready])`)) {
-    figure.model = new Model(JSON.parse(figure.dataset.state));
-    render({ model: figure.model, el: figure });
+    const state = JSON.parse(figure.dataset.state), carried = carriedTo(figure, name, state);
+    const begin = (values) => {
+      figure.model = new Model(values);
+      render({ model: figure.model, el: figure });
+    };
+    try {
+      begin({ ...state, ...carried });
+    } catch (error) {
+      // What no reader could have set is not shown.
+      if (!Object.keys(carried).length) throw error;
+      figure.querySelector('.live')?.remove();
+      begin(state);
+    }
     figure.dataset.ready = '';
   }
 }

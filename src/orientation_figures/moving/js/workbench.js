@@ -132,7 +132,7 @@ export function render({ model, el }) {
     const said = found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'), element('p', {}, `${capital(fault)}.`)];
     if (said.map((one) => one.outerHTML).join('') !== verdict.innerHTML) verdict.replaceChildren(...said);
     mended();
-    words.say(found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)].join(' ') : fault);
+    words.say(found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)].join(' ') : `${capital(fault)}.`);
     if (found) glideTo(drawnDcms(found, table, found.poses - 1));
   }
 

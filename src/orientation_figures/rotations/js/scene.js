@@ -243,7 +243,7 @@ export const CABLE = { wall: 2.05, start: 0.5 };
 export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 
 // Where the eye stands, where it is not where it always stands.
-export const EYES = { 'not-home': [8, 24], 'two-mirrors': [52, 30], 'between-poses': [70, 20] };
+export const EYES = { 'not-home': [8, 24], 'two-mirrors': [52, 30], 'between-poses': [64, 50] };
 
 // Where the angles and the rest go by themselves at a moment of a stop; start: the pose in which the stop was entered.
 export const COURSE = {
@@ -294,6 +294,10 @@ export function ways(part) {
   return { one: dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, part)),
     angles: frames(FROM.map((angle, k) => mix(angle, TO[k], part))).D };
 }
+
+// Both of them whole, in small steps: they are the same in every picture.
+let whole = null;
+export const wholeWays = () => { whole ??= Array.from({ length: 73 }, (_, k) => ways(k / 72)); return whole; };
 
 // How far a way turns in all, in radians: the sum of its small turns.
 export const turnedAlong = (list) => list.slice(1).reduce((sum, dcm, k) => sum + apart(list[k], dcm), 0);
@@ -437,7 +441,7 @@ const SHOWS = {
   },
   'between-poses'(scene, s, { D }) {
     const [from, to] = [FROM, TO].map((angles) => frames(angles).D), { one, angles } = ways(s.part);
-    const line = (kind) => Array.from({ length: 49 }, (_, k) => scale(1.5, ways(k / 48)[kind][1]));
+    const line = (kind) => wholeWays().map((both) => scale(1.5, both[kind][1]));
     scene.tube(line('one'), 0.02, 'accent');
     scene.tube(line('angles'), 0.016, 'B');
     for (const [rows, letter] of [[from, '0'], [to, '1']]) {

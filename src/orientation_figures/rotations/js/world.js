@@ -6,7 +6,7 @@ import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
 import { AT_READER, COURSE, CROOKED, EYES, FROM, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
-  project, sceneOf, turnedAlong, turnedFrame, ways, wrapped } from './scene.js';
+  project, sceneOf, turnedAlong, turnedFrame, wholeWays, wrapped } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
 
@@ -19,7 +19,7 @@ const DIALS = {
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
   together: ['both mirrors together', 0, 55, 1, 55, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
   whole: ['turn of the camera', 0, 720, 1, DEGREES, '°'], turn: ['turn of the camera', 0, 720, 1, DEGREES, '°'],
-  passed: ['cable passed round the camera', 0, 100, 1, 100, '%'], time: ['time', 0, 24, 0.1, 1, 's'],
+  passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, 24, 0.1, 1, 's'],
 };
 const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
@@ -109,7 +109,9 @@ class World {
     if (!this.sections.length || this.bound) return;
     const below = this.figure.getBoundingClientRect();
     // Beside the text the line at which one reads is in the middle of the window; below the figure it is lower.
-    const narrow = below.width > 0.8 * innerWidth, line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
+    // In the lecture it has the screen, and nobody reads.
+    const narrow = below.width > 0.8 * innerWidth && !document.documentElement.matches('.lecture');
+    const line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
     let now = this.sections[0], part = 0;
     for (const section of this.sections) {
       const { top, height } = section.place.getBoundingClientRect();
@@ -142,7 +144,7 @@ class World {
     this.showDials(stop);
     if (!first) this.tell(`${stop.before}`);
     this.passed = false;
-    if (!this.sections.length) this.play();
+    if ('play' in this.figure.dataset) this.play();
   }
 
   // Alone, in somebody else's page, a stop runs by itself once.
@@ -341,7 +343,7 @@ class World {
   }
 
   way(D) {
-    const needed = [0, 1].map((k) => turnedAlong(Array.from({ length: 97 }, (_, i) => ways(i / 96)[['one', 'angles'][k]])));
+    const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(wholeWays().map((both) => both[kind])));
     const { track, free } = this.state;
     if (!free) return `The one turn takes ${say(needed[0])}; the way in angles, red, turns the camera through ${say(needed[1])} in all.`;
     const left = apart(D, frames(TO).D), taken = turnedAlong(track);

@@ -16,6 +16,7 @@ import csv
 import datetime
 import getpass
 import hashlib
+import io
 import json
 import math
 import os
@@ -23,7 +24,7 @@ import secrets
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 from ..locks import lock
 from ..submissions.identity import decoded
@@ -467,7 +468,11 @@ class Ledger:
         Collision
             Somebody else took a step in the meantime.
         """
-        words = words.strip()[:LONGEST_WORDS]
+        words = words.strip()
+        if len(words) > LONGEST_WORDS:
+            raise ValueError(
+                f"This is longer than {LONGEST_WORDS} signs, and nothing of it is cut off: say it in fewer."
+            )
         if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
             raise ValueError(f"An appeal is raised, then under review or rejected, and this is {state!r}.")
         if not words and state != UNDER_REVIEW:
@@ -576,9 +581,10 @@ class Ledger:
                     raise Collision(f"Somebody else changed what “{one.line}” is worth in the meantime.")
 
     @contextlib.contextmanager
-    def _alone(self) -> Iterator[BinaryIO]:
+    def _alone(self) -> Iterator[io.FileIO]:
         """Keep other writers away, and know what they have written."""
-        with open(self.path, "ab+") as file:
+        # Without a buffer: what a full disk refused is not written once more when the file is closed.
+        with open(self.path, "ab+", buffering=0) as file:
             lock(file)
             file.seek(0)
             whole = file.read()
@@ -595,10 +601,15 @@ class Ledger:
             self.read()
             yield file
 
-    def _write(self, file: BinaryIO, events: Sequence[Event]) -> None:
-        file.write(b"".join(_line(one) for one in events))
-        file.flush()
-        os.fsync(file.fileno())
+    def _write(self, file: io.FileIO, events: Sequence[Event]) -> None:
+        lines, whole = memoryview(b"".join(_line(one) for one in events)), file.seek(0, os.SEEK_END)
+        try:
+            while lines:
+                lines = lines[file.write(lines) :]
+            os.fsync(file.fileno())
+        except OSError:
+            file.truncate(whole)  # who is told that it was not written finds nothing of it
+            raise
         self.events += events
 
     def merge(self, path: Path) -> tuple[list[Event], list[tuple[Decision, Decision]]]:
@@ -681,7 +692,7 @@ class Ledger:
         unused = []
         raised = {(*one.key, one.words) for one in self.events if isinstance(one, Appeal)}
         for number, row, fitting in _fitting_rows(path, records, "words"):
-            words = as_written(row.get("words", "")).strip()[:LONGEST_WORDS]
+            words = as_written(row.get("words", "")).strip()
             if not words:
                 continue
             if isinstance(fitting, str):
@@ -692,7 +703,7 @@ class Ledger:
                 continue
             try:
                 self.appeal(record, question, words)
-            except Collision as error:
+            except ValueError as error:
                 unused.append(f"line {number}: {error}")
         return unused
 
@@ -751,15 +762,14 @@ def events_in(path: Path) -> Iterator[Event]:
         for number, line in enumerate(file, 1):
             try:
                 yield _event(line)
-            except (ValueError, TypeError, KeyError) as error:
+            except NewerFormat as error:
+                raise ValueError(f"{path}, line {number}: {error}") from None
+            except (ValueError, TypeError, KeyError):
                 if not line.endswith("\n"):
                     return
-                said = str(error) if isinstance(error, NewerFormat) else f"this is no decision: {line[:80]!r}. "
                 raise ValueError(
-                    f"{path}, line {number}: {said}"
-                    if isinstance(error, NewerFormat)
-                    else f"{path}, line {number}: {said}Somebody changed the file: move the line into a file of its "
-                    "own, and look at that answer again."
+                    f"{path}, line {number}: this is no decision: {line[:80]!r}. Somebody changed the file: move "
+                    "the line into a file of its own, and look at that answer again."
                 ) from None
 
 
@@ -827,7 +837,8 @@ def _fitting_rows(
 def _rows(path: Path, column: str) -> Iterator[tuple[int, dict[str, str]]]:
     text = decoded(path.read_bytes())
     first = text.split("\n", 1)[0]
-    reader = csv.reader(text.splitlines(keepends=True), delimiter=max(",;\t", key=first.count))
+    # Not at every sign that ends a line somewhere: students choose some of the words, and would begin a line of theirs.
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     if column not in header or not ("id" in header or {"student", "question"} <= set(header)):
         raise ValueError(

@@ -7,6 +7,7 @@ knows whose they are: none of them is graded, and a person is asked.
 
 import csv
 import datetime
+import io
 import os
 import re
 import unicodedata
@@ -539,7 +540,8 @@ def _rows(path):
         raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
     text = decoded(text)
     first = text.split("\n", 1)[0]
-    reader = csv.reader(text.splitlines(), delimiter=max(",;\t", key=first.count))
+    # Not at every sign that ends a line somewhere: students choose their names, and would begin a line of theirs.
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:

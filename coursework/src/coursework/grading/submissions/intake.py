@@ -166,7 +166,7 @@ class Unfit(ValueError):
     """A file cannot be graded; the message says why."""
 
 
-def take_in(path, assignments=(), roster=None, student=None):
+def take_in(path, assignments=(), roster=None, student=None, out=None):
     """Read all that was handed in.
 
     Parameters
@@ -179,6 +179,8 @@ def take_in(path, assignments=(), roster=None, student=None):
         Who is in the course. What fits nobody in it, or several, is refused: a person must say whose it is.
     student : str, optional
         The one student who handed all of it in.
+    out : path, optional
+        The folder of results, which nobody handed in wherever it lies.
 
     Returns
     -------
@@ -186,7 +188,7 @@ def take_in(path, assignments=(), roster=None, student=None):
     refused : list of Refused
     """
     found, refused, files, repositories = [], [], [], set()
-    for name, when, read in _files(os.fspath(path), refused, repositories):
+    for name, when, read in _files(os.fspath(path), refused, repositories, out):
         if len(files) >= MOST_FILES:
             refused.append(Refused(name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."))
             break
@@ -427,16 +429,16 @@ class _Folder:
         os.close(self.handle)
 
 
-def _files(path, refused, repositories):
+def _files(path, refused, repositories, out=None):
     """Give the name of each file, its time, and a function that reads it: in a fixed order.
 
     The names of folders that are repositories of Git are added to ``repositories``.
     """
     if os.path.isdir(path):
-        yield from _files_of_folder(path, refused, repositories)
+        yield from _files_of_folder(path, refused, repositories, out)
     elif zipfile.is_zipfile(path):
         yield from _files_of_archive(path, refused, repositories)
-    elif path.lower().endswith(".zip"):
+    elif path.lower().endswith(".zip") and os.path.exists(path):
         raise Unfit(f"{path} is no zip archive, or a damaged one.")
     elif os.path.exists(path):
         folder, name = os.path.split(os.path.abspath(path))
@@ -446,7 +448,10 @@ def _files(path, refused, repositories):
         raise Unfit(f"There is nothing at {path}.")
 
 
-def _files_of_folder(root, refused, repositories):
+def _files_of_folder(root, refused, repositories, out=None):
+    results = os.stat(out) if out and os.path.isdir(out) else None
+    if results and os.path.samestat(results, os.stat(root)):
+        raise Unfit(f"{root} holds what was handed in, and cannot hold the results, too: name another folder.")
     # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
     top = _Folder(root)
     for folder, folders, files, handle in os.fwalk(".", dir_fd=top.handle, follow_symlinks=False):
@@ -467,6 +472,8 @@ def _files_of_folder(root, refused, repositories):
                 refused.append(Refused(_text(full), "", "This is a link to another place. It was not followed."))
             elif stat.S_ISREG(about.st_mode):
                 yield _text(full), about.st_mtime_ns, lambda full=full: _read_below(top.handle, full)
+            elif results and os.path.samestat(results, about):
+                folders.remove(name)
             elif not stat.S_ISDIR(about.st_mode):
                 refused.append(Refused(_text(full), "", "This is no file but a device or a channel."))
         folders[:] = [name for name in folders if not _is_litter(name)]

@@ -13,8 +13,9 @@ a browser, the result is a :class:`~orientation._plain_arrays.PlainArray`. Batch
 import functools
 import math
 import numbers
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 from ._plain_arrays import PlainArray
 
@@ -31,6 +32,24 @@ class SymbolsNotPossible(TypeError):
 
 class WrongShape(ValueError):
     """Something has a shape that a function cannot take."""
+
+
+class Guard(NamedTuple):
+    """What a formula asks of numbers before it is applied to them.
+
+    Attributes
+    ----------
+    size : int
+        How many components it looks at, from the first.
+    excess : callable
+        ``excess(functions, *components)`` is at most :data:`TOLERANCE` for valid input.
+    explain : callable
+        ``explain(components, where)`` raises the error that says what is wrong.
+    """
+
+    size: int
+    excess: Callable[..., Any]
+    explain: Callable[[list[float], str], None]
 
 
 def is_symbolic(value):
@@ -55,9 +74,7 @@ def evaluate(formula, shape, *arguments, guard=None, symbols=True):
         Shape of one result.
     arguments : tuples ``(name, value, shape)``
         What the caller was given, and the shape of one item of it.
-    guard : tuple ``(count, excess, explain)``, optional
-        ``excess`` takes the first ``count`` components and gives a number that is at most
-        :data:`TOLERANCE` for valid input; ``explain(components, where)`` says what is wrong.
+    guard : Guard, optional
     symbols : bool
         False for a formula that needs numbers, to choose its branch by their sizes.
     """
@@ -134,20 +151,19 @@ def _evaluate_symbols(formula, shape, arguments, guard):
 
 
 def _guard_exact_numbers(components, guard):
-    count, excess, explain = guard
     try:
-        numbers = [float(entry) for entry in components[:count]]
+        numbers = [float(entry) for entry in components[: guard.size]]
     except TypeError:
         return  # symbols: whether they are valid depends on what will be put in for them
-    if not excess(NUMBERS, *numbers) <= TOLERANCE:
-        explain(numbers, "")
+    if not guard.excess(NUMBERS, *numbers) <= TOLERANCE:
+        guard.explain(numbers, "")
 
 
 def _evaluate_numbers(formula, shape, components, guard):
     if guard:
-        count, excess, explain = guard
-        if not excess(NUMBERS, *components[:count]) <= TOLERANCE:
-            explain([float(entry) for entry in components[:count]], "")
+        looked_at = components[: guard.size]
+        if not guard.excess(NUMBERS, *looked_at) <= TOLERANCE:
+            guard.explain([float(entry) for entry in looked_at], "")
     result = formula(NUMBERS, *components)
     if not shape:
         return result[0]
@@ -178,13 +194,12 @@ def _evaluate_batch(formula, shape, arrays, arguments, guard):
     for start in range(0, len(result), BLOCK):
         components = [column for array in flat for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)]
         if guard:
-            count, excess, explain = guard
             with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
-                size = excess(functions, *components[:count])
+                size = guard.excess(functions, *components[: guard.size])
             if not numpy.all(size <= TOLERANCE):
                 worst = int(numpy.argmax(size))
                 index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
-                explain([float(column[worst]) for column in components[:count]], f" (item {index})")
+                guard.explain([float(column[worst]) for column in components[: guard.size]], f" (item {index})")
         for column, values in enumerate(formula(functions, *components)):
             result[start : start + BLOCK, column] = values
         result[start : start + BLOCK] += 0.0

@@ -1,0 +1,82 @@
+"""What happens to whoever is in a hurry: the wrong folder, a full disk, half a download; it is said, in a sentence."""
+
+import errno
+import io
+import os
+
+import pytest
+from grading_class import handed_in, put, write_sources
+from test_review import Served, first_of
+
+from coursework.__main__ import main
+from coursework.grading.execution.sandbox import Limits
+from coursework.grading.grade import NothingToGrade, grade
+from coursework.grading.judging import ledger as judging
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.store import Store
+from coursework.grading.submissions.identity import Roster
+
+LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+
+
+@pytest.fixture
+def course(tmp_path):
+    (tmp_path / "course").mkdir()
+    write_sources(tmp_path / "course" / "solutions")
+    for student in ("ada", "ben"):
+        put(tmp_path / "in", student, handed_in(sum="sine = 1.0001*sm.sin(alpha + beta)"))
+    return tmp_path
+
+
+def graded(course, submissions, out, **more):
+    options = {"solutions": course / "course" / "solutions", "limits": LIMITS, "show": io.StringIO(), **more}
+    return grade(submissions, out, **options)
+
+
+def test_results_are_nobody_s_work(course):
+    """They lay among what was handed in, and the second run refused each of their files."""
+    assert graded(course, course / "in", course / "in" / "marks")["refused"] == 0
+    assert graded(course, course / "in", course / "in" / "marks") == {"graded": 0, "kept": 2, "refused": 0}
+    with pytest.raises(NothingToGrade, match="cannot hold the results, too"):
+        graded(course, course / "in", course / "in")
+    with pytest.raises(NothingToGrade, match="holds results of grading"):
+        graded(course, course / "in" / "marks", course / "out")
+    with pytest.raises(NothingToGrade, match="holds the notebooks with solutions"):
+        graded(course, course / "course", course / "out")
+    with pytest.raises(NothingToGrade, match="There is nothing at .*none.zip"):
+        graded(course, course / "none.zip", course / "out")
+
+
+def full(*arguments, **options):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_a_full_disk_is_said_in_a_sentence_and_the_next_run_goes_on(course, monkeypatch, capsys):
+    command = ["grade", str(course / "in"), "--out", str(course / "out"), "--solutions",
+               str(course / "course" / "solutions")]  # fmt: skip
+    with monkeypatch.context() as patched:
+        patched.setattr(Store, "save", full)
+        with pytest.raises(SystemExit, match="coursework grade: No space left on device") as found:
+            main(command)
+    assert "Traceback" not in str(found.value) + capsys.readouterr().err
+    main(command)
+    assert {record["points"] for record in Store(course / "out").all()} == {5}
+
+
+def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypatch):
+    graded(course, course / "in", course / "out")
+    with Served(course / "out", grader="Ann") as served:
+        cluster, seen = first_of(served), served.seen(first_of(served))
+        with monkeypatch.context() as patched:
+            patched.setattr(judging.os, "fsync", full)
+            assert served.decide(cluster, "credit=1&comment=Kept", seen).status == 507
+        assert Ledger(course / "out").decisions == []
+        assert served.decide(cluster, "credit=1", seen).status == 303
+    assert Ledger(course / "out").decisions
+
+
+def test_a_name_begins_no_line_of_a_table(tmp_path):
+    """Some signs end a line for Python and for no spreadsheet: a student's own name could hold one."""
+    roster = "student,name,email\neve,Eve\u2028ada,Eve,eve@uni.example\nben,Ben\x85,b@uni.example\n"
+    (tmp_path / "roster.csv").write_text(roster, "utf8")
+    assert set(Roster(tmp_path / "roster.csv").people) == {"eve", "ben"}

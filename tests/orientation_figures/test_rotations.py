@@ -1,0 +1,354 @@
+"""The essay's world: its mathematics against the book's own, its stills, and the page as a reader meets it."""
+
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+from test_site import violations
+
+from orientation import (
+    SEQUENCES,
+    axis_angle_from_dcm,
+    body_fixed_from_dcm,
+    dcm_from_axis_angle,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    interpolate_quaternions,
+    quaternion_from_dcm,
+)
+from orientation_figures.moving import bundle
+from orientation_figures.moving.address import fragment_of
+from orientation_figures.rotations import Stop, painter, scenes
+from tools import rotations as written_down
+
+STILLS = {still["id"]: still for still in scenes()["stills"]}
+FROM, TO = np.radians((-80, 60, -30)), np.radians((100, 65, 40))
+
+
+@cache
+def tried():
+    """What the page's scripts make of two moments of each stop."""
+    return json.loads(written_down.written("--tried"))
+
+
+def test_what_is_written_down_is_what_the_page_shows():
+    fresh = json.loads(written_down.written())
+    kept = scenes()
+    assert [still["id"] for still in fresh["stills"]] == list(STILLS)
+    for one, other in zip(fresh["stills"], kept["stills"]):
+        assert len(one["items"]) == len(other["items"]), f"{one['id']}: run `python -m tools.rotations`"
+        for shape, known in zip(one["items"], other["items"]):
+            assert shape[0] == known[0] and shape[5] == known[5]
+            for k in (1, 2, 3, 4, 6):
+                assert np.allclose(shape[k], known[k], atol=2e-3), one["id"]
+
+
+@pytest.mark.parametrize("number", range(32))
+def test_every_frame_of_every_stop_is_that_of_the_book(number):
+    """The arrows of all four frames, at two moments of each stop, from the state alone."""
+    case = tried()["tried"][number]
+    state, frames = case["state"], {name: np.array(rows) for name, rows in case["frames"].items()}
+    psi, theta, phi = state["angles"]
+    assert frames["A"] == pytest.approx(np.eye(3))
+    for rows in frames.values():
+        assert rows @ rows.T == pytest.approx(np.eye(3), abs=1e-9) and np.linalg.det(rows) == pytest.approx(1)
+    D = frames["D"]
+    # However it came about, the machine can hold the camera so: its three joints fit.
+    for inner, outer, axis in (("B", "A", 2), ("C", "B", 0), ("D", "C", 1)):
+        assert frames[inner][axis] == pytest.approx(frames[outer][axis], abs=1e-9)
+    stop = case["id"]
+    if stop == "one-turn":
+        start = dcm_from_body_fixed(state["start"], "zxy")
+        axis, angle = axis_angle_from_dcm(start)
+        expected = dcm_from_axis_angle(axis, angle * (1 - state["part"]))
+    elif stop == "four-numbers":
+        axis = np.array((0.5, 0.35, 0.8)) / np.linalg.norm((0.5, 0.35, 0.8))
+        half = state["whole"] / 2
+        expected = dcm_from_quaternion(np.array((np.cos(half), *np.sin(half) * axis)))
+    elif stop == "not-home":
+        expected = dcm_from_axis_angle(np.array((0.0, 1, 0)), state["turn"])
+    elif stop == "between-poses":
+        ends = [quaternion_from_dcm(dcm_from_body_fixed(pose, "zxy")) for pose in (FROM, TO)]
+        ends[1] = ends[1] * np.sign(ends[0] @ ends[1])
+        expected = dcm_from_quaternion(interpolate_quaternions(*ends, state["part"]))
+    elif stop == "it-moves":
+        return  # the test of drift below
+    else:
+        expected = dcm_from_body_fixed((psi, theta, phi), "zxy")
+    assert D == pytest.approx(expected, abs=1e-9)
+
+
+def test_what_the_text_says_is_true():
+    # Stop 8: no two of the twelve look the same way.
+    dcms = [dcm_from_body_fixed(np.radians((35, 50, 65)), sequence) for sequence in SEQUENCES]
+    apart = [axis_angle_from_dcm(b @ a.T)[1] for k, a in enumerate(dcms) for b in dcms[:k]]
+    assert len(apart) == 66 and min(apart) > np.radians(5)
+    # Stop 9: at 90 degrees what the first motor gives, the third takes back.
+    locked = [dcm_from_body_fixed((psi, np.pi / 2, 0.4 - psi), "zxy") for psi in np.linspace(-3, 3, 7)]
+    assert np.ptp(locked, axis=0) == pytest.approx(np.zeros((3, 3)), abs=1e-12)
+    # Near it, a star that passes half a degree beside the zenith sends the first motor round nearly half a turn.
+    path = np.array([(x, np.radians(0.5), 1) for x in np.linspace(-0.3, 0.3, 101)])
+    heading = np.unwrap(np.arctan2(-path[:, 0], path[:, 1]))
+    assert np.radians(170) < abs(heading[-1] - heading[0]) < np.pi
+    # Stop 7: the second triple.
+    first = np.array((0.4, 0.6, 0.1))
+    second = first * (1, -1, 1) + np.pi
+    assert dcm_from_body_fixed(second, "zxy") == pytest.approx(dcm_from_body_fixed(first, "zxy"))
+    # Stop 14: the way in angles turns farther than the one turn.
+    poses = [dcm_from_body_fixed(FROM + part * (TO - FROM), "zxy") for part in np.linspace(0, 1, 200)]
+    way = sum(axis_angle_from_dcm(b @ a.T)[1] for a, b in zip(poses, poses[1:]))
+    assert way > 1.5 * axis_angle_from_dcm(poses[-1] @ poses[0].T)[1]
+
+
+def test_the_mirrors_turn_by_twice_their_angle():
+    """The arrows that stop 11 draws, as its shapes have them."""
+    items = STILLS["two-mirrors"]["items"]
+    tip = {}
+    for text, _, _, _, at in STILLS["two-mirrors"]["labels"]:
+        tip[text] = np.array(at)
+    axis = tip[r"\hat{e}"] / np.linalg.norm(tip[r"\hat{e}"])
+    flat = [tip[k] - axis * (tip[k] @ axis) for k in "02"]
+    turn = np.arctan2(axis @ np.cross(*flat), flat[0] @ flat[1])
+    panes = [np.reshape(item[1], (-1, 3)) for item in items if item[0] == "ribbon"]
+    edges = [pane[2] - pane[0] for pane in panes]
+    gap = np.arccos(abs(edges[0] @ edges[1]) / np.prod(np.linalg.norm(edges, axis=1)))
+    assert turn == pytest.approx(2 * gap, abs=2e-3)
+    assert np.linalg.norm(tip["0"]) == pytest.approx(np.linalg.norm(tip["2"]), abs=1e-3)
+
+
+def test_the_cable_hangs_on_camera_and_wall_and_after_two_turns_it_is_flat():
+    ribbons = [np.reshape(item[1], (-1, 2, 3)) for item in STILLS["not-home"]["items"] if item[0] == "ribbon"]
+    across = ribbons[0][:, 0] - ribbons[1][:, 1]
+    assert np.allclose(across[0], across[-1], atol=1e-2), "after one turn both ends stand as they did"
+    assert np.linalg.norm(across - across[0], axis=1).max() > 0.3, "and between them it is twisted"
+
+
+def test_paper_and_page_see_every_point_at_the_same_place():
+    world = scenes()
+    paper = painter.Paper(STILLS["which-way"]["view"], world)
+    for point, (x, y, depth) in tried()["seen"]:
+        place, far = paper.place(point)
+        assert place == pytest.approx(np.array((x, -y)) * world["size"] / 2, abs=0.05) and far == pytest.approx(
+            depth, abs=1e-3
+        )
+
+
+@pytest.mark.parametrize("name", STILLS)
+def test_still(name):
+    stop = Stop(name)
+    svg = stop.svg()
+    assert len(svg) < 60_000 and svg.count("<path") > 20
+    assert len(painter.words(stop.still).split()) > 6
+    # Labels lie on the sheet, and none on another.
+    places = np.array([label[3] for label in stop.still["labels"]])
+    assert np.abs(places).max() < scenes()["size"] / 2
+    for k, place in enumerate(places):
+        assert (np.abs(places[:k] - place).max(axis=1) > 7).all()
+
+
+def test_a_stop_that_there_is_not():
+    with pytest.raises(ValueError, match="'loock' is no stop"):
+        Stop("loock")
+
+
+# ---- the page ------------------------------------------------------------------------------------------------
+
+PAGE = """<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>The essay</title>
+<link rel="icon" href="data:,"><style>{style} body {{ margin: 0; font: 16px sans-serif; }}
+main {{ display: grid; grid-template-columns: 200px 1fr; }} section {{ grid-column: 1; min-height: 700px; }}
+.world {{ grid-column: 2; grid-row: 1 / span 20; position: sticky; top: 0; height: 380px; align-self: start; }}
+</style></head><body><main><h1>The essay</h1>{gimbal}{sections}</main><script src="world.js"></script></body></html>"""
+
+
+@pytest.fixture(scope="module")
+def essay(tmp_path_factory):
+    from notebook_pages.moving import built
+    from orientation_figures.rotations import Gimbal, style
+    from orientation_figures.style import STYLE
+
+    folder = tmp_path_factory.mktemp("essay")
+    (folder / "world.js").write_text(built(bundle.BUILT["rotations"]), "utf8")
+    sections = "".join(f'<section id="{name}"><h2>{name}</h2><i data-stop="{name}"></i></section>' for name in STILLS)
+    text = PAGE.format(
+        style=STYLE + style() + bundle.built_style("rotations"),
+        gimbal=Gimbal("which-way")._repr_html_(),
+        sections=sections,
+    )
+    (folder / "index.html").write_text(text, "utf8")
+    return folder / "index.html"
+
+
+@pytest.fixture
+def open_essay(browser, essay):
+    contexts, faults = [], []
+
+    def open_page(fragment="", **options):
+        # Without motion every picture is the last one: nothing to wait for, where graphics are drawn by the processor.
+        context = browser.new_context(viewport={"width": 640, "height": 420}, reduced_motion="reduce", **options)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.goto(essay.as_uri() + fragment)
+        page.locator(".world:is([data-ready], [data-stills])").wait_for()
+        if page.locator(".world[data-stills]").count():
+            pytest.skip("this browser has no WebGL")
+        rest(page)
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert faults == []
+
+
+def rest(page):
+    page.wait_for_function("() => !document.querySelector('.world').world.frame")
+
+
+def scroll_to(page, name):
+    page.evaluate("name => document.getElementById(name).scrollIntoView()", name)
+    page.wait_for_function("name => document.querySelector('.world').dataset.state === name", arg=name)
+    rest(page)
+
+
+def camera(page):
+    return np.array(page.evaluate("document.querySelector('.world').world.picture.frames.D"))
+
+
+def test_the_text_moves_the_gimbal_and_the_reader_may_take_it(open_essay):
+    page = open_essay()
+    assert violations(page) == []
+    for name in ("two-motors", "lock", "not-home"):
+        scroll_to(page, name)
+        assert page.locator(".world .look").inner_text()
+    assert not page.evaluate("document.querySelector('.world').world.state.free")
+    scroll_to(page, "three-are-enough")
+    canvas = page.locator(".world canvas")
+    canvas.focus()
+    page.keyboard.press("Home")
+    rest(page)
+    before = camera(page)
+    page.keyboard.press("ArrowUp")
+    rest(page)
+    # Up by five degrees: the line of sight rises, and stays in its upright plane.
+    angles = [np.degrees(body_fixed_from_dcm(dcm, "zxy")) for dcm in (before, camera(page))]
+    assert angles[1] - angles[0] == pytest.approx((0, 5, 0), abs=0.1)
+    page.keyboard.press(".")
+    rest(page)
+    assert "rolled 5 degrees to the right" in page.locator(".world .look").inner_text().replace(
+        "On the star. Now level it: ", ""
+    )
+    page.wait_for_function("document.querySelector('.world [role=status]').textContent.length > 20")
+    scroll_to(page, "same-numbers")
+    assert np.degrees(body_fixed_from_dcm(camera(page), "zxy")) == pytest.approx((35, 50, 65), abs=0.2)
+
+
+def test_a_drag_turns_the_front_the_way_the_pointer_goes(open_essay):
+    page = open_essay()
+    box = page.locator(".world canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + 0.42 * box["height"]
+    view = np.array(page.evaluate("document.querySelector('.world').world.picture.view"))
+    before = camera(page) @ view.T  # along right, up and towards the eye
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y, steps=3)
+    page.mouse.up()
+    rest(page)
+    after = camera(page) @ view.T
+    lens = after[1] - before[1]
+    assert lens[0] > 0.15 and abs(lens[1]) < 0.08, "the lens, which looked at the reader, has gone to the right"
+
+
+def test_an_address_opens_the_gimbal_as_it_was(open_essay):
+    page = open_essay()
+    scroll_to(page, "lock")
+    page.locator(".world canvas").focus()
+    for key in ("ArrowUp", "ArrowLeft", ","):
+        page.keyboard.press(key)
+    rest(page)
+    kept, content = camera(page), page.evaluate("document.querySelector('.world').world.content()")
+    other = open_essay(fragment_of("rotations", content))
+    assert other.locator(".world").get_attribute("data-state") == "lock"
+    assert camera(other) == pytest.approx(kept, abs=1e-3)
+    # What somebody has made up is not taken.
+    for content in (
+        {"stop": "lock", "angles": ["x", 0, 0]},
+        {"stop": "nowhere"},
+        {"stop": "lock", "angles": [1e9, 0, 0]},
+    ):
+        page = open_essay(fragment_of("rotations", content))
+        assert not page.evaluate("document.querySelector('.world').world.state.free")
+
+
+# ---- in somebody else's page ---------------------------------------------------------------------------------
+
+PLAIN = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Mine</title><link rel="icon" href="data:,">
+</head><body><h1>My page</h1>{frame}
+<script src="book/embed/orientation-figure-1.js"></script><orientation-figure-1 figure="gimbal" state="{state}">
+</orientation-figure-1></body></html>"""
+
+
+def test_one_line_puts_a_figure_into_any_page(browser, tmp_path):
+    """A frame, and an element that leaves no other name: both show the figure as the address says."""
+    from notebook_pages.moving import scripts_and_styles
+    from orientation_figures.moving import embedding
+
+    texts, later = scripts_and_styles(["gimbal"])
+    for folder, files in (("_static/moving", texts | later), (embedding.FOLDER, embedding.files())):
+        (tmp_path / "book" / folder).mkdir(parents=True)
+        for name, text in files.items():
+            (tmp_path / "book" / folder / name).write_text(text, "utf8")
+    state = fragment_of("gimbal", {"angles": [0.5, 0.25, -0.125], "sequence": "zyx"})
+    text = PLAIN.format(frame=embedding.line("book", "gimbal", state), state=state)
+    (tmp_path / "index.html").write_text(text, "utf8")
+    page = browser.new_page()
+    faults = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.goto((tmp_path / "index.html").as_uri())
+    names = "() => Object.keys(window).filter((name) => !/^[0-9]/.test(name)).sort().join()"
+    for place in ("body > iframe", "orientation-figure-1 iframe"):
+        frame = page.frame_locator(place)
+        frame.locator(".moving[data-ready]").wait_for()
+        assert frame.get_by_label("psi in degrees", exact=True).input_value() == "28.65"
+        assert frame.get_by_label("Sequence").input_value() == "zyx"
+    height = "document.querySelector('orientation-figure-1 iframe').style.height"
+    page.wait_for_function(f"{height} !== '600px'")
+    (tmp_path / "empty.html").write_text("<!doctype html><title>Mine</title>", "utf8")
+    empty = browser.new_page()
+    empty.goto((tmp_path / "empty.html").as_uri())
+    assert page.evaluate(names) == empty.evaluate(names)
+    # What nobody could have set is left aside.
+    fragment = fragment_of("gimbal", {"angles": [1, "x", 2], "sequence": "abc"})
+    page.goto((tmp_path / "book/embed/gimbal.html").as_uri() + fragment)
+    page.locator(".moving[data-ready] .live").wait_for()
+    assert page.get_by_label("psi in degrees", exact=True).input_value() == "15"
+    assert faults == []
+    page.close()
+    empty.close()
+
+
+PHONE = """angles => {
+  for (const [alpha, beta, gamma] of angles) {
+    const says = { alpha, beta, gamma, absolute: true };
+    window.dispatchEvent(new DeviceOrientationEvent('deviceorientationabsolute', says));
+  }
+}"""
+
+
+def test_on_a_telephone_the_gimbal_turns_with_it(open_essay):
+    page = open_essay(has_touch=True, is_mobile=True)
+    page.evaluate("DeviceOrientationEvent.requestPermission = async () => 'granted'")
+    page.get_by_role("button", name="Turn it with this phone").tap()
+    page.wait_for_function("document.querySelector('.look').textContent.includes('Waiting')")
+    page.evaluate(PHONE, [[70, 15, -10]])
+    rest(page)
+    assert camera(page) == pytest.approx(dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6)
+    # Upright it is locked; once round, the numbers are back with the other sign.
+    page.evaluate(PHONE, [[70, 88, -10]])
+    rest(page)
+    assert "gimbal lock" in page.locator(".look").inner_text()
+    page.evaluate(PHONE, [[(70 + 20 * k) % 360, 15, -10] for k in range(19)])
+    rest(page)
+    assert "q is now" in page.locator(".look").inner_text()
+    assert camera(page) == pytest.approx(dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6)

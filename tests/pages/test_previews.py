@@ -1,0 +1,103 @@
+"""Previews: what a link leads to stands beside it for who points at it, or comes to it by the keyboard."""
+
+import re
+
+import pytest
+from places import HTML, html_pages
+from test_site import NARROW, WIDE, Visit, violations
+
+from notebook_pages import previews
+
+# Links of each kind: on the page itself, and on another one.
+LINKS = {
+    "equation here": ("chapters/angular-velocity", '[href^="#equation-"]', ".katex math"),
+    "equation elsewhere": ("chapters/angular-velocity", '[href*="html#equation-"]', ".katex math"),
+    "figure here": ("chapters/simple-orientations", '[href^="#figure-"]', "figcaption"),
+    "figure elsewhere": (None, '[href*="html#figure-"]', "figcaption"),
+    "term here": ("appendix/glossary", '[href^="#term-"]', "dd"),
+    "term elsewhere": (None, '[href*="html#term-"]', "dd"),
+    "source": ("chapters/angular-velocity", '[href*="bibliography.html#id"]', "p"),
+}
+
+
+def page_with(link):
+    """A page that has such a link in its text."""
+    part = re.escape(link.partition('"')[2].rpartition('"')[0])
+    written = re.compile(rf'<a class="reference internal" href="[\w./-]+\.{part}')
+    found = (page for page in html_pages() if written.search((HTML / page).read_text("utf8")))
+    return next(found).removesuffix(".html")
+
+
+@pytest.mark.parametrize("name", LINKS)
+def test_a_preview_shows_what_the_link_leads_to_and_goes_with_escape(browser, site, name):
+    page_name, link, part = LINKS[name]
+    with Visit(browser, site, f"{page_name or page_with(link)}.html", "light", WIDE) as visit:
+        page = visit.page
+        asked = page.locator(f".bd-article a.internal{link}").first
+        asked.scroll_into_view_if_needed()
+        asked.hover()
+        box = page.get_by_role("tooltip")
+        box.wait_for()
+        assert box.locator(part).count() and box.inner_text().strip()
+        assert box.locator("a, button, input").count() == 0
+        assert asked.get_attribute("aria-describedby") == box.get_attribute("id")
+        assert box.locator("[id]:not(svg [id])").count() == 0
+        if "figure" in name:
+            assert box.locator("svg[viewBox]").bounding_box()["height"] > 50
+        assert violations(page) == [] and visit.faults == []
+        page.keyboard.press("Escape")
+        assert box.count() == 0 and asked.get_attribute("aria-describedby") is None
+
+
+def test_a_preview_comes_by_keyboard_stays_under_the_pointer_and_is_not_in_the_way_of_a_touch(browser, site):
+    name, link, _ = LINKS["equation elsewhere"]
+    with Visit(browser, site, f"{name}.html", "dark", WIDE) as visit:
+        page, box = visit.page, visit.page.get_by_role("tooltip")
+        asked = page.locator(f".bd-article a.internal{link}").first
+        asked.focus()
+        page.keyboard.press("Shift+Tab")
+        page.keyboard.press("Tab")
+        box.wait_for()
+        page.keyboard.press("Tab")
+        box.wait_for(state="detached")
+        asked.hover()
+        box.wait_for()
+        place = box.bounding_box()
+        page.mouse.move(place["x"] + 20, place["y"] + place["height"] / 2, steps=5)
+        page.wait_for_timeout(600)
+        assert box.count() == 1
+        page.mouse.move(5, 5, steps=5)
+        box.wait_for(state="detached")
+    context = browser.new_context(viewport=NARROW, has_touch=True)
+    page = context.new_page()
+    page.goto(f"{site}{name}.html")
+    page.wait_for_selector("html:not(.settling, .in-parts)")
+    asked = page.locator(f".bd-article a.internal{link}").first
+    target = asked.get_attribute("href").partition("#")[2]
+    asked.tap()
+    page.wait_for_url(f"**#{target}")
+    context.close()
+
+
+def test_previews_come_from_a_disk_too(browser):
+    page = browser.new_page(viewport=WIDE)
+    page.goto((HTML / f"{page_with(LINKS['term elsewhere'][1])}.html").as_uri())
+    page.locator(f".bd-article a.internal{LINKS['term elsewhere'][1]}").first.hover()
+    page.get_by_role("tooltip").locator("dd").wait_for()
+    page.close()
+
+
+def test_what_is_previewed_is_whole():
+    text = '<p id="other">no</p><div class="a" id="it"><div>in</div><div id="b"><a href="#x">out</a></div></div>'
+    text += "<div>after</div>"
+    assert previews.element_at(text, "it") == text[text.index('<div class="a"') : text.index("<div>after")]
+    assert previews.preview(text, "it") == '<div class="a"><div>in</div><div>out</div></div>'
+    assert previews.element_at(text, "not-there") is None and previews.preview(text, "term-not-there") is None
+    with pytest.raises(ValueError, match="does not end"):
+        previews.element_at('<div id="it"><div></div>', "it")
+
+
+def test_previews_weigh_little():
+    """Each is fetched when somebody asks; a script of one page stays far below the page."""
+    weights = {path.name: path.stat().st_size for path in (HTML / previews.FOLDER).iterdir()}
+    assert len(weights) > 5 and max(weights.values()) < 100_000, weights
