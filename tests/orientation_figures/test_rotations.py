@@ -326,3 +326,29 @@ def test_one_line_puts_a_figure_into_any_page(browser, tmp_path):
     assert faults == []
     page.close()
     empty.close()
+
+
+PHONE = """angles => {
+  for (const [alpha, beta, gamma] of angles) {
+    const says = { alpha, beta, gamma, absolute: true };
+    window.dispatchEvent(new DeviceOrientationEvent('deviceorientationabsolute', says));
+  }
+}"""
+
+
+def test_on_a_telephone_the_gimbal_turns_with_it(open_essay):
+    page = open_essay(has_touch=True, is_mobile=True)
+    page.evaluate("DeviceOrientationEvent.requestPermission = async () => 'granted'")
+    page.get_by_role("button", name="Turn it with this phone").tap()
+    page.wait_for_function("document.querySelector('.look').textContent.includes('Waiting')")
+    page.evaluate(PHONE, [[70, 15, -10]])
+    rest(page)
+    assert camera(page) == pytest.approx(dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6)
+    # Upright it is locked; once round, the numbers are back with the other sign.
+    page.evaluate(PHONE, [[70, 88, -10]])
+    rest(page)
+    assert "gimbal lock" in page.locator(".look").inner_text()
+    page.evaluate(PHONE, [[(70 + 20 * k) % 360, 15, -10] for k in range(19)])
+    rest(page)
+    assert "q is now" in page.locator(".look").inner_text()
+    assert camera(page) == pytest.approx(dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6)

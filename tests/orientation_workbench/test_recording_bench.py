@@ -1,5 +1,7 @@
 """The bench for recordings: what it must find, on simulated instruments with one thing wrong and on real ones."""
 
+import warnings
+
 import numpy as np
 import pytest
 from formats import DEG, FORMS, GRAVITY, recording
@@ -16,7 +18,7 @@ from orientation_workbench.recording.content import read_content
 from orientation_workbench.recording.field import fit_ellipsoid
 from orientation_workbench.recording.judged import chi_square_bounds
 from orientation_workbench.recording.motion import ASSIGNMENTS, dcm_of_quaternions, readings
-from orientation_workbench.recording.report import as_code
+from orientation_workbench.recording.report import as_code, as_csv
 from orientation_workbench.recording.table import read_tables
 
 DATA = REPOSITORY / "src" / "orientation_recordings" / "data"
@@ -201,6 +203,34 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["recording", str(tmp_path / "empty.csv")])
     assert ended.value.code == 3 and "empty" in capsys.readouterr().err
+
+
+def spoilt(kind, change):
+    given = simulate(3, poses=2)
+    return given | {kind: change(given[kind])}
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({kind: values[:9] for kind, values in simulate(3, poses=2).items() if kind != "truth"}, "too few"),
+        (spoilt("time", lambda values: values[::-1]), "goes back"),
+        (spoilt("time", lambda values: 0 * values), "no column of time"),
+        (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
+        (spoilt("accelerometer", lambda values: 0 * values), "never change"),
+        (spoilt("gyroscope", lambda values: 1e12 * values), "turns so fast"),
+        (
+            spoilt("magnetometer", lambda values: np.where(np.arange(len(values))[:, None] % 3, values, np.nan)),
+            "magnetometer: µT",
+        ),
+    ],
+)
+def test_strange_recordings_are_told_and_never_a_crash(given, words):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = examine(as_text(given, quaternion=True), "strange")
+        assert words in " ".join(str(found).split())
+        assert as_csv(found) and as_code(found)
 
 
 def test_the_command_writes_report_and_corrected_recording(tmp_path, capsys):

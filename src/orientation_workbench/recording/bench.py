@@ -261,6 +261,10 @@ class _Bench:
             )
         self.unit = unit
         self.facts["unit of the gyroscope"] = unit
+        most = float(np.degrees(np.percentile(np.linalg.norm(raw, axis=1), 95) * unit))
+        if most > 10_000:
+            words = f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown turns so fast"
+            self.say("size of the gyroscope", RED, words, {}, "Is it another column, or another unit?")
         self._axes(fits, raw * unit, usual * unit)
 
     def _quiet(self, raw):
@@ -724,6 +728,9 @@ class _Bench:
     def filter(self, progress):
         if self.rates is None or self.forces is None or self.content.counted:
             self.say("filter", UNKNOWN, "it needs a gyroscope and an accelerometer, and a clock")
+            return
+        if self.time[-1] - self.time[0] < 1 or len(self.time) < 20:
+            self.say("filter", UNKNOWN, f"{len(self.time)} samples in {self.time[-1]:.2g} s are too few to judge it")
             return
         steps = np.diff(self.time)
         step = float(np.median(steps))

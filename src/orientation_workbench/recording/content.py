@@ -120,6 +120,9 @@ def read_content(source, name=None, rate=None):
         groups += found
         unused += left
     chosen = _roles(groups)
+    for group in groups:
+        if group.called in ("gyroscope", "accelerometer", "magnetometer") and not np.ptp(group.values, axis=0).any():
+            remarks.append(f"{', '.join(group.names)} never change in {len(group.values)} rows")
     remarks += _with_gravity(chosen, groups)
     alone = set(chosen) == {"gyroscope"} and not chosen["gyroscope"].called
     if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
@@ -188,7 +191,12 @@ def _time(table):
             if np.mean(np.diff(time) > 0) > 0.97:
                 return k, time, f"{table.columns[k]} with {table.columns[k + 1]}, in s", False
     if not candidates:
-        return None, np.arange(len(table.values)), "there is no column of time", True
+        words = "there is no column of time"
+        for k, column in enumerate(table.columns):
+            steps = np.diff(table.values[:, k])
+            if re.search(TIME, column.lower()) and (steps < 0).any():
+                words += f": {column} goes back {int((steps < 0).sum())} times"
+        return None, np.arange(len(table.values)), words, True
     k = max(candidates)[1]
     column, values = table.columns[k], table.values[:, k]
     step = np.median(np.diff(values)[np.diff(values) > 0])

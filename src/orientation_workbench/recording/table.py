@@ -217,7 +217,7 @@ def _table(rows, name, comma, numbers=None, columns=None):
         line, row = (sample or rows)[0]
         raise RecordingError(
             f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} columns of numbers, "
-            f"where a recording has three and more. Line {line} begins: {' '.join(row)[:60]!r}"
+            f"where a recording has eight rows and three columns at least. Line {line} begins: {' '.join(row)[:60]!r}"
         )
 
     def values(row):

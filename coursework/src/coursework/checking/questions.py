@@ -241,7 +241,7 @@ def compare(name, question, plain, find):
         reading = read(question, plain)
         if kinds()[question["kind"]].by_a_person:
             words = len(reading.text.split())
-            said = f"A person reads this text of {words} {'word' if words == 1 else 'words'}, and decides."
+            said = f"A person will read this text of {words} {'word' if words == 1 else 'words'} and decide."
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
         reply = _compare(name, question, plain, reading, text, find) if find else _taken_down(name, question, reading)
@@ -344,7 +344,10 @@ def _not_known(name, question, plain, reading, find, content):
             name,
             "wrong",
             "rounded too far",
-            ["This agrees with the exact answer to about three digits, and an exact answer is asked for.", decimals],
+            [
+                "This agrees with the exact answer to about three digits, but the question asks for an exact answer.",
+                decimals,
+            ],
         )
     for (slip, why, turned), content in zip(others, found):
         case = _case_of(question, turned, content)
@@ -378,7 +381,8 @@ def _decimals(question, plain, reading):
     exact = question.get("tolerance") is None and reading.text is None
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
-    return "It holds decimal fractions; an exact answer is asked for: write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+    exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
+    return f"It holds decimal fractions, but the question asks for an exact answer: write {exact_forms}."
 
 
 def _few_digits(question, plain):

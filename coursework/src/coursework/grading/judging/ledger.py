@@ -762,15 +762,14 @@ def events_in(path: Path) -> Iterator[Event]:
         for number, line in enumerate(file, 1):
             try:
                 yield _event(line)
-            except (ValueError, TypeError, KeyError) as error:
+            except NewerFormat as error:
+                raise ValueError(f"{path}, line {number}: {error}") from None
+            except (ValueError, TypeError, KeyError):
                 if not line.endswith("\n"):
                     return
-                said = str(error) if isinstance(error, NewerFormat) else f"this is no decision: {line[:80]!r}. "
                 raise ValueError(
-                    f"{path}, line {number}: {said}"
-                    if isinstance(error, NewerFormat)
-                    else f"{path}, line {number}: {said}Somebody changed the file: move the line into a file of its "
-                    "own, and look at that answer again."
+                    f"{path}, line {number}: this is no decision: {line[:80]!r}. Somebody changed the file: move "
+                    "the line into a file of its own, and look at that answer again."
                 ) from None
 
 
