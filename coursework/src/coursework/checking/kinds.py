@@ -583,11 +583,11 @@ TRANSPOSED = {"transposed": ("the matrix is transposed, and its transpose has an
 SEVERAL = "More than one of these is not right."
 #: Where to begin with each kind of question.
 BEGIN = {
-    "expression": "Say what you know and what you are looking for, and write down one equation that connects the two.",
-    "vector": "Along which frame does the question want the components? Write the vector down where it is simplest.",
-    "matrix": "Take one entry and work it out by itself; then ask which rule gives all the others.",
+    "expression": "Name what is known and what is asked for, and write down one equation that connects them.",
+    "vector": "Along which frame are the components asked for? Write the vector down where it is simplest.",
+    "matrix": "Take one entry and work it out alone; then ask which rule gives all the others.",
     "choice": "Put each of the possibilities to the test on the simplest case that tells them apart.",
-    "words": "Take them one by one. Begin with those you are sure of, and find a test for the others.",
+    "words": "Take them one by one, and begin with those that you are sure of; find a test for the others.",
     "truth values": "Look for an example that breaks a claim; where there is none, look for the proof.",
     "measurement": "Work with the units as with the numbers: what do those that are given make together?",
     "order": "Find the first and the last; then compare two at a time.",

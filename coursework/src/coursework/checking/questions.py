@@ -356,7 +356,10 @@ def _not_known(name, question, plain, reading, find, content):
             reply = Reply(name, "wrong", f"{slip}, and {case['notes'][0][0]}", [f"Two things at once: {why} {said}"])
             reply.details = case["notes"][0][1]
             return reply
-    said = [decimals, what_can_be_said(question, plain), "" if decimals else _few_digits(question, plain)]
+    # Whoever has rounded right work hears of that first, and not that the value is wrong.
+    few = "" if decimals else _few_digits(question, plain)
+    right = what_can_be_said(question, plain)
+    said = [decimals, few, f"If not: {right[:1].lower()}{right[1:]}" if few and right else right]
     return Reply(name, "wrong", "", [" ".join(filter(None, said))])
 
 
@@ -400,8 +403,8 @@ def _few_digits(question, plain):
             if 0.5 * 10.0**-places > allowed and Fraction(node[1]).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
-                    f"`{float(node[1]):g}` has {count} after the point, and an answer may be off by {allowed:.1g} at "
-                    "most: if you have rounded, keep all digits until the end."
+                    f"Was this rounded? `{float(node[1]):g}` has {count} after the point, and an answer may be off by "
+                    f"{allowed:.1g} at most: if so, keep all digits until the end."
                 )
     return ""
 
