@@ -178,8 +178,11 @@ class Paper:
                 yield -40, "shade tone-3", self.place(fallen)[0], 1
 
 
-def picture(still, world):
-    """The SVG element of one stop, with the words that say what is seen."""
+def picture(still, world, colours=None):
+    """The SVG element of one stop, with the words that say what is seen.
+
+    ``colours`` gives the colour of a class, for programs that do not know the style sheet of a page.
+    """
     paper = Paper(still["view"], world)
     found = [face for item in still["items"] for face in paper.faces(item)]
     found += [face for item in still["items"] if item[7] for face in paper.shadow(item)]
@@ -190,6 +193,8 @@ def picture(still, world):
         if data:
             name, alpha = kind
             faint = f' opacity="{alpha:.2g}"' if alpha < 0.97 else ""
+            if colours:
+                faint += f' fill="{colours(name)}" stroke="none"'
             marks.append(f'<path class="{name}"{faint} d="{"".join(data)}"/>')
         data.clear()
 
