@@ -4,12 +4,18 @@ The angular velocity :math:`\\boldsymbol{\\omega}` of :math:`A` in :math:`N` is 
 along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in radians per second.
 """
 
-from ._types import Result, Values
+from typing import overload
+
+from ._types import Array, Matrix, Numbers, Result, Symbols, Values
 from .direction_cosines import AXES, DCM_GUARD
 from .euler_angles import layout_of
 from .numbers_and_symbols import Guard, evaluate
 
 
+@overload
+def angular_velocity_matrix(angles: Numbers, sequence: str) -> Array: ...
+@overload
+def angular_velocity_matrix(angles: Symbols, sequence: str) -> Matrix: ...
 def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
     r"""Matrix that turns the rates of body fixed Euler angles into the angular velocity.
 
@@ -70,6 +76,10 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
     return evaluate(formula, (3, 3), ("angles", angles, (3,)))
 
 
+@overload
+def angular_velocity_from_dcm_rate(dcm: Numbers, rate: Numbers) -> Array: ...
+@overload
+def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Matrix: ...
 def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Result:
     r"""Angular velocity of a direction cosine matrix that changes.
 
@@ -123,6 +133,10 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Result:
     return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), ("rate", rate, (3, 3)), guard=DCM_GUARD)
 
 
+@overload
+def dcm_rate(dcm: Numbers, angular_velocity: Numbers) -> Array: ...
+@overload
+def dcm_rate(dcm: Values, angular_velocity: Values) -> Matrix: ...
 def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
     r"""Time derivative of a direction cosine matrix.
 
@@ -169,6 +183,10 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
     return evaluate(formula, (3, 3), ("dcm", dcm, (3, 3)), ("angular_velocity", angular_velocity, (3,)))
 
 
+@overload
+def quaternion_rate(quaternion: Numbers, angular_velocity: Numbers) -> Array: ...
+@overload
+def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Matrix: ...
 def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
     r"""Time derivative of a quaternion.
 
@@ -210,6 +228,10 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
     return evaluate(formula, (4,), ("quaternion", quaternion, (4,)), ("angular_velocity", angular_velocity, (3,)))
 
 
+@overload
+def rotation_vector_rate(vector: Numbers, angular_velocity: Numbers) -> Array: ...
+@overload
+def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Matrix: ...
 def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Result:
     r"""Time derivative of a rotation vector: Bortz's equation.
 

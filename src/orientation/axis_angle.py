@@ -1,6 +1,8 @@
 """Axis and angle: Euler's theorem, Rodrigues' formula, and back again from 0 to pi."""
 
-from ._types import Result, Values
+from typing import overload
+
+from ._types import Array, Matrix, Numbers, Result, Values
 from .direction_cosines import DCM_GUARD
 from .numbers_and_symbols import Guard, evaluate
 from .quaternions import quaternion_components_from_dcm
@@ -32,6 +34,10 @@ def _explain_zero(components, where):
 AXIS_GUARD = Guard(3, _length_missing, _explain_zero)
 
 
+@overload
+def dcm_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
+@overload
+def dcm_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
 def dcm_from_axis_angle(axis: Values, angle: Values) -> Result:
     r"""Direction cosine matrix of a turn about one axis.
 
@@ -93,6 +99,10 @@ def axis_angle_formula(f, x, y, z, angle):
     )
 
 
+@overload
+def quaternion_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
+@overload
+def quaternion_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
 def quaternion_from_axis_angle(axis: Values, angle: Values) -> Result:
     r"""Unit quaternion of a turn about one axis.
 
@@ -136,7 +146,7 @@ def axis_angle_components(f, scalar, x, y, z):
     return f.where(at_rest, 1.0, share * x), share * y, share * z, angle
 
 
-def axis_angle_from_dcm(dcm: Values) -> tuple[Result, Result]:
+def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Result]:
     r"""Axis and angle of a direction cosine matrix.
 
     The quaternion of the matrix is found first, and

@@ -1,14 +1,18 @@
 """Direction cosine matrices: simple orientations, validity, and the nearest valid matrix."""
 
-from typing import NamedTuple
+from typing import NamedTuple, overload
 
-from ._types import Result, Values
+from ._types import Array, Matrix, Numbers, Result, Symbols, Values
 from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, is_symbolic, number_array, symbol_components
 from .random_points import at_random_points
 
 AXES = ("x", "y", "z")
 
 
+@overload
+def simple_dcm(axis: str, angle: Numbers) -> Array: ...
+@overload
+def simple_dcm(axis: str, angle: Symbols) -> Matrix: ...
 def simple_dcm(axis: str, angle: Values) -> Result:
     r"""Direction cosine matrix of a simple orientation.
 
@@ -186,7 +190,7 @@ DCM_GUARD = Guard(9, _excess, _explain)
 class NearestDCM(NamedTuple):
     """Result of :func:`nearest_dcm`: the matrix, and how far it is from the one that was given."""
 
-    dcm: Result
+    dcm: Array
     distance: Result
 
 

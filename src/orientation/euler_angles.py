@@ -1,6 +1,8 @@
 """Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
 
-from ._types import Result, Values
+from typing import overload
+
+from ._types import Array, Matrix, Numbers, Result, Symbols, Values
 from .direction_cosines import AXES, DCM_GUARD
 from .numbers_and_symbols import evaluate, is_symbolic, number_array, one_item, symbol_components
 
@@ -40,6 +42,10 @@ def layout_of(sequence):
     raise ValueError(f"{sequence!r} is not a sequence of Euler angles: {cause}")
 
 
+@overload
+def dcm_from_body_fixed(angles: Numbers, sequence: str) -> Array: ...
+@overload
+def dcm_from_body_fixed(angles: Symbols, sequence: str) -> Matrix: ...
 def dcm_from_body_fixed(angles: Values, sequence: str) -> Result:
     r"""Direction cosine matrix of three successive turns, each about an axis of the turned frame.
 
@@ -115,7 +121,7 @@ def body_fixed_formula(sequence):
     return formula
 
 
-def body_fixed_from_dcm(dcm: Values, sequence: str) -> Result:
+def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
     r"""Body fixed angles of a direction cosine matrix, for any of the twelve sequences.
 
     The first angle comes from the one row (or column) that the third turn leaves alone; turning back
@@ -180,6 +186,10 @@ def body_fixed_from_dcm(dcm: Values, sequence: str) -> Result:
     return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
+@overload
+def dcm_from_space_fixed(angles: Numbers, sequence: str) -> Array: ...
+@overload
+def dcm_from_space_fixed(angles: Symbols, sequence: str) -> Matrix: ...
 def dcm_from_space_fixed(angles: Values, sequence: str) -> Result:
     r"""Direction cosine matrix of three successive turns about the axes of the frame that stays.
 
@@ -204,7 +214,7 @@ def dcm_from_space_fixed(angles: Values, sequence: str) -> Result:
     return dcm_from_body_fixed(_reversed(angles), sequence[::-1])
 
 
-def space_fixed_from_dcm(dcm: Values, sequence: str) -> Result:
+def space_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
     """Space fixed angles of a direction cosine matrix: see :func:`body_fixed_from_dcm`.
 
     Examples

@@ -7,7 +7,7 @@ it is the right one depends on them.
 from collections.abc import Callable
 from typing import Any
 
-from ._types import Result, Values
+from ._types import Array, Values
 from .direction_cosines import check_dcm
 from .numbers_and_symbols import number_array
 from .rotation_vector import dcm_from_rotation_vector
@@ -15,7 +15,7 @@ from .rotation_vector import dcm_from_rotation_vector
 ORDERS = (1, 2, 4)
 
 
-def turns_from_angular_velocity(angular_velocity: Callable[[Any], Any], times: Values, order: int = 4) -> Result:
+def turns_from_angular_velocity(angular_velocity: Callable[[Any], Any], times: Values, order: int = 4) -> Array:
     r"""Return the rotation vector of the turn in each interval of time.
 
     For a step of the duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its beginning,
@@ -86,7 +86,7 @@ def turns_from_angular_velocity(angular_velocity: Callable[[Any], Any], times: V
     return steps / 2 * (first + second) + 3**0.5 / 12 * steps**2 * numpy.cross(first, second)
 
 
-def dcms_after_turns(start: Values, turns: Values) -> Result:
+def dcms_after_turns(start: Values, turns: Values) -> Array:
     r"""Return an orientation and those that successive turns lead to from there.
 
     .. math::

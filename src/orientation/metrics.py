@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ._types import Result, Values
+from ._types import Array, Result, Values
 from .direction_cosines import DCM_GUARD, check_dcm, nearest_dcm
 from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, number_array
 from .quaternions import dcm_from_quaternion, quaternion_components_from_dcm
@@ -72,7 +72,7 @@ def angle_between(first: Values, second: Values) -> Result:
     )
 
 
-def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = "entries") -> Result:
+def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = "entries") -> Array:
     r"""Return the orientation whose squared distances from the given ones have the smallest sum.
 
     By ``entries`` the distance is the Frobenius norm of the difference of the matrices: the mean is the direction
@@ -177,7 +177,7 @@ def _mean_by_angle(dcms, weights, average):
     return best[0]
 
 
-def random_orientations(count: int, random: Any = None) -> Result:
+def random_orientations(count: int, random: Any = None) -> Array:
     r"""Return orientations chosen at random, none likelier than another.
 
     Four normally distributed numbers, divided by their length, are a point on the sphere of unit quaternions that

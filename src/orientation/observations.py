@@ -4,14 +4,14 @@ A direction that is known in a frame :math:`N` (up, north, a star) is measured a
 directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two are fitted.
 """
 
-from ._types import Result, Values
+from ._types import Array, Values
 from .numbers_and_symbols import number_array
 
 #: Sine of the angle below which two directions count as one.
 PARALLEL = 1e-6
 
 
-def dcm_from_two_directions(observed: Values, reference: Values) -> Result:
+def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
     r"""Direction cosine matrix that two observed directions fix: the TRIAD method.
 
     The first direction is trusted entirely, the second only for what it says about the turn around the
@@ -84,7 +84,7 @@ def _unit(directions, name):
     return directions / length
 
 
-def dcm_from_directions(observed: Values, reference: Values, deviations: Values | None = None) -> Result:
+def dcm_from_directions(observed: Values, reference: Values, deviations: Values | None = None) -> Array:
     r"""Direction cosine matrix that fits many observed directions best: Wahba's problem.
 
     Finds the :math:`{}^B\mathbf{C}^N` with the least
@@ -147,7 +147,7 @@ def dcm_from_directions(observed: Values, reference: Values, deviations: Values 
     return handed @ right
 
 
-def directions_covariance(observed: Values, deviations: Values) -> Result:
+def directions_covariance(observed: Values, deviations: Values) -> Array:
     r"""Covariance of the error of an orientation that was fitted to directions.
 
     The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the true one, along

@@ -1,6 +1,8 @@
 """Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
 
-from ._types import Result, Values
+from typing import overload
+
+from ._types import Array, Matrix, Numbers, Result, Symbols, Values
 from .direction_cosines import DCM_GUARD
 from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate
 
@@ -40,6 +42,10 @@ def demand_unit_length(entries, name="quaternion", tolerance=TOLERANCE):
 QUATERNION_GUARD = Guard(4, _length_excess, _explain_length)
 
 
+@overload
+def dcm_from_quaternion(quaternion: Numbers) -> Array: ...
+@overload
+def dcm_from_quaternion(quaternion: Symbols) -> Matrix: ...
 def dcm_from_quaternion(quaternion: Values) -> Result:
     r"""Direction cosine matrix of a unit quaternion.
 
@@ -113,7 +119,7 @@ def quaternion_components_from_dcm(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
     return share * scalar + 0.0, share * x + 0.0, share * y + 0.0, share * z + 0.0
 
 
-def quaternion_from_dcm(dcm: Values) -> Result:
+def quaternion_from_dcm(dcm: Values) -> Array:
     r"""Unit quaternion of a direction cosine matrix, without loss near half a turn.
 
     Four rows of sums and differences of the entries are each the quaternion times one of its own
@@ -151,6 +157,10 @@ def quaternion_from_dcm(dcm: Values) -> Result:
     return evaluate(quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
+@overload
+def multiply_quaternions(first: Numbers, second: Numbers) -> Array: ...
+@overload
+def multiply_quaternions(first: Values, second: Values) -> Matrix: ...
 def multiply_quaternions(first: Values, second: Values) -> Result:
     r"""Hamilton product of two quaternions.
 
@@ -192,7 +202,7 @@ def product_components(f, a, b, c, d, e, g, h, k):
     )
 
 
-def interpolate_quaternions(first: Values, second: Values, share: Values) -> Result:
+def interpolate_quaternions(first: Values, second: Values, share: Values) -> Array:
     r"""Unit quaternion part of the way from one orientation to another, at constant speed (slerp).
 
     With the angle :math:`\Omega` between :math:`q_1` and :math:`q_2`, taken the shorter way round,

@@ -4,12 +4,18 @@ Both are a stereographic picture of the unit quaternions: a line from the middle
 quaternion -1, through the quaternion meets a flat space of three dimensions in the parameters.
 """
 
-from ._types import Result, Values
+from typing import overload
+
+from ._types import Array, Matrix, Numbers, Result, Symbols, Values
 from .direction_cosines import DCM_GUARD
 from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate
 from .quaternions import dcm_components_from_quaternion, quaternion_components_from_dcm
 
 
+@overload
+def dcm_from_rodrigues(vector: Numbers) -> Array: ...
+@overload
+def dcm_from_rodrigues(vector: Symbols) -> Matrix: ...
 def dcm_from_rodrigues(vector: Values) -> Result:
     r"""Direction cosine matrix of Rodrigues parameters, also called the Gibbs vector.
 
@@ -48,7 +54,7 @@ def dcm_from_rodrigues(vector: Values) -> Result:
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 
 
-def rodrigues_from_dcm(dcm: Values) -> Result:
+def rodrigues_from_dcm(dcm: Values) -> Array:
     r"""Rodrigues parameters, or Gibbs vector, of a direction cosine matrix.
 
     Parameters
@@ -96,6 +102,10 @@ def rodrigues_from_dcm(dcm: Values) -> Result:
     return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=Guard(9, excess, explain), symbols=False)
 
 
+@overload
+def dcm_from_modified_rodrigues(vector: Numbers) -> Array: ...
+@overload
+def dcm_from_modified_rodrigues(vector: Symbols) -> Matrix: ...
 def dcm_from_modified_rodrigues(vector: Values) -> Result:
     r"""Direction cosine matrix of modified Rodrigues parameters.
 
@@ -135,7 +145,7 @@ def dcm_from_modified_rodrigues(vector: Values) -> Result:
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 
 
-def modified_rodrigues_from_dcm(dcm: Values) -> Result:
+def modified_rodrigues_from_dcm(dcm: Values) -> Array:
     r"""Modified Rodrigues parameters of a direction cosine matrix.
 
     Parameters
@@ -170,6 +180,10 @@ def modified_rodrigues_from_dcm(dcm: Values) -> Result:
     return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
 
 
+@overload
+def shadow_of_modified_rodrigues(vector: Numbers) -> Array: ...
+@overload
+def shadow_of_modified_rodrigues(vector: Symbols) -> Matrix: ...
 def shadow_of_modified_rodrigues(vector: Values) -> Result:
     r"""The other modified Rodrigues parameters of the same orientation: the shadow.
 

@@ -1,11 +1,17 @@
 """Rotation vectors: the exponential and the logarithm of rotations."""
 
-from ._types import Result, Values
+from typing import overload
+
+from ._types import Array, Matrix, Numbers, Result, Symbols, Values
 from .direction_cosines import DCM_GUARD
 from .numbers_and_symbols import evaluate
 from .quaternions import quaternion_components_from_dcm
 
 
+@overload
+def dcm_from_rotation_vector(vector: Numbers) -> Array: ...
+@overload
+def dcm_from_rotation_vector(vector: Symbols) -> Matrix: ...
 def dcm_from_rotation_vector(vector: Values) -> Result:
     r"""Direction cosine matrix of a rotation vector: the exponential.
 
@@ -70,7 +76,7 @@ def dcm_from_rotation_vector(vector: Values) -> Result:
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 
 
-def rotation_vector_from_dcm(dcm: Values) -> Result:
+def rotation_vector_from_dcm(dcm: Values) -> Array:
     r"""Rotation vector of a direction cosine matrix: the logarithm.
 
     Parameters

@@ -7,7 +7,7 @@ nowhere else.
 
 from typing import Any
 
-from ._types import Result, Values
+from ._types import Array, Values
 from .direction_cosines import DCM_GUARD
 from .numbers_and_symbols import evaluate
 
@@ -45,7 +45,7 @@ def scipy_rotation_from_dcm(dcm: Values) -> Any:
     return Rotation.from_matrix(evaluate(transposed, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False))
 
 
-def dcm_from_scipy_rotation(rotation: Any) -> Result:
+def dcm_from_scipy_rotation(rotation: Any) -> Array:
     r"""Direction cosine matrix :math:`{}^A\mathbf{C}^N` of a SciPy ``Rotation``.
 
     Parameters

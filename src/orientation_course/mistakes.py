@@ -15,20 +15,20 @@ def _name(question):
 
 def _transposed(question):
     if question["kind"] == "matrix" or "frames" not in question:
-        return "This is the transpose of what is asked for."
+        return "This is the transpose of what the question asks for."
     wanted, given = _name(question)
-    return f"This is {given}, the transpose of {wanted}: its columns are what should be the rows. Transpose it."
+    return f"This is {given}, the transpose of {wanted}: its columns are what the rows should be. Transpose it."
 
 
 def _other_order(question):
     if question.get("result", question["kind"]) == "quaternion":
         return (
-            "The quaternions are multiplied in the other order. That of the first turn stands on the left, the other "
-            "way round than with matrices; in this order the same turns are about axes fixed in the first frame "
+            "The quaternions are multiplied in the wrong order. The first turn goes on the left, unlike with "
+            "matrices; in this order the same turns are about axes fixed in the first frame "
             "(space fixed)."
         )
     return (
-        "The factors are multiplied in the other order. The matrix of the first turn stands on the right; in this "
+        "The factors are multiplied in the wrong order. The matrix of the first turn goes on the right; in this "
         "order the same turns are about axes fixed in the first frame (space fixed)."
     )
 
@@ -46,20 +46,20 @@ MESSAGES = {
     "sign of every turn": lambda question: "Every angle has the wrong sign: each turn goes the wrong way round.",
     "other order": _other_order,
     "other order, transposed": lambda question: (
-        "The factors are multiplied in the other order, and the product is transposed."
+        "The factors are multiplied in the wrong order, and the product is transposed."
     ),
     "angles interchanged": lambda question, first, second: (
-        f"The angles of {_turn(first)} and of {_turn(second)} are interchanged."
+        f"The angles of {_turn(first)} and of {_turn(second)} have been swapped."
     ),
     "another sequence": lambda question, sequence: (
-        f"These are body fixed turns in the sequence `{sequence}`, which is another one than is asked for."
+        f"These are body fixed turns in the sequence `{sequence}`. The question asks for another one."
     ),
     "another axis": lambda question, turn, axis: (
-        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about another one."
+        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about a different one."
     ),
     "turn missing": lambda question, turn: f"{_turn(turn).capitalize()} is missing.",
-    "one factor only": lambda question, turn: f"This is {_turn(turn)} alone; the others are missing.",
-    "sine for cosine": lambda question, turn: f"Sine and cosine are interchanged in {_turn(turn)}.",
+    "one factor only": lambda question, turn: f"This is {_turn(turn)} alone. The others are missing.",
+    "sine for cosine": lambda question, turn: f"Sine and cosine have been swapped in {_turn(turn)}.",
     "degrees taken for radians": lambda question: (
         "Degrees were given to functions that take radians. Convert them first: `sm.rad(30)` or `np.deg2rad(30)`."
     ),
@@ -67,20 +67,22 @@ MESSAGES = {
         "This is the conjugate, which turns the other way: its vector part has the wrong sign."
     ),
     "scalar last": lambda question: (
-        "The scalar part stands last here. In this book it stands first: $(q_0, q_i, q_j, q_k)$."
+        "The scalar part comes last here. In this book it comes first: $(q_0, q_i, q_j, q_k)$."
     ),
     "scalar last, conjugate": lambda question: (
-        "The scalar part stands last here, and the vector part has the wrong sign."
+        "The scalar part comes last here, and the vector part has the wrong sign."
     ),
     "whole angle": lambda question: (
-        "The whole angle is used. A quaternion holds the sine and cosine of *half* the angle."
+        "You have used the whole angle. A quaternion holds the sine and cosine of *half* the angle."
     ),
-    "quarter angle": lambda question: "The angle is halved twice.",
+    "quarter angle": lambda question: "The angle has been halved twice.",
     "angles of another sequence": lambda question, sequence: (
-        f"These would be the angles in the sequence `{sequence}`; `{question['sequence']}` is asked for."
+        f"These are the angles for the sequence `{sequence}`; the question asks for `{question['sequence']}`."
     ),
     "angles of the transpose": lambda question: "These are the angles of the transposed matrix.",
-    "space fixed angles": lambda question: "These are the angles of space fixed turns; body fixed ones are asked for.",
+    "space fixed angles": lambda question: (
+        "These are the angles of space fixed turns; the question asks for body fixed ones."
+    ),
     "angles in reverse": lambda question: "The three angles are right but in reverse order.",
     "sign of one angle": lambda question, turn: f"The {ORDINALS[turn]} angle has the wrong sign.",
     "sign of every angle": lambda question: "All angles have the wrong sign.",
@@ -89,7 +91,7 @@ MESSAGES = {
         "Are these turns about axes fixed in space, or counted from the last to the first? Go through them once more: "
         "each is about an axis of the frame that the turn before it has reached."
     ),
-    "cosine for sine": lambda question: "Sine and cosine are interchanged.",
+    "cosine for sine": lambda question: "Sine and cosine have been swapped.",
     # Of an axis and an angle: the axis is neither halved nor doubled.
     "half": lambda question: "The angle is half of what it should be; the axis is right.",
     "double": lambda question: "The angle is twice what it should be; the axis is right.",

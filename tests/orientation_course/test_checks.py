@@ -322,6 +322,22 @@ def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
         assert ("rounded too far" in reply.messages[0]) == rounded, reply.messages
 
 
+@pytest.mark.parametrize("digits", [1, 2])
+@pytest.mark.parametrize(
+    ("kind", "answer"),
+    [("expression", 0.7391), ("vector", [1.2345, -0.6789, 0.4321]), ("matrix", [[0.1234, 1.4321], [2.3456, -0.7654]])],
+)
+def test_whoever_has_rounded_right_work_hears_of_the_rounding_first(kind, answer, digits):
+    """And not that the value is wrong, which is the most discouraging thing to hear of one's own right work."""
+    one = make("trial/rounded", kind, answer, **({"shape": (2, 2)} if kind == "matrix" else {}))
+    reply = one.reply_to(to_plain(np.array(answer).round(digits).tolist()))
+    said = reply.messages[0]
+    assert reply.outcome == "wrong" and "ounded" in said, said
+    assert "value" not in said or said.index("ounded") < said.index("value"), said
+    precise = one.reply_to(to_plain((np.array(answer) * 1.31 + 0.01234567).tolist())).messages[0]
+    assert "ounded" not in precise, precise
+
+
 def test_no_turn_at_all_is_not_called_twice_half_a_turn():
     axis = [sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)]
     for half_turn in (sm.pi, np.pi, -3 * sm.pi):

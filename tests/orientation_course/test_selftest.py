@@ -1,7 +1,5 @@
 """Every question of the book, tried as students will try it."""
 
-import re
-
 import pytest
 from test_release import CELLS, COURSE, made_in, needs_solutions, write_source
 
@@ -10,7 +8,17 @@ from coursework.authoring import release
 from coursework.authoring.attack import BUDGET
 from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive as pack
-from coursework.authoring.selftest import _try_notebook, leaks, released_texts, selftest, try_question, write_page
+from coursework.authoring.selftest import (
+    _try_notebook,
+    leaks,
+    measure,
+    released_texts,
+    selftest,
+    try_question,
+    write_page,
+)
+from coursework.authoring.source import measured_strengths
+from coursework.grading.judging.marking import names_asked
 
 SOURCES = {path.stem: path for path in sorted(COURSE.sources.glob("*.ipynb"))}
 
@@ -29,13 +37,12 @@ def test_every_question_passes_and_names_its_mistakes(name):
 
 
 @needs_solutions
-@pytest.mark.long
-@pytest.mark.parametrize("name", SOURCES)
-def test_no_variant_at_all_is_guessed_sooner_than_its_author_declared(name, monkeypatch):
-    """The self-test attacks three variants of each question."""
-    monkeypatch.setattr("coursework.authoring.selftest.ATTACKED", 99)
-    findings, _ = _try_notebook(SOURCES[name], COURSE, BUDGET)
-    assert [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] == []
+def test_what_was_measured_of_the_book_is_of_questions_that_it_asks():
+    """It stands beside the sources, for the grader's report; a question that is gone is to go there, too."""
+    measured = measured_strengths(COURSE.sources)
+    asked = {name for path in SOURCES.values() for name in names_asked(path)}
+    assert set(measured) <= asked and len(measured) > 100
+    assert all(0 <= tries <= BUDGET for tries in measured.values())
 
 
 @needs_solutions
@@ -86,24 +93,21 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
         name="levers",
     )
     release.release(made, run=False)
-    faults = selftest(made, None, budget=100)
-    assert len(faults) == 1 and "levers/arm: One of its variants can be guessed: found after" in faults[0]
-    (made.sources / "guessable.json").write_text('{"levers/arm": 1}')
-    assert selftest(made, None, budget=100) == []
+    findings, _ = _try_notebook(made.sources / "levers.ipynb", made, 100)
+    assert findings[0].attack.way and findings[0].attack.tries < 100
 
 
-def test_what_can_be_guessed_carries_one_point_at_most(tmp_path):
+def test_what_was_measured_is_written_down_with_its_version(tmp_path):
     made = made_in(tmp_path)
     write_source(made.sources, *CELLS)
-    release.release(made, run=False)
-    (made.sources / "guessable.json").write_text('{"trial/about-x": 20}')
-    heavy = "trial/about-x.*guessable.json says that it can be guessed, after 20 tries, and it is worth 2 points; 1 is"
-    with pytest.raises(AuthorError, match=heavy.replace(".*", ", in trial.ipynb: ")):
-        release.release(made, run=False)
-    assert [fault for fault in selftest(made, None, budget=10) if re.search(heavy, fault)]
-    write_source(made.sources, *((kind, text.replace("worth=2", "worth=1"), *tags) for kind, text, *tags in CELLS))
-    release.release(made, run=False)
-    assert not any("points" in fault for fault in selftest(made, None, budget=10))
+    lines = measure(made)
+    measured = measured_strengths(made.sources)
+    assert 0 < measured["trial/about-x"] < 1000
+    assert any(f"found after {measured['trial/about-x']} slow hashes" in line for line in lines)
+    file = made.sources / "strengths.json"
+    file.write_text(file.read_text("utf8").replace('"format": 1', '"format": 9'), "utf8")
+    with pytest.raises(AuthorError, match="another version"):
+        measured_strengths(made.sources)
 
 
 @pytest.mark.parametrize(

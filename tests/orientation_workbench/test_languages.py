@@ -136,6 +136,29 @@ def test_c_gives_the_same(tmp_path):
     run_compiled(tmp_path, source, ["cc", "-x", "c", "source", "-lm"])
 
 
+@pytest.mark.skipif(not shutil.which("c++"), reason="there is no C++ compiler here")
+def test_cpp_gives_the_same(tmp_path):
+    functions, calls = [], []
+    for which, (own, text) in enumerate(texts("C++")):
+        functions.append(text.replace(own, f"f{which}").replace("#include <array>\n#include <cmath>", ""))
+    for which, numbers, _ in cases():
+        passed = ", ".join(
+            f"std::array<double, {len(one)}>{{" + ", ".join(f"{number:.17g}" for number in one) + "}"
+            if isinstance(one, list)
+            else f"{one!r}"
+            for one in numbers
+        )
+        calls.append(f"show(f{which}({passed}));")
+    source = (
+        "#include <array>\n#include <cmath>\n#include <cstdio>\n" + "\n".join(functions)
+        + '\nvoid show(double x) { std::printf("%.17g\\n", x); }\n'
+        + "template <std::size_t n> void show(std::array<double, n> r) {\n"
+        + 'for (double x : r) std::printf("%.17g ", x);\nstd::puts(""); }\n'
+        + "int main() {\n" + "\n".join(calls) + "\n}\n"
+    )  # fmt: skip
+    run_compiled(tmp_path, source, ["c++", "-x", "c++", "-std=c++17", "source"])
+
+
 @pytest.mark.skipif(not shutil.which("rustc"), reason="there is no Rust compiler here")
 def test_rust_gives_the_same(tmp_path):
     functions, calls = [], []

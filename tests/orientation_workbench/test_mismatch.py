@@ -16,7 +16,14 @@ from places import REPOSITORY
 from scipy.spatial.transform import Rotation
 from threads import THREADS
 
-from orientation import SEQUENCES, body_fixed_from_dcm, quaternion_from_dcm, random_orientations, simple_dcm
+from orientation import (
+    SEQUENCES,
+    axis_angle_from_dcm,
+    body_fixed_from_dcm,
+    quaternion_from_dcm,
+    random_orientations,
+    simple_dcm,
+)
 from orientation_workbench import explain
 from orientation_workbench.command import main
 from orientation_workbench.mismatch import explanation, mend, search, table
@@ -365,6 +372,16 @@ def test_the_command_is_installed():
     done = subprocess.run([sys.executable, "-m", "orientation_workbench", "explain", "1 0 0", "0 0 0 2 1"],
                           capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 3 and "5 numbers" in done.stderr
+
+
+def test_degrees_are_seen_wherever_the_angle_stands():
+    axis, angle = axis_angle_from_dcm(DCM)
+    texts = [
+        " ".join(f"{number:.5f}" for number in row) for row in ((*axis, np.degrees(angle)), (np.degrees(angle), *axis))
+    ]
+    known = {"kind": "axis and angle"}
+    found = explain(*texts, first_declared=known, second_declared=known)
+    assert found.faults == ("in the second numbers the angle stands before the axis",)
 
 
 def test_angles_by_name_are_put_in_order():

@@ -17,8 +17,8 @@ from test_website import build, chapter
 import orientation
 from notebook_pages import pictures
 from notebook_pages.finish import pages_of
-from notebook_pages.paths import pages
-from notebook_pages.publish import LICENCE, LONGEST
+from notebook_pages.paths import LICENCES, pages
+from notebook_pages.publish import LONGEST
 from orientation_figures.style import LIGHT
 
 SETTINGS = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
@@ -43,7 +43,9 @@ def test_each_page_describes_itself():
         assert meta(head(path), "og:description") == words
         assert SETTINGS["title"] in meta(head(path), "og:title")
         assert head(path).count('name="viewport"') == 1, path
-        assert LICENCE in path.read_text("utf8").partition("<footer")[2], f"{path} does not name its licence"
+        assert LICENCES["Text"][1] in path.read_text("utf8").partition("<footer")[2], (
+            f"{path} does not name its licence"
+        )
         descriptions[words] += 1
     assert [words for words, count in descriptions.items() if count > 1] == []
 

@@ -22,6 +22,7 @@ from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
 from coursework.authoring.packing import DISTRIBUTIONS, archive, wheel
 from coursework.authoring.release import release
+from coursework.authoring.source import measured_strengths
 from coursework.authoring.trial import trial
 from coursework.checking.update import update
 
@@ -241,7 +242,7 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(statics, tmp_pa
     assert "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()
 
 
-def test_a_release_says_what_the_selftest_will_refuse(statics, tmp_path, monkeypatch, capsys):
+def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(statics, tmp_path, monkeypatch, capsys):
     """The deflection of a beam, with numbers of one's own: an ordinary question, and soon guessed."""
     course = shutil.copytree(statics, tmp_path / "course")
     answer = (
@@ -256,22 +257,27 @@ def test_a_release_says_what_the_selftest_will_refuse(statics, tmp_path, monkeyp
     ]
     write_source(course / "solutions", *cells, name="beam")
     monkeypatch.chdir(course)
+    known = {"format": 1, "tries": {"first-steps/area": 20, "beam/root": 3, "gone/one": 7}}
+    (course / "solutions" / "strengths.json").write_text(json.dumps(known), "utf8")
     main(["release", "beam"])
     said = capsys.readouterr().out
-    assert re.search(r"selftest` will refuse beam/tip: It can be guessed: found after \d+", said), said
-    assert "first-steps" not in said
+    tries = int(re.search(r"beam/tip, 3 points: found after (\d+) slow hashes", said)[1])
+    assert tries < 1000 and re.search("beam/tip, 3 points, found .* exam=True", said), said
+    assert "0% of 3 points are behind" in said and "first-steps" not in said
+    assert measured_strengths(course / "solutions") == {"first-steps/area": 20, "beam/tip": tries}
     kept = set((course / "build" / "attacks").iterdir())
-    with pytest.raises(SystemExit, match="beam/tip: It can be guessed"):
-        main(["selftest", "beam"])
+    main(["selftest", "beam"])
+    assert "0% are behind more than" in (course / "build" / "selftest.html").read_text("utf8")
     assert set((course / "build" / "attacks").iterdir()) == kept
+    source = course / "solutions" / "beam.ipynb"
+    source.write_text(source.read_text("utf8").replace("worth=3", "exam=True, worth=3"), "utf8")
+    main(["release", "beam"])
+    assert "beam/tip, 3 points: there is nothing to try a guess on" in capsys.readouterr().out
 
 
 def test_one_notebook_is_tried_alone(statics, tmp_path, monkeypatch, capsys):
     course = shutil.copytree(statics, tmp_path / "course")
     shutil.copy(EXAMPLE / "solutions" / "moments.ipynb", course / "solutions")
-    places = (course / "solutions" / "guessable.json", EXAMPLE / "solutions" / "guessable.json")
-    declared = {name: tries for path in places for name, tries in json.loads(path.read_text("utf8")).items()}
-    places[0].write_text(json.dumps(declared), "utf8")
     monkeypatch.chdir(course)
     main(["selftest", "first-steps", "--budget", "64"])
     text = (course / "build" / "selftest.html").read_text("utf8")

@@ -46,7 +46,7 @@ def figure(page, found):
     if not (drawing and caption and style):
         return None
     names = dict.fromkeys(OUTLINES.findall(drawing[0]))
-    paths = "".join(re.search(rf'<path id="{name}"[^>]*/>', page)[0] for name in names)
+    paths = "".join(found[0] for name in names if (found := re.search(rf'<path id="{name}"[^>]*/>', page)))
     outlines = f'<svg width="0" height="0" style="position:absolute"><defs>{paths}</defs></svg>' if paths else ""
     shown = f'{style[0]}{outlines}<div class="orientation-figure">{drawing[0]}</div>{plain(caption[0])}'
     return re.sub(r'((?:id="|href="#))(?=o\d+")', r"\1preview-", shown)

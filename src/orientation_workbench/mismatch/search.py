@@ -73,8 +73,8 @@ def side(kinds, numbers, half, declared):
     """
     listed = []
     for kind in kinds:
-        angles = numbers if kind in ("Euler angles", "rotation vector") else numbers[:, -1:]
-        large = kind != "quaternion" and bool((np.abs(angles) > math.tau + 0.01).any())
+        # Of an axis and its angle, wherever that stands, only the angle can be large.
+        large = kind != "quaternion" and bool((np.abs(numbers) > math.tau + 0.01).any())
         listed += table.readings(kind, declared, large)
     cheapest = {}
     for reading in listed:

@@ -25,14 +25,21 @@ import numpy as np
 from ..checking import sealing
 from ..checking.kinds import EXACT, EXACT_WIDTH, FAR, NEAR, PARTS, calls_for, sign_limit, tolerances
 from ..checking.kinds import offsets as offsets_of
-from ..checking.plugins import plugins
+from ..checking.plugins import kinds, plugins
 from ..checking.points import points
 from ..checking.units import unit
+from . import typed
 
+#: What parts the words of a question from the open code of its cell.
+CODE = "\n\n```python\n"
 #: Slow hashes that the attack on one question may need; a question beyond it counts as not guessable.
 BUDGET = 2**16
-#: Candidates that are worked out together.
-CHUNK = 8192
+#: Candidates that are worked out together, and those that are tried before another idea has its turn.
+CHUNK, PORTION = 8192, 256
+#: Answers that are orientations: of what is built only that is tried which is one.
+ROTATIONS = ("direction cosine matrix", "quaternion", "Euler angles", "axis and angle")
+#: Numbers of a vector that are found one by one: so many values for each, by how many numbers there are.
+EACH = {1: 0, 2: 150, 3: 30}
 
 
 class Found(NamedTuple):
@@ -63,6 +70,7 @@ class Family(NamedTuple):
     sizes: tuple
     evaluate: object
     by_shells: bool = False
+    near: object = None  # the numbers of what is beside a choice, where no choices are beside it
 
     def orders(self):
         """All choices, some thousand rows at a time."""
@@ -130,17 +138,41 @@ def really_attack(sealed, text="", budget=100):
 def _attack(public, text, budget, open_):
     """Try candidates until one is right. ``open_`` says of a fingerprint: 1 right, 2 a mistake, 0 neither."""
     tried = set()
-    for family in families(public, text) if budget else ():
-        for choices in family.orders():
-            with np.errstate(all="ignore"):
-                known = fingerprints_of(public, family.evaluate(choices))
-            for choice, one in zip(choices.tolist(), known, strict=True):
-                for way, candidate in _and_beside(public, family, choice, one, open_, tried):
-                    if candidate == 1:
-                        return Found(len(tried), way)
-                    if len(tried) >= budget:
-                        return Found(len(tried), "")
+    for family, choices in _in_turns(public, text) if budget else ():
+        with np.errstate(all="ignore"):
+            known = fingerprints_of(public, family.evaluate(choices))
+        for choice, one in zip(choices.tolist(), known, strict=True):
+            for way, candidate in _and_beside(public, family, choice, one, open_, tried):
+                if candidate == 1:
+                    return Found(len(tried), way)
+                if len(tried) >= budget:
+                    return Found(len(tried), "")
     return Found(len(tried), "")
+
+
+def _in_turns(public, text):
+    """Candidates from what the subject suggests, and from what the question gives, some of each in turn."""
+    words = text.partition(CODE)[0]
+    streams = [_portions(families(public, words))]
+    if not kinds()[public.get("result", public["kind"])].text and public["kind"] != "free text":
+        pool, steps = _beginning(public, text), typed.priced(typed.public_functions(), words)
+        values = _portions(_of_values(public, pool, (*steps, *typed.OPERATIONS)))
+        turns = _portions(_of_values(public, _beginning(public, text), (*steps, *typed.TURNS), typed.MOST // 2))
+        streams += [values, turns, values, _portions(_of_parts(public, pool))]
+    while streams:
+        for stream in list(streams):
+            portion = next(stream, None)
+            if portion is None:
+                streams.remove(stream)
+            else:
+                yield portion
+
+
+def _portions(found):
+    for family in found:
+        for choices in family.orders():
+            for start in range(0, len(choices), PORTION):
+                yield family, choices[start : start + PORTION]
 
 
 def _and_beside(public, family, choice, known, open_, tried):
@@ -153,11 +185,102 @@ def _and_beside(public, family, choice, known, open_, tried):
     if opened != 2:
         return
     with np.errstate(all="ignore"):
-        others = fingerprints_of(public, family.evaluate(family.beside(choice)))
+        beside = family.near(choice) if family.near else family.evaluate(family.beside(choice))
+        others = fingerprints_of(public, beside)
     for other in others:
         if other is not None and other not in tried:
             tried.add(other)
             yield f"{family.name}, then by the reply", open_(other)
+
+
+def _beginning(public, text):
+    """What a student holds, as :mod:`coursework.authoring.typed` begins with it."""
+    words, _, code = text.partition(CODE)
+    if public["kind"] == "function":
+        return typed.of_arguments(calls_for(public), [shape_of(public)])
+    return typed.beginning(At(public, words), public.get("given", {}), words, code, [shape_of(public)])
+
+
+def shape_of(public):
+    """The shape of an answer at one point, or for one call."""
+    values, size = public.get("result", public["kind"]), size_of(public)
+    if values in ("expression", "measurement"):
+        return ()
+    return tuple(public["shape"]) if "shape" in public else {1: (), 9: (3, 3)}.get(size, (size,))
+
+
+def _of_values(public, pool, steps, most=typed.MOST):
+    """Candidates that some steps lead to from what is given: at each price those first that use all that is given."""
+    left_out = []
+    with np.errstate(all="ignore"):
+        for price in typed.by_price(pool, steps, most):
+            yield from _tables(public, pool, price, True)
+            yield from left_out
+            left_out = list(_tables(public, pool, price, False))
+        yield from left_out
+
+
+def _of_table(public, table, shape):
+    """A family of candidates that stand in a table, a row for each; ``shape`` is that of an answer at one point."""
+
+    def near(choice):
+        found = typed.near(table[choice[0]].reshape(-1, *shape))
+        return one_sign(public, found.reshape(len(found), -1), math.prod(shape))
+
+    return Family(
+        "built from what is given",
+        (len(table),),
+        lambda choices: table[choices[:, 0]],
+        near=None if shape is None else near,
+    )
+
+
+def _tables(public, pool, price, whole):
+    """The values of a pool that have a price as candidates: those that use all that is given, or the others."""
+    values, shape = public.get("result", public["kind"]), shape_of(public)
+    special = values in ROTATIONS or public.get("unit vector", False)
+    found = np.array(pool.of_shape(shape, special, price, whole))
+    if len(found) and values == "measurement":
+        yield _of_table(public, _with_units(public, found), None)
+    elif len(found):
+        yield _of_table(public, one_sign(public, found.reshape(len(found), -1), math.prod(shape)), shape)
+
+
+def _of_parts(public, pool):
+    """Vectors that are put together: of numbers, and of a vector and a number, that a pool has by then."""
+    size = size_of(public)
+    if public.get("result", public["kind"]) != "vector" or size < 2:
+        return
+    for most in (6, 12, 24, EACH.get(size, 0)):
+        numbers = np.array(pool.of_shape(())[: min(most, int((4 * BUDGET) ** (1 / size)))])
+        if len(numbers):
+            places = np.array(list(itertools.product(range(len(numbers)), repeat=size)))
+            yield _of_table(public, _as_answers(public, np.moveaxis(numbers[places], 1, 2)), (size,))
+        for first in range(1, size) if size > 2 else ():
+            ones = [pool.of_shape((part,) if part > 1 else ())[: 4 * most] for part in (first, size - first)]
+            if all(ones):
+                ones = [np.array(one).reshape(len(one), pool.points, -1) for one in ones]
+                pairs = np.indices([len(one) for one in ones]).reshape(2, -1)
+                both = [one[places] for one, places in zip(ones, pairs, strict=True)]
+                yield _of_table(public, _as_answers(public, np.concatenate(both, axis=-1)), (size,))
+
+
+def _as_answers(public, values):
+    """Vectors, shape (values, points, size), as the numbers of answers."""
+    return one_sign(public, values.reshape(len(values), -1), values.shape[-1])
+
+
+def _with_units(public, numbers):
+    absolute = max(float(tolerances(public)[0]), float(NEAR))
+    found = [unit(text) for text in UNITS]
+    rows = []
+    for value in numbers[:3000]:
+        for one in found:
+            far = np.broadcast_to(np.array(one.exponents) * FAR * absolute, (len(value), len(one.exponents)))
+            rows.append(
+                np.concatenate([(value * float(one.size) / float(public["scale"]))[:, None], far], axis=1).ravel()
+            )
+    return np.array(rows)
 
 
 # --- fingerprints, many at a time ---------------------------------------------------------------

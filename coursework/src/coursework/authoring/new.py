@@ -41,7 +41,6 @@ question('first-steps/mean', kind='function', result='expression', calls=[[[2, 4
 ]
 FILES = {
     "course.toml": 'title = "{title}"\n',
-    "solutions/guessable.json": '{{\n "first-steps/area": 20\n}}\n',
     "requirements.txt": "--find-links wheels\ncoursework-tools\njupyterlab\npytest\n",
     ".gitignore": "build/\n.coursework/\n.ipynb_checkpoints/\n__pycache__/\n",
     "tests/test_course.py": '''"""Every question is tried, and what is released is what the sources make."""
@@ -151,6 +150,7 @@ def new(folder):
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
     notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL})
+    (folder / "solutions").mkdir()
     nbformat.write(notebook, folder / "solutions" / f"{NOTEBOOK}.ipynb")
     (folder / "wheels").mkdir()
     for name in DISTRIBUTIONS:

@@ -108,8 +108,8 @@ def _maker():
     offers = list(metadata.entry_points(group=GROUP))
     if not offers:
         raise AuthorError(
-            "Nothing here makes pages from notebooks. Install notebook-pages beside coursework: "
-            "`python -m pip install notebook-pages`, or its folder from the repository of coursework."
+            "Nothing here makes pages from notebooks. Install notebook-pages beside coursework, from its folder in the "
+            "repository of coursework: `make setup` there does that, and fetches what pages are made with."
         )
     if len(offers) > 1:
         named = " and ".join(f"{one.dist.name} ({one.value})" for one in offers)

@@ -29,12 +29,10 @@ from .source import (
     CHAPTERS,
     answered_in,
     checked_names,
-    declared_strengths,
     digest_of_code,
     notebooks_in,
     posed,
     read_source,
-    too_heavy,
 )
 from .variation import drawn_in
 
@@ -176,11 +174,8 @@ def _release_one(path, course):
     """Make a notebook and its sealed questions: its name, how many variants there are, the pages that these share."""
     import nbformat
 
-    source, declared = read_source(path, edition=course.edition), declared_strengths(course.sources)
+    source = read_source(path, edition=course.edition)
     for name, question in source.questions.items():
-        fault = too_heavy(question, declared)
-        if fault:
-            raise AuthorError(f"{name}, in {path.name}: {fault}")
         for text in question.no_mistakes:
             raise AuthorError(f"{name}, in {path.name}: This authored mistake gives the right answer: {text}")
         for fault in told_openly(question, secrets_of(source)) if question.ladder else ():

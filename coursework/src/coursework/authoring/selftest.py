@@ -26,27 +26,31 @@ from ..checking.plugins import kinds
 from ..checking.questions import in_variant, judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from ..checking.variants import shown
-from .attack import BUDGET, Found, attack
+from .attack import BUDGET, CODE, Found, attack
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
 from .source import (
     CHAPTERS,
-    DECLARED,
+    FORMAT_OF_MEASURED,
     HIDDEN,
-    LIGHT,
+    MEASURED,
     SOLUTION,
     blank,
-    declared_strengths,
     digest_of_code,
+    measured_strengths,
     notebooks_in,
     read_source,
-    too_heavy,
 )
+from .variation import VARIANTS
 
 #: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
 SECONDS_PER_TRY = 0.012
 #: Forms that a right answer is tried in, where algebra gives that many.
 FORMS = 6
+#: Of a question of an exam, or one that a person reads.
+NOTHING = Found(0, "")
+#: Points of a question up to which it does not matter that it can be guessed.
+LIGHT = 1
 #: Variants of a question that are attacked beside the first one; which ones follows from the name of the notebook.
 ATTACKED = 2
 COLUMNS = (
@@ -93,7 +97,7 @@ class Finding(NamedTuple):
     faults: list
 
 
-def try_question(question, text="", declared=None, budget=BUDGET, against_sealed=True, kept=None):
+def try_question(question, text="", budget=BUDGET, against_sealed=True, found=None):
     """Try one question as students will, right and wrong, and as somebody does who guesses.
 
     Parameters
@@ -101,8 +105,6 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     question : Question
     text : str
         What is asked, in words.
-    declared : int, optional
-        How many slow hashes the question withstands, where its author knows that it can be guessed.
     budget : int
         How many slow hashes the attack may need.
     against_sealed : bool
@@ -140,11 +142,8 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
     if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
-    if question.public.get("exam"):
-        found = Found(0, "")  # there is nothing to try a guess on
-    else:
-        found = attack_kept(question, text, budget, kept) if kept else attack(question, text, budget)
-    faults += _guessed(question.name, found, declared, budget)
+    if found is None:
+        found = NOTHING if question.public.get("exam") else attack(question, text, budget)
     return Finding(
         question.name,
         question.public["kind"],
@@ -157,42 +156,6 @@ def try_question(question, text="", declared=None, budget=BUDGET, against_sealed
     )
 
 
-def _guessed(name, found, declared, budget):
-    """The fault of a question that is guessed sooner than its author declared, if it is."""
-    if not found.way or found.tries >= min(declared or BUDGET, budget):
-        return []
-    return [
-        f"It can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}, with "
-        f'{LIGHT} point at most: "{name}": {rounded_down(found.tries)}'
-    ]
-
-
-def too_easily_guessed(course, only):
-    """What the attack finds of some notebooks, a line for each question; :func:`selftest` need not repeat it."""
-    paths = notebooks_in(course.sources, only)
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
-        return [line for lines in pool.map(_guessed_in, paths, [course] * len(paths)) for line in lines]
-
-
-def _guessed_in(path, course):
-    source, declared = read_source(path), declared_strengths(course.sources)
-    found = []
-    for name, question in source.questions.items():
-        if not question.public.get("exam") and not kinds()[question.public["kind"]].by_a_person:
-            tries = attack_kept(question, text_of(source, question), BUDGET, course.archive.parent / "attacks")
-            found += [f"{name}: {fault}" for fault in _guessed(name, tries, declared.get(name), BUDGET)]
-    return found
-
-
-def rounded_down(tries):
-    """As many tries as an author declares of a question that was found after some: not to the last one.
-
-    >>> rounded_down(8731), rounded_down(143), rounded_down(4)
-    (8000, 100, 4)
-    """
-    return int(str(tries)[0]) * 10 ** (len(str(tries)) - 1)
-
-
 def _try_text(question):
     """A question whose answers a person reads: the untouched blank is none, and every text is put aside."""
     outcomes = [_judge(question, answer).outcome for answer in (..., "", question.answer)]
@@ -200,7 +163,7 @@ def _try_text(question):
     if not question.rubric:
         faults.append("Nothing says what a person looks for: give a `rubric`.")
     name, kind = question.name, question.public["kind"]
-    return Finding(name, kind, [], [], [], Found(0, ""), question.worth, faults)
+    return Finding(name, kind, [], [], [], NOTHING, question.worth, faults)
 
 
 def _judge(question, answer):
@@ -409,9 +372,7 @@ def selftest(course, page=None, budget=BUDGET, only=()):
     AuthorError
         There is nothing to try, or a notebook cannot be read.
     """
-    paths, declared = notebooks_in(course.sources, only), declared_strengths(course.sources)
-    if only:
-        declared = {name: tries for name, tries in declared.items() if name.partition("/")[0] in only}
+    paths = notebooks_in(course.sources, only)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         tried = list(pool.map(_try_notebook, paths, [course] * len(paths), [budget] * len(paths)))
     findings = [finding for found, _ in tried for finding in found]
@@ -422,44 +383,83 @@ def selftest(course, page=None, budget=BUDGET, only=()):
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
         Path(page).write_text(write_page(findings, found), "utf8")
-    unknown = sorted(set(declared) - {finding.name for finding in findings})
+    if budget >= BUDGET:
+        _write_measured(course.sources, paths, {finding.name: finding.attack for finding in findings})
+    return [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] + [
+        f"{what} stands in {place}" for what, place in found
+    ]
+
+
+def measure(course, only=()):
+    """Attack the questions of some notebooks, and write down what was found beside the sources.
+
+    Returns
+    -------
+    list of str
+        A line for each question, one for each that counts much and is soon guessed, and the share of the points.
+    """
+    paths = notebooks_in(course.sources, only)
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+        measured = [one for some in pool.map(_measured_in, paths, [course] * len(paths)) for one in some]
+    _write_measured(course.sources, paths, {name: found for name, _, found in measured})
+    points = sum(worth for _, worth, _ in measured)
+    return [
+        *(f"{name}, {_of(worth, 'point')}: {found}" for name, worth, found in measured),
+        *(proposal(name, worth, found) for name, worth, found in measured if found.way and worth > LIGHT),
+        f"{_share_beyond([(worth, found) for _, worth, found in measured])} of {_of(points, 'point')} are behind more "
+        f"than {BUDGET:,} tries of a script.",
+    ]
+
+
+def _measured_in(path, course):
+    source = read_source(path, edition=course.edition)
+    found = weakest(source, course)
+    return [(name, question.worth, found[name]) for name, question in source.questions.items()]
+
+
+def proposal(name, worth, found):
+    """What an author may do of a question that counts much and is soon guessed."""
     return (
-        [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults]
-        + [f"{what} stands in {place}" for what, place in found]
-        + [f"{name}: {DECLARED} names it, and there is no such question." for name in unknown]
+        f"{name}, {_of(worth, 'point')}, {found}. To carry them, ask for several parts in one answer, for a function, "
+        "or say exam=True: then nothing is sealed, and the grader marks it."
     )
+
+
+def _write_measured(sources, paths, found):
+    """Write down after how many tries each question was guessed, for whoever reads the marks; 0 where it was not.
+
+    What is known of other notebooks stays.
+    """
+    tried, there = {path.stem for path in paths}, {path.stem for path in notebooks_in(sources)}
+    tries = {
+        name: count for name, count in measured_strengths(sources).items() if name.partition("/")[0] in there - tried
+    } | {name: one.tries if one.way else 0 for name, one in found.items()}
+    measured = {"format": FORMAT_OF_MEASURED, "tries": dict(sorted(tries.items()))}
+    Path(sources, MEASURED).write_text(json.dumps(measured, indent=1) + "\n", "utf8")
+
+
+def weakest(source, course, budget=BUDGET, numbers=(0,)):
+    """What the attack found of each question of a notebook, in the weakest of some of its variants."""
+    found, kept = {}, course.archive.parent / "attacks"
+    for number in numbers:
+        one_variant = read_source(course.sources / f"{source.name}.ipynb", number, course.edition) if number else source
+        for name, question in one_variant.questions.items():
+            if question.public.get("exam") or kinds()[question.public["kind"]].by_a_person:
+                found[name] = NOTHING
+                continue
+            one = attack_kept(question, text_of(one_variant, question), budget, kept)
+            if name not in found or one.way and (not found[name].way or one.tries < found[name].tries):
+                found[name] = one
+    return found
 
 
 def _try_notebook(path, course, budget):
     """What was found of the questions of a notebook, and its secrets."""
-    source, declared = read_source(path), declared_strengths(course.sources)
-    findings = [
-        try_question(
-            question, text_of(source, question), declared.get(name), budget, kept=course.archive.parent / "attacks"
-        )
-        for name, question in source.questions.items()
-    ]
-    weakest = {finding.name: finding.attack for finding in findings}
-    for number in _numbers_attacked(source):
-        for name, question in read_source(path, number, course.edition).questions.items():
-            if question.public.get("exam"):
-                continue
-            found = attack_kept(question, text_of(source, question), budget, course.archive.parent / "attacks")
-            if found.way and (not weakest[name].way or found.tries < weakest[name].tries):
-                weakest[name] = found
-    secrets = secrets_of(source)
-    findings = [
-        finding._replace(
-            attack=weakest[finding.name],
-            faults=[
-                *finding.faults,
-                *told_openly(source.questions[finding.name], secrets),
-                *_too_weak(finding, weakest, declared, budget),
-                *filter(None, [too_heavy(source.questions[finding.name], declared)]),
-            ],
-        )
-        for finding in findings
-    ]
+    source = read_source(path, edition=course.edition)
+    found, secrets, findings = weakest(source, course, budget, [0, *_numbers_attacked(source)]), secrets_of(source), []
+    for name, question in source.questions.items():
+        finding = try_question(question, found=found[name])
+        findings.append(finding._replace(faults=[*finding.faults, *told_openly(question, secrets)]))
     return findings, {} if source.name == CHAPTERS else secrets
 
 
@@ -467,15 +467,6 @@ def _numbers_attacked(source):
     """The numbers of the variants of a notebook that are attacked beside the first: always the same ones."""
     count = max((rule.count for rule in source.rules.values()), default=1)
     return sorted(random.Random(source.name).sample(range(1, count), min(ATTACKED, count - 1)))
-
-
-def _too_weak(finding, weakest, declared, budget):
-    """The fault of a question one of whose variants is guessed sooner than its author declared."""
-    found = weakest[finding.name]
-    if found == finding.attack or found.tries >= min(declared.get(finding.name) or BUDGET, budget):
-        return []
-    line = f'"{finding.name}": {rounded_down(found.tries)}'
-    return [f"One of its variants can be guessed: {found}. Make its answer richer, or declare it in {DECLARED}: {line}"]
 
 
 def attack_kept(question, text, budget, folder):
@@ -493,24 +484,36 @@ def attack_kept(question, text, budget, folder):
 
 
 def text_of(source, question):
-    """The text of a question: that of its variant, or the Markdown above the cell that its answer stands in."""
-    if "text" in question.public:
-        return shown(question.public["text"], question.public["shown"])
-    above = ""
+    """The text of a question, that of its variant or the Markdown above its check, and the open code of its cell."""
+    above, text = "", ""
     for cell in source.notebook.cells:
         if cell.cell_type == "markdown":
             above = cell.source
         elif f"check({question.name!r}" in cell.source.replace('"', "'"):
-            return above
-    return above
+            text = above
+            break
+    if "text" in question.public:
+        text = shown(question.public["text"], question.public["shown"])
+    return f"{text}{CODE}{_open_code(source, question)}"
 
 
-def _share_of_guessable(findings):
-    worth = sum(finding.worth for finding in findings)
-    return f"{sum(finding.worth for finding in findings if finding.attack.way) / max(1, worth):.0%}"
+def _open_code(source, question):
+    """The code that students get of the cell in which a question is answered."""
+    for cell in source.notebook.cells:
+        if cell.cell_type == "code" and re.search(
+            rf"^\s*{question.variable}\b|def {question.variable}\b", cell.source, re.M
+        ):
+            return VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", cell.source)))
+    return ""
+
+
+def _share_beyond(measured):
+    """The share of the points that the attack has not found: of pairs of points and what was found."""
+    return f"{sum(worth for worth, found in measured if not found.way) / max(1, sum(w for w, _ in measured)):.0%}"
 
 
 def write_page(findings, found, before=""):
+    share = _share_beyond([(one.worth, one.attack) for one in findings])
     rows = []
     for finding in findings:
         said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
@@ -542,8 +545,8 @@ def write_page(findings, found, before=""):
         f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
         "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
         f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has needed to find the "
-        "answer. Not found means not found by this attack: somebody may have a better idea. An answer that can be "
-        f"guessed should not count much: here such answers carry {_share_of_guessable(findings)} of the points.</p>"
+        "answer. Not found means not found by this attack: somebody may have a better idea. Of the "
+        f"points, {share} are behind more than {BUDGET:,} tries.</p>"
         f"{before}{leaked}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"

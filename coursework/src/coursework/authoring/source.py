@@ -34,10 +34,9 @@ MOST_PLACES = 10
 PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 #: Characters of a parameter up to which it is a word, and not a part of the text.
 LONGEST_WORD = 40
-#: The file beside the sources in which an author declares what may be guessed.
-DECLARED = "guessable.json"
-#: The most points that a question carries which can be guessed.
-LIGHT = 1
+#: The file beside the sources in which the selftest writes after how many tries each question was guessed, if it was.
+MEASURED = "strengths.json"
+FORMAT_OF_MEASURED = 1
 
 SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
 HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
@@ -112,24 +111,23 @@ def digest_of_code():
     return digest.hexdigest()
 
 
-def declared_strengths(sources):
-    """How many slow hashes each guessable question withstands, as its author declared in ``guessable.json``.
+def measured_strengths(sources):
+    """After how many tries the attack of the selftest guessed each question, by name: 0 where it did not.
 
-    A question that is not named there is to withstand the whole attack.
+    A question that is not named there has not been attacked yet.
+
+    Raises
+    ------
+    AuthorError
+        The file is of another version of coursework.
     """
-    file = Path(sources, DECLARED)
-    return json.loads(file.read_text("utf8")) if file.is_file() else {}
-
-
-def too_heavy(question, declared):
-    """The fault of a question that can be guessed and counts much all the same; or ``None``."""
-    if question.name not in declared or question.worth <= LIGHT:
-        return None
-    return (
-        f"{DECLARED} says that it can be guessed, after {declared[question.name]} tries, and it is worth "
-        f"{question.worth} points; {LIGHT} is the most for such a question. Make its answer richer, "
-        f"or say worth={LIGHT}."
-    )
+    file = Path(sources, MEASURED)
+    if not file.is_file():
+        return {}
+    measured = json.loads(file.read_text("utf8"))
+    if measured.get("format") != FORMAT_OF_MEASURED:
+        raise author.AuthorError(f"{file} is of another version of coursework: run `coursework selftest` anew.")
+    return measured["tries"]
 
 
 def read_source(path, variant=0, edition="", only=None, pictures=None):

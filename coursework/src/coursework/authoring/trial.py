@@ -9,8 +9,8 @@ from ..checking.variants import image
 from ..checking.variants import text_of as whole_text
 from .author import AuthorError, to_page
 from .release import shows_variants
-from .selftest import text_of, try_question, write_page
-from .source import answered_in, declared_strengths, read_source
+from .selftest import try_question, weakest, write_page
+from .source import answered_in, read_source
 
 
 def trial(course, name, page):
@@ -42,8 +42,8 @@ def trial(course, name, page):
         f"{_hints(question)}{_rubric(question)}</section>"
         for question in chosen
     )
-    declared = declared_strengths(course.sources)
-    findings = [try_question(one, text_of(source, one), declared.get(one.name)) for one in chosen]
+    found = weakest(source, course)
+    findings = [try_question(one, found=found[one.name]) for one in chosen]
     Path(page).parent.mkdir(parents=True, exist_ok=True)
     Path(page).write_text(_with_mathematics(write_page(findings, None, texts)), "utf8")
     return page

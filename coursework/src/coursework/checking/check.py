@@ -109,7 +109,7 @@ def hint(name: str) -> Reply:
     if left:
         lines.append(
             f"{left} more can be earned: hand in what you have to `check`, even if you are not sure of it. "
-            "Each different answer counts, pressing Run again does not."
+            "Each different answer counts; pressing Run again does not."
         )
     return Reply(name, "hints", "", lines)
 
@@ -119,10 +119,12 @@ def worked_solution(name: str, code: str) -> Reply:
     question = find_question(name)
     content = opened(question, code_text(str(code)))
     if content is None or "solution" not in content:
-        return Reply(name, "hints", "", ["This code opens no solution. Your instructor gives it out on a date."])
+        return Reply(
+            name, "hints", "", ["This code opens no solution. Your instructor gives the code out when it is time."]
+        )
     _note_help(name, "solution")
     entry = _entry(_read_progress(), name)
-    said = ["Read it, close it, and write it down by yourself."]
+    said = ["Read it, close it, and write it out for yourself."]
     reply = Reply(name, "hints", "", said, solution_on(question, content))
     _offer_sibling(reply, question, entry.get("help", ""))
     return reply

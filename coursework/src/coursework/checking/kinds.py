@@ -242,7 +242,7 @@ def _number(question, result):
     except NotSupported as error:
         raise Undecidable(f"The answer holds {error}, whose value is not worked out here.") from None
     except ValueError:
-        raise Fault("not real", "The answer has an imaginary part; what is asked for is real.") from None
+        raise Fault("not real", "The answer has an imaginary part; the question asks for something real.") from None
 
 
 def _imaginary_rest(question, result):
@@ -400,7 +400,7 @@ def _matrix(question, value):
 def _read_function(question, plain):
     value = plain["value"]
     if value[0] != "function":
-        raise Fault("shape", "A function is asked for: give its name, without calling it.")
+        raise Fault("shape", "The question asks for a function: give its name, without calling it.")
     inner = {**question, "kind": question["result"], "symbols": {}}
     if all(map(_blank, value[1])):
         if not value[2]:
@@ -565,7 +565,8 @@ def _unit_vector_fault(question, numbers):
         length = FUNCTIONS.norm(*numbers)
         if abs(length - 1) > slack(question):
             return Fault(
-                "not unit length", f"A unit vector is asked for; this one has length {length_in_words(length)}."
+                "not unit length",
+                f"The question asks for a unit vector; this one has length {length_in_words(length)}.",
             )
     return None
 
@@ -610,7 +611,7 @@ KINDS = {
     "measurement": Kind(
         begin=BEGIN["measurement"],
         entries=_measurement,
-        wrong="It is a number with a unit; the number, the unit or both are not the right ones.",
+        wrong="It is a number with a unit, but the number, the unit or both are wrong.",
         public=scale_of,
         mistakes=mistakes.of_measurement,
         messages=mistakes.OF_MEASUREMENTS,

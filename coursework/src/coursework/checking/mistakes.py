@@ -42,25 +42,25 @@ def message(question, note, details):
 
 
 def _only_the_transpose(question):
-    return "This is the transpose of what is asked for."
+    return "This is the transpose of what the question asks for."
 
 
 MESSAGES = {
     "transposed": _only_the_transpose,
-    "in degrees": lambda question: "The answer is in degrees; angles are in radians here.",
-    "in radians": lambda question: "The answer is in radians; degrees are asked for.",
+    "in degrees": lambda question: "Your answer is in degrees; angles here are in radians.",
+    "in radians": lambda question: "Your answer is in radians; the question asks for degrees.",
     "sign of a symbol": lambda question, symbol: f"The answer would be right if `{symbol}` had the other sign.",
     "symbols interchanged": lambda question, first, second: f"`{first}` and `{second}` are interchanged.",
-    "opposite": lambda question: "Every sign is wrong: this is the opposite of what is asked for.",
-    "reciprocal": lambda question: "This is the reciprocal of what is asked for.",
-    "factor": lambda question, factor: f"This is {factor} times what is asked for: the rest is right.",
+    "opposite": lambda question: "Every sign is wrong: this is minus what the question asks for.",
+    "reciprocal": lambda question: "This is the reciprocal of what the question asks for.",
+    "factor": lambda question, factor: f"This is {factor} times what the question asks for. The rest is right.",
     "one wrong": lambda question, number: f"One of the {NUMBERS[number]} is not right; all the others are.",
-    "half": lambda question: "This is half of what is asked for.",
-    "double": lambda question: "This is twice what is asked for.",
+    "half": lambda question: "This is half of what the question asks for.",
+    "double": lambda question: "This is twice what the question asks for.",
     "supplement": lambda question: "This angle and the one asked for add up to half a turn.",
     "complement": lambda question: "This angle and the one asked for add up to a quarter turn.",
     "not turned": lambda question: (
-        "These are the components along the frame that you started from. They are still to be turned."
+        "These are the components along the frame that you started from. You still have to turn them."
     ),
     "turned the wrong way": lambda question: (
         "The components were multiplied by the transpose of the matrix that turns them."
@@ -71,12 +71,12 @@ MESSAGES = {
 POWERS = (3, -3, 6, -6, 2, -2)
 OF_MEASUREMENTS = {
     "power of ten": lambda question, power: (
-        f"This is $10^{{{power}}}$ times what is asked for. Has a prefix got lost, as in kN or mm?"
+        f"This is $10^{{{power}}}$ times what the question asks for. Has a prefix been lost, as in kN or mm?"
     ),
 }
 OF_ORDERS = {
-    "turned round": lambda question: "The order is turned round: the last comes first here.",
-    "two interchanged": lambda question: "Two that are neighbours are interchanged; all the others are in order.",
+    "turned round": lambda question: "This order is back to front: the last one comes first.",
+    "two interchanged": lambda question: "Two neighbours have been swapped; all the others are in order.",
 }
 
 

@@ -129,7 +129,7 @@ def _to_plain(answer, calls):
     if calls is None or _is_blank(answer):
         value = writer.value(answer, 0)
     elif not callable(answer):
-        raise NotPlain("A function is asked for: give its name, without calling it.")
+        raise NotPlain("The question asks for a function: give its name, without calling it.")
     else:
         value = ["function", [writer.result(answer, arguments) for arguments in calls], _works_something_out(answer)]
     return {"value": value, "nodes": writer.nodes}
@@ -211,7 +211,7 @@ class _Writer:
         """The frames of the book's own graph: the matrix of every pair that is connected."""
         names = sorted({name for edge in answer._edges for name in (edge.frame, edge.reference)})
         if len(names) > 12:
-            raise NotPlain("More than 12 frames are given: bind the matrix that is asked for.")
+            raise NotPlain("You have given more than 12 frames: bind the matrix that the question asks for.")
         found = {}
         for target in names:
             for source in names:
@@ -271,7 +271,7 @@ class _Writer:
             sides = [side for side in answer.args if not isinstance(side, (sympy.Symbol, AppliedUndef))]
             if len(sides) == 1:
                 return self.value(sides[0], depth)
-            raise NotPlain("An equation is no value: give the side of it that is asked for.")
+            raise NotPlain("An equation is not a value: give the side of it that the question asks for.")
         if answer in (sympy.true, sympy.false):
             return ["truth", bool(answer)]
         if _has_unit(answer):

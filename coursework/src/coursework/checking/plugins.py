@@ -82,7 +82,7 @@ class Kind(NamedTuple):
     unique: Callable | None = None
     fault: Callable | None = None
     parts: int = 1
-    wrong: str = "The form is right, the value is not."
+    wrong: str = "The form is right; the value is not."
     begin: str = ""
     needs: tuple = ()
     arguments: tuple = ()

@@ -241,7 +241,7 @@ def compare(name, question, plain, find):
         reading = read(question, plain)
         if kinds()[question["kind"]].by_a_person:
             words = len(reading.text.split())
-            said = f"A person reads this text of {words} {'word' if words == 1 else 'words'}, and decides."
+            said = f"A person will read this text of {words} {'word' if words == 1 else 'words'} and decide."
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
         reply = _compare(name, question, plain, reading, text, find) if find else _taken_down(name, question, reading)
@@ -344,7 +344,10 @@ def _not_known(name, question, plain, reading, find, content):
             name,
             "wrong",
             "rounded too far",
-            ["This agrees with the exact answer to about three digits, and an exact answer is asked for.", decimals],
+            [
+                "This agrees with the exact answer to about three digits, but the question asks for an exact answer.",
+                decimals,
+            ],
         )
     for (slip, why, turned), content in zip(others, found):
         case = _case_of(question, turned, content)
@@ -353,7 +356,10 @@ def _not_known(name, question, plain, reading, find, content):
             reply = Reply(name, "wrong", f"{slip}, and {case['notes'][0][0]}", [f"Two things at once: {why} {said}"])
             reply.details = case["notes"][0][1]
             return reply
-    said = [decimals, what_can_be_said(question, plain), "" if decimals else _few_digits(question, plain)]
+    # Whoever has rounded right work hears of that first, and not that the value is wrong.
+    few = "" if decimals else _few_digits(question, plain)
+    right = what_can_be_said(question, plain)
+    said = [decimals, few, f"If not: {right[:1].lower()}{right[1:]}" if few and right else right]
     return Reply(name, "wrong", "", [" ".join(filter(None, said))])
 
 
@@ -378,7 +384,8 @@ def _decimals(question, plain, reading):
     exact = question.get("tolerance") is None and reading.text is None
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
-    return "It holds decimal fractions; an exact answer is asked for: write `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+    exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
+    return f"It holds decimal fractions, but the question asks for an exact answer: write {exact_forms}."
 
 
 def _few_digits(question, plain):
@@ -396,8 +403,8 @@ def _few_digits(question, plain):
             if 0.5 * 10.0**-places > allowed and Fraction(node[1]).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
-                    f"`{float(node[1]):g}` has {count} after the point, and an answer may be off by {allowed:.1g} at "
-                    "most: if you have rounded, keep all digits until the end."
+                    f"Was this rounded? `{float(node[1]):g}` has {count} after the point, and an answer may be off by "
+                    f"{allowed:.1g} at most: if so, keep all digits until the end."
                 )
     return ""
 

@@ -503,9 +503,10 @@ def _say_guessable(questions, show):
         worth = sum(question["worth"] for question in asked.values())
         cheap = {name: question for name, question in asked.items() if question["guessable"] is not None}
         if cheap:
+            tries = ", ".join(f"{name} after {question['guessable']} tries" for name, question in sorted(cheap.items()))
             print(
                 f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} "
-                f"points could be guessed by a script that tries answers ({', '.join(sorted(cheap))}).",
+                f"points were guessed by a script that tries answers ({tries}).",
                 file=show,
             )
 

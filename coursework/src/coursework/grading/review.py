@@ -425,7 +425,7 @@ class _Overview(_Page):
         found = graded.chosen(filters, self.settings["hide_names"])
         outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
         guessable = {name: about for name, about in graded.questions.items() if about["guessable"] is not None}
-        clusters = graded.clusters.values()
+        guessed, clusters = sum(about["worth"] for about in guessable.values()), graded.clusters.values()
         self.show(
             "overview.html",
             filters=filters,
@@ -437,6 +437,7 @@ class _Overview(_Page):
             titles={one.question: one.mark["title"] for one in graded.clusters.values()},
             text=lambda cluster: pages.answer_as_text(cluster.answer.get("plain"), 120),
             guessable=guessable,
+            beyond=1 - guessed / max(1, sum(about["worth"] for about in graded.questions.values())),
         )
 
 

@@ -374,8 +374,8 @@ const costOf = ({ faults, rarity }) => Math.round((faults + rarity) * 1e6), pric
 function sideOf(poses, declared, table) {
   const cheapest = new Map();
   for (const kind of poses.kinds) {
-    const angles = kind === 'Euler angles' || kind === 'rotation vector' ? poses.numbers.flat() : poses.numbers.map((pose) => pose.at(-1));
-    const large = kind !== 'quaternion' && angles.some((value) => Math.abs(value) > 2 * Math.PI + 0.01);
+    // Of an axis and its angle, wherever that stands, only the angle can be large.
+    const large = kind !== 'quaternion' && poses.numbers.flat().some((value) => Math.abs(value) > 2 * Math.PI + 0.01);
     for (const reading of readingsOf(kind, declared, large, table)) {
       const key = readingKey(reading), held = cheapest.get(key);
       if (!held || price(reading, held) < 0) cheapest.set(key, reading);

@@ -17,7 +17,7 @@ from importlib import metadata
 from pathlib import Path
 
 from ...authoring.course import find_course
-from ...authoring.source import DECLARED
+from ...authoring.source import MEASURED
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
 from ..versions import folders
@@ -75,8 +75,8 @@ def write_autograder(path, assignments, *, solutions=None, roster=None):
         **{f"solutions/{stem}.ipynb": course.sources[stem].read_bytes() for stem in stems},
         f"solutions/{SECRET}": (folder / SECRET).read_bytes(),
     }
-    if (folder / DECLARED).is_file():
-        files[f"solutions/{DECLARED}"] = (folder / DECLARED).read_bytes()
+    if (folder / MEASURED).is_file():
+        files[f"solutions/{MEASURED}"] = (folder / MEASURED).read_bytes()
     if course.edition:
         files["course.toml"] = f"edition = {json.dumps(course.edition)}\n".encode()
     if roster:

@@ -19,7 +19,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ...authoring.author import AuthorError
-from ...authoring.source import DECLARED, checked_names, declared_strengths, read_source, texts_of_questions
+from ...authoring.source import MEASURED, checked_names, measured_strengths, read_source, texts_of_questions
 from ...checking.evaluate import MP
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
 from ...checking.plain import NotPlain, read_plain
@@ -80,17 +80,17 @@ def questions_of(path, secret, edition=""):
 
 
 def _questions_of(path, secret, edition):
-    declared = declared_strengths(Path(path).parent)
+    measured = measured_strengths(Path(path).parent)
     source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
     texts = texts_of_questions(source.notebook, source.figures)
     found = {
-        name: about(question, secret, declared.get(name), texts.get(name, ""))
+        name: about(question, secret, measured.get(name) or None, texts.get(name, ""))
         for name, question in source.questions.items()
     }
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
         having = [name for name, rule in source.rules.items() if number < rule.count]
         for name, question in read_source(path, number, edition, having, pictures=True).questions.items():
-            found[name].setdefault("others", []).append(about(question, secret, declared.get(name)))
+            found[name].setdefault("others", []).append(about(question, secret, measured.get(name) or None))
     return found
 
 
@@ -146,7 +146,7 @@ def with_second_chances(questions, named=None):
 def about(question, secret, guessable=None, text=""):
     """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it.
 
-    ``guessable`` is how many tries of a script it withstands, where its author declared that it can be guessed;
+    ``guessable`` is after how many tries the attack guessed it, if it did;
     ``text`` is that in the source: a question with variants holds its own, beside which the figures stay.
     """
     found = json.loads(
@@ -189,9 +189,9 @@ def load_questions(paths, kept, secret, edition=""):
     """
     places = {}
     for path in map(Path, paths):
-        declared = path.with_name(DECLARED)
-        declared = declared.read_bytes() if declared.is_file() else b""
-        ours = hashlib.sha256(json.dumps(software()).encode() + secret + declared).digest()
+        measured = path.with_name(MEASURED)
+        measured = measured.read_bytes() if measured.is_file() else b""
+        ours = hashlib.sha256(json.dumps(software()).encode() + secret + measured).digest()
         depends = hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]
         places[path] = Path(kept) / f"{path.stem}-{depends}.json"
 
