@@ -219,9 +219,13 @@ def picture(still, world, colours=None):
         marks.append(f'<g class="text {colour}" transform="{place}">{glyphs}</g>')
     letters = "".join(f'<path id="{still["id"]}-{k}" d="{outline}"/>' for outline, k in outlines.items())
     marks.insert(0, f"<defs>{letters}</defs>" if letters else "")
-    half = FINE * paper.half
+    half, inner = FINE * paper.half, ""
+    if colours:  # what of the sheet is drawn on, for a picture that is cut out of it
+        corners = FINE * np.concatenate([face[2] for face in found])
+        left, top, right, bottom = *np.floor(corners.min(axis=0)), *np.ceil(corners.max(axis=0))
+        inner = f' data-box="{left:.0f} {top:.0f} {right - left:.0f} {bottom - top:.0f}"'
     return (
-        f'<svg viewBox="{-half:g} {-half:g} {2 * half:g} {2 * half:g}" style="max-width:{world["size"]}px" role="img" '
+        f'<svg viewBox="{-half:g} {-half:g} {2 * half:g} {2 * half:g}" style="max-width:{world["size"]}px" role="img"{inner} '
         f'aria-label="{escape(words(still))}">{"".join(marks)}</svg>'
     )
 
