@@ -225,7 +225,8 @@ def picture(still, world, colours=None):
         left, top, right, bottom = *np.floor(corners.min(axis=0)), *np.ceil(corners.max(axis=0))
         inner = f' data-box="{left:.0f} {top:.0f} {right - left:.0f} {bottom - top:.0f}"'
     return (
-        f'<svg viewBox="{-half:g} {-half:g} {2 * half:g} {2 * half:g}" style="max-width:{world["size"]}px" role="img"{inner} '
+        f'<svg viewBox="{-half:g} {-half:g} {2 * half:g} {2 * half:g}" '
+        f'style="max-width:{world["size"]}px" role="img"{inner} '
         f'aria-label="{escape(words(still))}">{"".join(marks)}</svg>'
     )
 
