@@ -37,8 +37,8 @@ POLICY = {
 
 
 def pages_of(site):
-    """The pages of the book in ``site``; notebooks in ``lite`` are not pages."""
-    return [path for path in sorted(site.rglob("*.html")) if path.relative_to(site).parts[0] != "lite"]
+    """The pages of the book in ``site``; notebooks in ``lite`` are not pages, nor figures for other people's pages."""
+    return [path for path in sorted(site.rglob("*.html")) if path.relative_to(site).parts[0] not in ("lite", "embed")]
 
 
 def policy(text, elsewhere):
@@ -60,7 +60,7 @@ def write(site):
     lock = json.loads(listed.read_text("utf8"))
     addresses = [package["file_name"] for package in lock["packages"].values()]
     elsewhere = sorted({"/".join(address.split("/")[:3]) for address in addresses if "://" in address})
-    for page in pages_of(site):
+    for page in [*pages_of(site), *sorted(site.glob("embed/*.html"))]:
         before = page.read_text("utf8")
 
         def with_version(match, folder=page.parent):

@@ -60,7 +60,8 @@ def first_figure(body):
         if f'id="{name}"' not in found[0]
     )
     figure = found[0].replace(">", f"><defs>{shared}</defs>", 1)
-    return figure, [float(number) for number in found[1].split()], html.unescape(found[2])
+    inner = re.search(r'^<svg [^>]*data-box="([^"]*)"', found[0])  # where much of the sheet is empty
+    return figure, [float(number) for number in (inner or found)[1].split()], html.unescape(found[2])
 
 
 def drawn(figure, box):

@@ -9,7 +9,7 @@ import json
 from functools import cache
 from pathlib import Path
 
-from ..style import STYLE
+from ..style import LIGHT, STYLE
 
 FOLDER = Path(__file__).parent
 #: What the page's figure has in the script's colours, in the tones of paper.
@@ -53,6 +53,18 @@ def style():
     return f"{own}{{{colours(_OWN)}}}{own} .paper{{fill:#fff}}{names}{tones}{flat}{dark}"
 
 
+def _light(name):
+    """The colour of a class of the stills, such as ``B tone-3``, on a light page."""
+    colour, _, tone = name.partition(" tone-")
+    part, other = _TONES[int(tone)]
+    if colour in ("ground", "shade", "muted", "star", "paper"):
+        part = 0
+    known = (LIGHT | _OWN)[colour]
+    towards = 0 if other == "#000" else 255
+    mixed = (round(int(known[k : k + 2], 16) * (1 - part / 100) + towards * part / 100) for k in (1, 3, 5))
+    return "#" + "".join(f"{value:02x}" for value in mixed)
+
+
 class Stop:
     """One stop of the essay, as a notebook, a page without scripts and paper show it."""
 
@@ -63,11 +75,11 @@ class Stop:
         self.name = name
         self.still = scenes()["stills"][known.index(name)]
 
-    def svg(self):
-        """The SVG element."""
+    def svg(self, colours=None):
+        """The SVG element; ``colours`` as in :func:`orientation_figures.rotations.painter.picture`."""
         from .painter import picture
 
-        return picture(self.still, scenes())
+        return picture(self.still, scenes(), colours)
 
     def _repr_html_(self):
         return (
@@ -88,5 +100,5 @@ class Gimbal(Stop):
         return (
             f'<figure class="orientation-figure painted world" '
             f'data-figure="rotations">'
-            f'<style>{STYLE}{style()}</style><div class="still">{self.svg()}</div></figure>'
+            f'<style>{STYLE}{style()}</style><div class="still">{self.svg(_light)}</div></figure>'
         )

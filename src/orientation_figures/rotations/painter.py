@@ -178,8 +178,11 @@ class Paper:
                 yield -40, "shade tone-3", self.place(fallen)[0], 1
 
 
-def picture(still, world):
-    """The SVG element of one stop, with the words that say what is seen."""
+def picture(still, world, colours=None):
+    """The SVG element of one stop, with the words that say what is seen.
+
+    ``colours`` gives the colour of a class, for programs that do not know the style sheet of a page.
+    """
     paper = Paper(still["view"], world)
     found = [face for item in still["items"] for face in paper.faces(item)]
     found += [face for item in still["items"] if item[7] for face in paper.shadow(item)]
@@ -190,6 +193,8 @@ def picture(still, world):
         if data:
             name, alpha = kind
             faint = f' opacity="{alpha:.2g}"' if alpha < 0.97 else ""
+            if colours:
+                faint += f' fill="{colours(name)}" stroke="none"'
             marks.append(f'<path class="{name}"{faint} d="{"".join(data)}"/>')
         data.clear()
 
@@ -214,9 +219,14 @@ def picture(still, world):
         marks.append(f'<g class="text {colour}" transform="{place}">{glyphs}</g>')
     letters = "".join(f'<path id="{still["id"]}-{k}" d="{outline}"/>' for outline, k in outlines.items())
     marks.insert(0, f"<defs>{letters}</defs>" if letters else "")
-    half = FINE * paper.half
+    half, inner = FINE * paper.half, ""
+    if colours:  # what of the sheet is drawn on, for a picture that is cut out of it
+        corners = FINE * np.concatenate([face[2] for face in found])
+        left, top, right, bottom = *np.floor(corners.min(axis=0)), *np.ceil(corners.max(axis=0))
+        inner = f' data-box="{left:.0f} {top:.0f} {right - left:.0f} {bottom - top:.0f}"'
     return (
-        f'<svg viewBox="{-half:g} {-half:g} {2 * half:g} {2 * half:g}" style="max-width:{world["size"]}px" role="img" '
+        f'<svg viewBox="{-half:g} {-half:g} {2 * half:g} {2 * half:g}" '
+        f'style="max-width:{world["size"]}px" role="img"{inner} '
         f'aria-label="{escape(words(still))}">{"".join(marks)}</svg>'
     )
 
