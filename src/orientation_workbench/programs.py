@@ -25,6 +25,9 @@ FORMS = ("matrix", "quaternion", "body fixed angles", "space fixed angles", "axi
 TAIT_BRYAN = ["xyz", "yzx", "zxy", "xzy", "zyx", "yxz"]
 OTHER = "another program"
 
+#: What each program, by its name, means by its numbers: its ``matrix`` (``'as here'`` or ``'transposed'``), where the
+#: ``scalar`` of its quaternions stands, the ``unit`` of its angles, the ``lines`` of code for each form, the
+#: ``version`` that was run and the ``manual``. The head of the file explains every entry.
 PROGRAMS = {
     "this book": {
         "version": "",
