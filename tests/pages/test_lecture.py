@@ -4,6 +4,7 @@ import json
 
 import pytest
 from places import HTML
+from playwright.sync_api import expect
 from test_site import violations
 
 CHAPTERS = sorted(path.stem for path in (HTML / "chapters").glob("*.html"))
@@ -80,6 +81,7 @@ def test_keys_work_after_clicks_and_on_what_is_moved(opened):
         page.keyboard.press("ArrowRight")
     slider = page.locator("figure.in-step [type=range]").first
     slider.click()
+    expect(page.locator(".lecture-line")).to_be_focused()
     page.keyboard.press("ArrowRight")
     assert step(page) == 6  # a pointer gives the keys back
     slider = page.locator("figure.in-step [type=range]").first

@@ -68,7 +68,7 @@ def check(name: str, answer: object) -> Reply:
     """
     question = find_question(name)
     try:
-        reply, content = judge(name, question, to_plain(answer, calls_for(question)))
+        reply, content = judge(name, question, to_plain(answer, calls_for(question), raise_missing=True))
     except NotPlain as error:
         reply, content = Reply(name, "invalid", "unreadable", [str(error)]), {}
     if reply.outcome == "correct" and "solution" in content:

@@ -95,7 +95,7 @@ def limited_work(most=MOST_CALLS):
         sys.settrace(before)
 
 
-def to_plain(answer, calls=None):
+def to_plain(answer, calls=None, raise_missing=False):
     """Give an answer as plain data.
 
     Parameters
@@ -105,6 +105,9 @@ def to_plain(answer, calls=None):
     calls : list of lists, optional
         For a question that asks for a function: the arguments of each call, already of the type that
         the function is to be given. The results, and errors, of the calls are the answer.
+    raise_missing : bool
+        Whether the error of a package that is not here goes on to whoever asks, who may bring the package (a page
+        fetches NumPy) and ask again; otherwise it counts as the answer's own.
 
     Raises
     ------
@@ -112,26 +115,32 @@ def to_plain(answer, calls=None):
         The answer is of a kind that no question asks for, or too large to read.
     """
     try:
-        return _to_plain(answer, calls)
+        return _to_plain(answer, calls, raise_missing)
     except NotPlain:
         raise
     except RecursionError:
         raise NotPlain("The answer is nested too deeply to be read. Simplify it.") from None
     except Exception as error:
+        if raise_missing and isinstance(error, ModuleNotFoundError):
+            raise
         raise NotPlain(
             f"An answer of type `{type(answer).__name__[:40]}` could not be read ({type(error).__name__}). "
             "Give a SymPy expression, a matrix, a list of numbers or a text."
         ) from None
 
 
-def _to_plain(answer, calls):
+def _to_plain(answer, calls, raise_missing):
     writer = _Writer()
     if calls is None or _is_blank(answer):
         value = writer.value(answer, 0)
     elif not callable(answer):
         raise NotPlain("The question asks for a function: give its name, without calling it.")
     else:
-        value = ["function", [writer.result(answer, arguments) for arguments in calls], _works_something_out(answer)]
+        value = [
+            "function",
+            [writer.result(answer, arguments, raise_missing) for arguments in calls],
+            _works_something_out(answer),
+        ]
     return {"value": value, "nodes": writer.nodes}
 
 
@@ -281,7 +290,7 @@ class _Writer:
             return ["expression", self.expression(answer)]
         raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
 
-    def result(self, function, arguments):
+    def result(self, function, arguments, raise_missing):
         printed = io.StringIO()
         try:
             with contextlib.redirect_stdout(printed):
@@ -292,6 +301,8 @@ class _Writer:
         except NotPlain:
             raise
         except (Exception, SystemExit) as error:
+            if raise_missing and isinstance(error, ModuleNotFoundError):
+                raise
             return ["raised", _text(f"{type(error).__name__}: {error}"[:300])]
 
     def node(self, *parts):

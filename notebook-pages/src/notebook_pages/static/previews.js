@@ -17,7 +17,7 @@
   });
 
   // A copy of a place of this page, without names and links of its own.
-  function copied(place) {
+  const copied = (place) => {
     const box = document.createElement("div");
     if (place.matches("dt")) {
       let text = place;
@@ -36,9 +36,9 @@
     box.querySelectorAll("[id]:not(svg [id])").forEach((part) => part.removeAttribute("id"));
     box.querySelectorAll(".later").forEach((part) => part.classList.remove("later"));
     return box;
-  }
+  };
 
-  async function contentOf(link) {
+  const contentOf = async (link) => {
     const url = new URL(link.href), name = decodeURIComponent(url.hash.slice(1));
     if (url.pathname === location.pathname) {
       const place = document.getElementById(name);
@@ -47,18 +47,19 @@
     if (!url.href.startsWith(root.href)) return null;
     const found = (await places(url.href.slice(root.href.length).replace(/(\.html)?[?#].*$/, "")))[name];
     return found ? Object.assign(document.createElement("div"), { innerHTML: found }) : null;
-  }
+  };
 
-  function close() {
+  // Constants: a function declared here would take the place of the window's own.
+  const close = () => {
     clearTimeout(timer);
     wanted = null;
     if (!shown) return;
     shown.link.removeAttribute("aria-describedby");
     shown.box.remove();
     shown = null;
-  }
+  };
 
-  function open(link, wait) {
+  const open = (link, wait) => {
     clearTimeout(timer);
     if (shown?.link === link) return;
     wanted = link;
@@ -76,7 +77,7 @@
       box.style.left = `${Math.max(8, Math.min(at.left, document.documentElement.clientWidth - size.width - 8)) - from.left}px`;
       box.style.top = `${(below ? at.bottom + 6 : at.top - size.height - 6) - from.top}px`;
     }, wait);
-  }
+  };
 
   const linkAt = ({ target }) => target.closest?.(LINKS);
   document.addEventListener("pointerover", (event) => {

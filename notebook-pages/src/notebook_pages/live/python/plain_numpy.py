@@ -38,8 +38,8 @@ def handed_on(value):
         return value.__array__()
     if isinstance(value, Scalar):
         return value.__array__()[()]
-    if isinstance(value, (list, tuple)):
-        return type(value)(map(handed_on, value))
+    if isinstance(value, (list, tuple)):  # one with names is made of its parts one by one
+        return getattr(value, "_make", type(value))(map(handed_on, value))
     return value
 
 
