@@ -133,6 +133,7 @@ def chapter(text=GOOD_TEXT, code=GOOD_FIGURE, metadata=None):
 ALTERNATIVE = "A straight line that rises from one to two."
 
 
+@pytest.mark.long  # every other test of pages has a good book
 def test_good_book(tmp_path):
     plot = chapter(code=PLOT, metadata={"image": {"alt": ALTERNATIVE}})
     code, words = build(tmp_path, {"chapter": chapter(), "plot": own_labels(plot, "plot")})

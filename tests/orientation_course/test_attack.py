@@ -85,6 +85,7 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
         assert found.way and found.tries < most, (name, found)
 
 
+@pytest.mark.long
 def test_a_function_of_turns_is_attacked_by_some_of_them():
     """A question whose answer is a loop over the turns has candidates, and is found where one turn is enough."""
 

@@ -28,6 +28,9 @@ def run(folder, *arguments):
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 
+pytestmark = pytest.mark.long  # a whole site is built for it
+
+
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
     folder = tmp_path_factory.mktemp("courses")

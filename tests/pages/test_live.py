@@ -920,7 +920,7 @@ def test_cell_that_runs_is_not_run_again_by_a_second_press(shared):
     assert "= 1" in shared.try_code(4, "print('count =', count)")
 
 
-@pytest.mark.sampled(2, of="a hurried hand")
+@pytest.mark.long
 def test_what_is_asked_for_right_after_stop_runs(shared):
     """Here Python does not listen: it ends, and what stands above the cell runs again before it."""
     shared.try_code(3, "above = 'there'")
@@ -1155,7 +1155,7 @@ def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser
     context.close()
 
 
-@pytest.mark.sampled(1, of="figures and code")
+@pytest.mark.long
 def test_a_figure_is_set_from_a_matrix_of_the_readers_own(context, site):
     page = Page(context, site, "chapters/direction-cosine-matrices.html")
     text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"

@@ -82,7 +82,7 @@ STEPS = {
 
 
 @pytest.mark.parametrize("step", STEPS)
-@pytest.mark.sampled(3)
+@pytest.mark.long
 def test_each_step_to_a_question_that_is_hard_to_guess_was_tried(step):
     name, kind, answer, about, text = STEPS[step]
     found = attack(author.question(name, kind, answer, **about), text)
