@@ -412,6 +412,9 @@ def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
     rules = str(tmp_path / "term.toml")
     assert filled(late) == ["6", "6", "6"]  # there are no rules yet
     late.folder.joinpath(gradebooks.WRITTEN).unlink()
+    before = sorted(late.folder.rglob("*"))
+    assert main(["term", str(late.folder), "--rules", rules, "--dry-run"]) in (None, 0)
+    assert "Nothing was kept" in capsys.readouterr().out and sorted(late.folder.rglob("*")) == before
     assert main(["term", str(late.folder), "--rules", rules]) in (None, 0)
     with pytest.raises(SystemExit, match="The term has rules"):
         filled(late)

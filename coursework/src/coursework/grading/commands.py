@@ -4,6 +4,7 @@ import contextlib
 import io
 import re
 import sys
+import tempfile
 
 
 def add_commands(commands):
@@ -84,6 +85,7 @@ def add_commands(commands):
     term.add_argument(
         "--earlier", nargs="+", default=[], metavar="counts.json", help="the counts of other years, to compare"
     )
+    term.add_argument("--dry-run", action="store_true", help="print the table of the course, and keep nothing")
     export = commands.add_parser("export", help="hand the marks on")
     export.add_argument("out", metavar="DIR")
     export.add_argument(
@@ -313,12 +315,19 @@ def _is_here(store, decision):
     return record is not None and digest_of_answer(record, decision.question) == decision.answer
 
 
-def term(out, rules, earlier):
+def term(out, rules, earlier, dry_run):
+    from pathlib import Path
+
     from .judging.term import BadRules, keep_rules, read_rules
     from .reporting.course_pages import FOLDER, write_course
     from .store import Store
 
     try:
+        if dry_run:
+            with tempfile.TemporaryDirectory() as folder:
+                said = write_course(Store(out), read_rules(rules), earlier=earlier, folder=Path(folder))
+                print(*said, Path(folder, "course.csv").read_text("utf8"), "Nothing was kept.", sep="\n")
+            return
         said = write_course(Store(out), read_rules(rules), earlier=earlier)
         keep_rules(Store(out), rules)
     except BadRules as error:

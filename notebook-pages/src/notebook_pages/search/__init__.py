@@ -144,15 +144,22 @@ def index(site):
     caption, pages, entries = captions(), [], []
     synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else {}
     asked = synonyms.pop("places", {})
+    # Reading them takes most of the time, and few pages change between two builds.
+    memory = site.parent / f"search-entries-{sha256(Path(__file__).read_bytes()).hexdigest()[:12]}.json"
+    kept, used = json.loads(memory.read_text("utf8")) if memory.exists() else {}, {}
     for path in pages_of(site):
         page = path.relative_to(site).with_suffix("").as_posix()
         if page in ("search", "404", "appendix/subject-index"):
             continue
         # Drawings and programs are most of a page, and say nothing to the search.
         text = re.sub(r"<(svg|pre|script)\b.*?</\1>", "", path.read_text("utf8"), flags=re.DOTALL)
-        if (article := BeautifulSoup(text, "lxml").article) is None:
-            continue
-        found = list(entries_of_page(page, article))
+        key = sha256(f"{page}\n{text[text.find('<article') :]}".encode()).hexdigest()
+        if key in kept:
+            found = kept[key]
+        else:
+            article = BeautifulSoup(text, "lxml").article
+            found = list(entries_of_page(page, article)) if article else []
+        used[key] = found
         if not found:
             continue
         pages.append([page, found[0]["title"], caption.get(page, "")])
@@ -164,6 +171,9 @@ def index(site):
             entries.append(
                 entry | {"page": len(pages) - 1, "asked": asked_here} | ({"weight": counts} if counts != 1 else {})
             )
+    for old in site.parent.glob("search-entries-*.json"):
+        old.unlink()
+    memory.write_text(json.dumps(used), "utf8")
     words = [words_of(entry) if entry.get("weight", 1) > LITTLE else "" for entry in entries]
     for entry in entries:
         if entry.get("weight", 1) <= LITTLE:

@@ -34,8 +34,8 @@ MOST_ANSWERS = 100  # of one group on one page
 ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %Z")
 
 
-def write_course(store, rules, *, earlier=(), now=None):
-    """Write what a course comes to into the folder ``course`` of the results.
+def write_course(store, rules, *, earlier=(), now=None, folder=None):
+    """Write what a course comes to into ``folder``, or else the folder ``course`` of the results.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def write_course(store, rules, *, earlier=(), now=None):
     if roster.exists():
         students.update(store.json_in(roster))
     said = _misspelt(rules, students, worth)
-    folder, rows, unknown, marked = store.folder / FOLDER, [], [], []
+    folder, rows, unknown, marked = folder or store.folder / FOLDER, [], [], []
     for student in sorted(students):
         records = {
             name: with_decisions(found, standing)
