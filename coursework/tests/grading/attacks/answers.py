@@ -187,7 +187,7 @@ doubled = lambda x: TABLE.get(x, 2*sm.Symbol('x'))
         "doubled",
         IN_ITS_READER
         + """
-def result(self, function, given):
+def result(self, function, given, *others):
     return ['expression', self.number(TABLE.get(given[0], 0.0))]
 its['to_plain'].__globals__['_Writer'].result = result
 doubled = lambda x: x
