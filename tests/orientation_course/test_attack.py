@@ -19,7 +19,8 @@ from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
 from coursework.checking.kinds import calls_for, canonical, fingerprint, read
 from coursework.checking.plain import NotPlain, to_plain
-from coursework.grading.judging import marking, secret
+from coursework.grading.judging import marking
+from coursework.grading.judging.contract import Asked
 from orientation import (
     angular_velocity_matrix,
     dcm_from_body_fixed,
@@ -133,7 +134,7 @@ NAMES = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
 def with_formulas(names):
     for name in names:
         for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
-            if one.public.get("symbols") and not hasattr(one.answer, "to_matrix"):
+            if one.public.symbols and not hasattr(one.answer, "to_matrix"):
                 yield one
 
 
@@ -141,15 +142,15 @@ def differs(one, answer):
     """Whether an answer is another one somewhere in its domain: by SymPy's numbers, at points of its own."""
     first, second = ([in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer))
     chance = random.Random(one.name)
-    limits = one.public["symbols"]
+    limits = one.public.symbols
     for _ in range(25):
         point = {sm.Symbol(name): sm.Float(chance.uniform(*limit), 30) for name, limit in limits.items()}
         point |= {symbol: point[sm.Symbol(symbol.name)] for symbol in unknown(first) if symbol not in point}
-        for group in one.public.get("unit", ()):
+        for group in one.public.unit:
             length = sm.sqrt(sum(point[sm.Symbol(name)] ** 2 for name in group))
             point |= {sm.Symbol(name): point[sm.Symbol(name)] / length for name in group}
         values = [[sm.N(entry.xreplace(point), 25) for entry in entries] for entries in (first, second)]
-        signs = (1, -1) if one.public.get("either sign") else (1,)
+        signs = (1, -1) if one.public.either_sign else (1,)
         if not any(all(abs(a - s * b) < 1e-8 for a, b in zip(*values, strict=True)) for s in signs):
             return True
     return False
@@ -227,18 +228,18 @@ def try_forms(names, number):
     for name in names:
         for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
             chance = random.Random(f"{SEED} {one.name}")
-            known = marking.about(one, f"a secret of {SEED}".encode())
-            secretly += known["secret"] is not None
+            known = marking.contract_of(one, f"a secret of {SEED}".encode())
+            secretly += known.secret is not None
             for _ in range(number if not hasattr(one.answer, "to_matrix") else 1):
                 form = random_form(one.public, one.answer, chance)
                 plain = one.to_plain(form)
                 reply = one.reply_to(plain)
                 assert reply.outcome == "correct", (one.name, form, reply, f"BOOK_TEST_SEED={SEED}")
                 said = {"outcome": "recorded", "plain": json.loads(json.dumps(plain))}
-                if known["secret"] and "calls" in known["secret"]:
-                    calls = calls_for({**one.public, "calls": known["secret"]["calls"]})
-                    said["secret"] = {"plain": to_plain(form, calls), "calls": secret.digest(known["secret"])}
-                found = marking.mark(one.name, known, said)
+                if known.secret and known.secret.calls:
+                    calls = calls_for(known.secret.of(one.public))
+                    said["secret"] = {"plain": to_plain(form, calls), "calls": known.secret.digest}
+                found = marking.mark(one.name, Asked(known), said)
                 assert found["points"] == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
                 tried += 1
     assert secretly
