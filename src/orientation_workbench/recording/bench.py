@@ -142,6 +142,7 @@ class _Bench:
             for kind in ("gyroscope", "accelerometer", "magnetometer")
             if kind in groups
         }
+        self.rate = 0.0 if content.counted else float(1 / max(np.median(np.diff(self.time)), 1e-9))
         self.rates = self.forces = self.field = self.oriented = None
 
     def say(self, about, light, words, evidence=None, advice=""):
@@ -210,9 +211,9 @@ class _Bench:
                 vectors[kind] = self.raw[kind]
                 if kind == "magnetometer":  # a constant part belongs to the instrument, not to the Earth
                     vectors[kind] = vectors[kind] - _centre(vectors[kind])
-        units = [1.0] if self.content.counted else list(DEGREES.values())
+        units = DEGREES | ({"rad a sample": self.rate} if self.rate > 20 else {})
         counts = not said and bool((raw == raw.round()).all())
-        grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units]))
+        grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units.values()]))
         if counts:  # as a chip has them
             grid = np.radians(np.geomspace(0.002, 0.2, 24))
         if self.content.counted:
@@ -231,11 +232,11 @@ class _Bench:
         if self.content.counted:
             self._rate(fit, said)
             return
-        names = {scale: unit for unit, scale in DEGREES.items()}
+        names = {scale: unit for unit, scale in units.items()}
         if fit is not None and fit.margin > 1.12 and fit.shares.min() < 0.9:
-            unit = min(DEGREES.values(), key=lambda one: abs(np.log(fit.scale / one)))
+            unit = min(units.values(), key=lambda one: abs(np.log(fit.scale / one)))
             ratio = fit.scale / unit
-            if counts or not 0.4 < ratio < 2.5:
+            if counts and abs(ratio - 1) > 0.04 or not 0.4 < ratio < 2.5:
                 unit, ratio = fit.scale, 1.0
                 self.say("unit of the gyroscope", YELLOW, f"counts: one is {np.degrees(unit):.4g} °/s", {"rad/s": unit})
             elif said and DEGREES[said] != unit:
@@ -453,12 +454,12 @@ class _Bench:
             return
         raw = self.raw["accelerometer"]
         quiet = np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
-        unit, gravity, off = unit_of_gravity(quiet)
+        unit, gravity, off = unit_of_gravity(quiet, self.rate)
         self.forces = raw / gravity
         self.facts["gravity"] = gravity
         self.say(
             "unit of the accelerometer",
-            GREEN if unit[0] != "c" else YELLOW,
+            YELLOW if unit.startswith("counts") else GREEN,
             f"{unit}, by gravity's length",
             {"off": round(off, 4)},
         )
