@@ -607,6 +607,6 @@ def test_the_figure_of_a_question_is_seen_in_the_review(tmp_path):
     made.cells.insert(7, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
     nbformat.write(made, tmp_path / "beams.ipynb")
     found = questions_of(tmp_path / "beams.ipynb", b"any")
-    for about in (found[NAME][0], found["beams/twice"][0]):
-        assert '<img alt="A beam"' in review._as_asked(about)
-    assert "A beam carries 12 N" in review._as_asked(found[NAME]) or "N twice" in review._as_asked(found[NAME])
+    asked = [review._as_asked(found[name][0]) for name in (NAME, "beams/twice")]
+    assert all('<img alt="A beam"' in one for one in asked)
+    assert "A beam carries 12 N" in asked[0] or "N twice" in asked[0]
