@@ -19,6 +19,7 @@ from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
 from coursework.checking.kinds import calls_for, canonical, fingerprint, read
 from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.question import Question, Variant
 from coursework.grading.judging import marking
 from coursework.grading.judging.contract import Asked
 from orientation import (
@@ -69,7 +70,6 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
     force, field, whole = [0.087, -0.122, 0.985], [-3.1, 21.4, -40.2], [4, -2, 5, 1]
     away = np.cross(force, np.cross(field, force))
     unit = np.array(whole) / np.linalg.norm(whole)
-    given = {"variant": 0, "variants": 2, "text": "", "shown": {}}
     vectors, quaternion = {"force": force, "field": field}, {"whole": whole, "field": field}
     angles = {"psi": 0.3, "theta": 0.8, "phi": -0.5, "field": field}
     rates = np.linalg.solve(angular_velocity_matrix([0.3, 0.8, -0.5], "zxy"), field)
@@ -82,7 +82,7 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
         "of a gimbal": ("vector", rates.tolist(), {}, angles, "The gimbal is z-x-y.", 6000),
     }
     for name, (kind, answer, about, data, text, most) in tried.items():
-        found = attack(question("trial/data", kind, answer, variant={**given, "given": data}, **about), text)
+        found = attack(question("trial/data", kind, answer, variant=Variant(0, 2, data), **about), text)
         assert found.way and found.tries < most, (name, found)
 
 
@@ -260,7 +260,7 @@ def test_every_angle_is_tried_in_all_four_quadrants(salt):
     from coursework.checking.points import points
 
     names = "alpha beta gamma psi".split()
-    found = points({"salt": f"{salt}", "symbols": {name: [-3, 3] for name in names}})
+    found = points(Question("expression", f"{salt}", symbols={name: [-3, 3] for name in names}))
     signs = []
     for name in names:
         quadrants = {(MP.sin(point[name]) > 0, MP.cos(point[name]) > 0) for point in found}

@@ -27,8 +27,9 @@ LIMITS = Limits(cell_seconds=120, cell_wall_seconds=400, notebook_seconds=600, n
 DRAW = "\n".join(
     [
         "import hashlib, html, random, re",
-        "from collections.abc import Callable",
+        "from collections.abc import Callable, Mapping",
         "from typing import NamedTuple",
+        "Json = object",
         "class AuthorError(ValueError): pass",
         f"MOST_ATTEMPTS = {variation.MOST_ATTEMPTS}",
         inspect.getsource(variation.Rule),

@@ -111,11 +111,11 @@ def _shells(sizes):
 
 
 def attack(question, text="", budget=BUDGET):
-    """Attack a :class:`coursework.authoring.author.Question` and count the slow hashes that it takes.
+    """Attack a :class:`coursework.authoring.author.AuthoredQuestion` and count the slow hashes that it takes.
 
     Parameters
     ----------
-    question : Question
+    question : AuthoredQuestion
     text : str
         What the student is asked, in words: its numbers are tried.
     budget : int
@@ -129,10 +129,10 @@ def really_attack(sealed, text="", budget=100):
     """The same attack with the slow hash on what a student has; only ``budget`` hashes are spent."""
 
     def open_(known):
-        found = sealing.open_locker(sealed["lockers"], sealing.slow_key(sealed["salt"], known))
+        found = sealing.open_locker(sealed.lockers, sealing.slow_key(sealed.question.salt, known))
         return 0 if found is None else 1 if found[0] == 0 else 2
 
-    return _attack(sealed, text, budget, open_)
+    return _attack(sealed.question, text, budget, open_)
 
 
 def _attack(public, text, budget, open_):

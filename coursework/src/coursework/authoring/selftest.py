@@ -102,7 +102,7 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
 
     Parameters
     ----------
-    question : Question
+    question : AuthoredQuestion
     text : str
         What is asked, in words.
     budget : int
@@ -253,7 +253,7 @@ def told_openly(question, secrets):
 
     Parameters
     ----------
-    question : Question
+    question : AuthoredQuestion
     secrets : dict
         What :func:`secrets_of` gives.
     """
