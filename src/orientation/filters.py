@@ -64,6 +64,8 @@ class MultiplicativeKalmanFilter:
     bias : array of shape ``(..., 3)``
         Radians per second.
     covariance : array of shape ``(..., 6, 6)``
+    noise : array of shape ``(..., 2)``
+        Of the gyroscope and of its bias, as they were given.
 
     Examples
     --------
@@ -91,7 +93,7 @@ class MultiplicativeKalmanFilter:
         self.bias = numpy.zeros((*batch, 3))
         covariance = number_array(covariance, (6, 6), "covariance")
         self.covariance = numpy.broadcast_to(covariance, (*batch, 6, 6)).copy()
-        self.noise = numpy.stack(numpy.broadcast_arrays(gyroscope_noise, bias_noise), axis=-1).astype(float)
+        self.noise = numpy.stack(numpy.broadcast_arrays(gyroscope_noise, bias_noise), axis=-1)
 
     def turn(self, angular_velocity: Values, step: Values) -> None:
         r"""Turn with the gyroscope for one step.
