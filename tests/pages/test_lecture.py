@@ -1,7 +1,5 @@
 """The lecture of a chapter: its steps, its keys, its votes, in a real browser."""
 
-import json
-
 import pytest
 from places import HTML
 from playwright.sync_api import expect

@@ -15,10 +15,10 @@ from test_questions import CHAPTER, opened
 
 SECOND = json.loads(Path(__file__).with_name("kept").joinpath("second-edition.json").read_text("utf8"))
 RECORD = "progress of /"
+NEWER_LIST = {"format": 99, "edition": "x"}
 PUT = "(kept) => { for (const [key, text] of Object.entries(kept)) localStorage.setItem(key, text); }"
 ALL = "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => /^(book|progress|code) /.test(key)))"
 HERE = "() => bookStore.record()"
-CRANK = "simple-orientations/crank"
 pytestmark = pytest.mark.sampled(3)
 
 
@@ -126,7 +126,7 @@ AT_ONE_MOMENT = """([moment, number, question]) => new Promise((done) => {
         = { first: "A", last: "A", right: true, rightAtFirst: true }; });
       bookStore.keepTries(JSON.stringify({ [`own/${number}-${k}`]: { outcome: "correct" } }));
     }
-    bookStore.keepTries(JSON.stringify({ [question]: { outcome: "wrong", answers: [`of ${number}`] } }), Date.now(), "");
+    bookStore.keepTries(JSON.stringify({ [question]: { outcome: "wrong", answers: [`of ${number}`] } }));
     done();
   }, moment - Date.now());
 })"""
@@ -216,7 +216,8 @@ def test_what_a_newer_edition_has_kept_is_left_alone_and_said(context, site):
     kept_before(page, site, newer | SECOND)
     before = page.evaluate(ALL)
     page.evaluate(
-        "async () => (await caches.open('book /')).put('/kept.json', new Response('{\"format\": 99, \"edition\": \"x\"}'))"
+        "async (list) => (await caches.open('book /')).put('/kept.json', new Response(list))",
+        json.dumps(NEWER_LIST),
     )
     page.goto(f"{site}{CHAPTER}.html")
     page.locator(".exercise label.done input").first.check()
@@ -233,10 +234,8 @@ def test_what_a_newer_edition_has_kept_is_left_alone_and_said(context, site):
     page.goto(f"{site}appendix/my-progress.html")
     assert page.locator(".said").inner_text().startswith("A newer edition")
     assert page.evaluate(ALL) == before
-    assert json.loads(page.evaluate("async () => (await (await caches.open('book /')).match('/kept.json')).text()")) == {
-        "format": 99,
-        "edition": "x",
-    }
+    kept = page.evaluate("async () => (await (await caches.open('book /')).match('/kept.json')).json()")
+    assert kept == NEWER_LIST
     assert tab.errors == []
 
 
@@ -251,7 +250,9 @@ def test_backup_of_a_newer_edition_is_refused_in_words(context, site, tmp_path):
 def test_no_other_script_asks_the_browser_to_keep_anything():
     """But for what ends with the tab, and for the page's head, which makes do where storage is forbidden."""
     asks = re.compile(r"\blocalStorage\b|\bindexedDB\b|\bcaches\.|document\.cookie")
-    sources = [path for path in (REPOSITORY / "notebook-pages" / "src").rglob("*.js") if "node_modules" not in path.parts]
+    sources = [
+        path for path in (REPOSITORY / "notebook-pages" / "src").rglob("*.js") if "node_modules" not in path.parts
+    ]
     sources += (REPOSITORY / "src").rglob("*.js")
     found = {path.name for path in sources if asks.search(re.sub(r"//.*", "", path.read_text("utf8")))}
     assert found == {"store.js", "editions.js", "notebooks.js"}

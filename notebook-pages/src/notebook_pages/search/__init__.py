@@ -192,7 +192,11 @@ def index(site):
     for entry in entries:
         if entry.get("weight", 1) <= LITTLE:
             entry["about"] = ""
-    later = {"words": words, "figures": [row(one) for one in figures], "tex": [[k, one["tex"]] for k, one in enumerate(entries) if "tex" in one]}
+    later = {
+        "words": words,
+        "figures": [row(one) for one in figures],
+        "tex": [[k, one["tex"]] for k, one in enumerate(entries) if "tex" in one],
+    }
     found = {
         "pages": pages,
         "fields": FIELDS,
