@@ -11,7 +11,7 @@ from .rotation_vector import dcm_from_rotation_vector
 if TYPE_CHECKING:
     import numpy
 
-    from ._types import Array, Values
+    from ._types import Array, Numbers, Values
 
 
 class Innovation(NamedTuple):
@@ -60,9 +60,9 @@ class MultiplicativeKalmanFilter:
         The first estimate of :math:`{}^B\mathbf{C}^N`.
     covariance : array of shape ``(6, 6)`` or ``(..., 6, 6)``
         Of :math:`\boldsymbol\delta` (square radians) and the bias (squares of radians per second).
-    gyroscope_noise : float
+    gyroscope_noise : float or array of shape ``(...)``
         Angle random walk, radians per square root of a second.
-    bias_noise : float
+    bias_noise : float or array of shape ``(...)``
         Random walk of the bias, radians per second per square root of a second.
 
     Attributes
@@ -71,6 +71,8 @@ class MultiplicativeKalmanFilter:
     bias : array of shape ``(..., 3)``
         Radians per second.
     covariance : array of shape ``(..., 6, 6)``
+    noise : array of shape ``(..., 2)``
+        Of the gyroscope and of its bias, as they were given.
 
     Examples
     --------
@@ -89,7 +91,7 @@ class MultiplicativeKalmanFilter:
     In the book: :eq:`equation-filter-turn` and :eq:`equation-filter-observe`.
     """
 
-    def __init__(self, dcm: Values, covariance: Values, gyroscope_noise: float, bias_noise: float) -> None:
+    def __init__(self, dcm: Values, covariance: Values, gyroscope_noise: Numbers, bias_noise: Numbers) -> None:
         import numpy
 
         self.dcm = number_array(dcm, (3, 3), "dcm")
@@ -98,32 +100,31 @@ class MultiplicativeKalmanFilter:
         self.bias = numpy.zeros((*batch, 3))
         covariance = number_array(covariance, (6, 6), "covariance")
         self.covariance = numpy.broadcast_to(covariance, (*batch, 6, 6)).copy()
-        self.gyroscope_noise = float(gyroscope_noise)
-        self.bias_noise = float(bias_noise)
+        self.noise = numpy.stack(numpy.broadcast_arrays(gyroscope_noise, bias_noise), axis=-1)
 
-    def turn(self, angular_velocity: Values, step: float) -> None:
+    def turn(self, angular_velocity: Values, step: Values) -> None:
         r"""Turn with the gyroscope for one step.
 
         Parameters
         ----------
         angular_velocity : array of shape ``(..., 3)``
             What the gyroscope says, bias and noise included, along the body; radians per second.
-        step : float
+        step : float or array of shape ``(...)``
             Seconds.
         """
         import numpy
 
         rate = number_array(angular_velocity, (3,), "rate") - self.bias
+        step = numpy.asarray(step, dtype=float)[..., None]
         turned = dcm_from_rotation_vector(rate * step)
         self.dcm = turned @ self.dcm
         carried = numpy.zeros_like(self.covariance) + numpy.eye(6)
         carried[..., :3, :3] = turned
-        carried[..., :3, 3:] = -step * numpy.eye(3)
-        variances = self.gyroscope_noise**2 * step, self.bias_noise**2 * step
-        noise = numpy.diag(numpy.repeat(variances, 3))
+        carried[..., :3, 3:] = -step[..., None] * numpy.eye(3)
+        noise = numpy.repeat(self.noise**2 * step, 3, axis=-1)[..., None] * numpy.eye(6)
         self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + noise
 
-    def observe(self, observed: Values, reference: Values, deviation: float | Array) -> Innovation:
+    def observe(self, observed: Values, reference: Values, deviation: Values) -> Innovation:
         r"""Correct the estimate with one direction that was measured.
 
         Parameters
