@@ -14,8 +14,8 @@ SHORTEST = 1e-150
 def _length_missing(f, x, y, z):
     # True, which is 1 and so more than the tolerance, where no direction can be computed: beyond these
     # limits the square of the length is no longer a number with all its digits.
-    length = f.norm(x, y, z)
-    return (length <= SHORTEST) | (length >= 1 / SHORTEST)
+    square = x * x + y * y + z * z
+    return (square <= SHORTEST**2) | (square >= SHORTEST**-2)
 
 
 def _explain_zero(components, where):
