@@ -18,7 +18,7 @@ export const STOPS = [
     after: 'One after the other, each of the camera\'s arrows has thrown three shadows: nine in all.' },
   { id: 'looking-back', machine: 1, camera: 1, A: 1, D: 1, still: 0.95, dials: ['psi'],
     before: 'You stand beside the hand. The first motor turns the camera to the left.',
-    after: 'You look from the camera now. The same motor turns the same way, and the room goes round to the right.' },
+    after: 'You ride along with the camera now. The same motor turns the same way, and the room goes round to the right.' },
   { id: 'two-motors', machine: 1, camera: 1, A: 0, D: 1, still: 1, dials: ['psi', 'theta'],
     before: 'First motor, then second. Beside it a ghost makes the same two turns the other way round.',
     after: 'Both have made the same two turns, and they look in different directions.' },
