@@ -815,6 +815,7 @@ def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, w
     assert "Cell 3 ran" in page.words()
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_tab_that_is_older_than_the_pages_says_so(context, site):
     """Its scripts are gone from the server, where by now the same page asks for others."""
     page = Page(context, site, QUIET)
@@ -830,6 +831,7 @@ def test_tab_that_is_older_than_the_pages_says_so(context, site):
     page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_script_that_did_not_come_is_asked_for_again(context, site):
     """Browsers remember a script that failed for as long as the page is open."""
     page = Page(context, site, QUIET)
@@ -841,6 +843,7 @@ def test_script_that_did_not_come_is_asked_for_again(context, site):
     page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_python_starts_where_the_storage_is_full(context, site):
     """All sites of one address share it: it may be full before the book is opened."""
     page = Page(context, site, QUIET)
