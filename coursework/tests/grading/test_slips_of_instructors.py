@@ -60,7 +60,7 @@ def test_a_full_disk_is_said_in_a_sentence_and_the_next_run_goes_on(course, monk
             main(command)
     assert "Traceback" not in str(found.value) + capsys.readouterr().err
     main(command)
-    assert {record["points"] for record in Store(course / "out").all()} == {5}
+    assert {record.points for record in Store(course / "out").all()} == {5}
 
 
 def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypatch):

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from .locks import lock
+from .record import Record
 
-FORMAT = 3
 REFUSED = "refused.json"
 
 
@@ -59,12 +59,12 @@ class Store:
     def read(self, student, assignment):
         """A student's record, or ``None``."""
         try:
-            return json.loads(self.place(student, assignment).read_text("utf8"))
+            return record_in(self.place(student, assignment))
         except FileNotFoundError:
             return None
 
     def save(self, record):
-        write(self.place(record["student"], record["assignment"]), as_text(record))
+        write(self.place(record.student, record.assignment), as_text(record.as_json()))
 
     def keep_work(self, digest, sources):
         """Keep the code of a notebook, for people to look at beside its answers."""
@@ -113,9 +113,9 @@ class Store:
         # Names of folders alone, and not all paths: a class may have a hundred thousand.
         for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
             for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
-                record = json.loads(path.read_text("utf8"))
+                record = record_in(path)
                 # Not what lies where it would not be written: a copy, or what another version called so.
-                if path == self.place(record["student"], record["assignment"]):
+                if path == self.place(record.student, record.assignment):
                     yield record
 
     def log(self, line):
@@ -125,6 +125,16 @@ class Store:
         now = datetime.datetime.now().isoformat(" ", "milliseconds")
         with open(self.folder / "run.log", "a", encoding="utf8") as file:
             file.write(f"{now}  {line}\n")
+
+
+def record_in(path: Path) -> Record:
+    """The record that a file holds.
+
+    Raises
+    ------
+    Misread
+    """
+    return Record.from_json(json.loads(path.read_text("utf8")), str(path))
 
 
 def as_text(value: Any) -> str:
