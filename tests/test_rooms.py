@@ -74,6 +74,19 @@ def test_grading_follows_a_notebook_on_its_way(room):
     assert foreign(f"coursework.grading.{room}", allowed) == []
 
 
+def test_checking_has_no_circles():
+    """Also none that an import within a function hides."""
+    folder, sources = folder_of("coursework.checking"), folder_of("coursework").parent
+    uses = {
+        path.stem: {name.split(".")[2] for name in imported(path, sources) if name.startswith("coursework.checking.")}
+        for path in folder.glob("*.py")
+    }
+    while first := [name for name, others in uses.items() if not others & set(uses)]:
+        for name in first:
+            del uses[name]
+    assert not uses, "each of these is used by what it uses"
+
+
 def test_every_package_is_registered():
     """All folders of packages, but the one that makes the pages."""
     folders = {path.parent for path in REPOSITORY.glob("src/*/__init__.py")}

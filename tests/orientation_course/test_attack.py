@@ -18,9 +18,9 @@ from coursework.authoring.author import question
 from coursework.authoring.forms import flat, mutant, random_form, roots_for_cosines
 from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
-from coursework.checking.kinds import calls_for, canonical, fingerprint, read
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.question import Question, Variant
+from coursework.checking.reading import calls_for, canonical, fingerprint, read
 from coursework.grading.judging import marking
 from coursework.grading.judging.contract import Asked
 from coursework.grading.record import Answer

@@ -21,11 +21,12 @@ import coursework
 from coursework.authoring.author import AuthorError, question
 from coursework.authoring.forms import equivalent_forms, flat, random_form
 from coursework.checking import plugins, questions, sealing
-from coursework.checking.kinds import Fault, Undecidable, fault, read
-from coursework.checking.mistakes import message
+from coursework.checking.catalogue import message
+from coursework.checking.kinds import Fault, Undecidable
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.question import Sealed
 from coursework.checking.questions import NoSuchQuestion
+from coursework.checking.reading import fault, read
 from coursework.checking.reply import Reply
 from orientation import (
     SEQUENCES,

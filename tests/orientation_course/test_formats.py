@@ -15,8 +15,9 @@ import orientation_course
 from coursework.authoring.author import AuthoredQuestion, AuthorError
 from coursework.authoring.course import find_course
 from coursework.authoring.release import release
-from coursework.checking import format_3, mistakes, plugins, questions, sealing
-from coursework.checking.mistakes import by_short_name, short_name
+from coursework.checking import catalogue, format_3, mistakes, plugins, questions, sealing
+from coursework.checking.catalogue import by_short_name
+from coursework.checking.mistakes import short_name
 from coursework.checking.plain import to_plain
 from coursework.checking.question import Question
 from coursework.checking.questions import NOT_IN_THIS_CATALOGUE, judge, notebook_questions
@@ -49,11 +50,11 @@ def catalogue_in_another_order(monkeypatch):
         for name, kind in plugins.kinds().items()
     }
     messages = turned_round(mistakes.MESSAGES)
-    monkeypatch.setattr(mistakes, "MESSAGES", messages)
-    monkeypatch.setattr(mistakes, "kinds", lambda: changed)
-    mistakes._by_short_name.cache_clear()
+    monkeypatch.setattr(catalogue, "MESSAGES", messages)
+    monkeypatch.setattr(catalogue, "kinds", lambda: changed)
+    catalogue._by_short_name.cache_clear()
     yield
-    mistakes._by_short_name.cache_clear()
+    catalogue._by_short_name.cache_clear()
 
 
 def replies_of_then():
@@ -168,12 +169,12 @@ def test_two_mistakes_never_have_one_short_name(monkeypatch):
     for kind in plugins.kinds():
         if kind != "function":
             by_short_name(Question(kind, symbols={f"q_{number}": (-1, 1) for number in range(9)}))
-    mistakes._by_short_name.cache_clear()
+    catalogue._by_short_name.cache_clear()
     numbers = itertools.cycle([b"same"])
-    monkeypatch.setattr(mistakes, "short_name", lambda note, details: next(numbers))
+    monkeypatch.setattr(catalogue, "short_name", lambda note, details: next(numbers))
     with pytest.raises(RuntimeError, match="one short name"):
         by_short_name(Question("expression"))
-    mistakes._by_short_name.cache_clear()
+    catalogue._by_short_name.cache_clear()
 
 
 def test_the_table_of_a_course_is_its_own(monkeypatch):

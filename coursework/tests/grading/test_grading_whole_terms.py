@@ -280,7 +280,7 @@ def judge_by_hand(term, store, dice):
     records = list(store.all())
     for record in dice.sample(records, min(len(records), 2 + len(records) // 10)):
         question = dice.choice(["load", "twice"])
-        name, key = f"{record['assignment']}/{question}", (record.student, record.assignment, question)
+        name, key = f"{record.assignment}/{question}", (record.student, record.assignment, question)
         if key in term.decided:
             continue
         first, second = dice.choice([0, 0.25, 0.5, 1]), dice.choice([0, 0.5, 1])

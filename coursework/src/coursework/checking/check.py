@@ -8,7 +8,6 @@ from contextlib import suppress
 from pathlib import Path
 
 from .identity import forgotten
-from .kinds import calls_for
 from .plain import NotPlain, to_plain
 from .question import Locker, Place
 from .questions import (
@@ -22,6 +21,7 @@ from .questions import (
     rung_key,
     solution_on,
 )
+from .reading import calls_for
 from .reply import HELP, Reply
 from .sealing import unseal
 from .variants import siblings_of, without_sibling

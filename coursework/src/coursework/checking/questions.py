@@ -18,28 +18,17 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from . import format_3, sealing
+from .catalogue import by_short_name, message
 from .evaluate import MP
 from .fields import Fields, Json, Misread, anything, by_name, text, whole
-from .kinds import (
-    Blank,
-    Fault,
-    Number,
-    Reading,
-    Undecidable,
-    canonical,
-    distance,
-    fault,
-    fingerprint,
-    read,
-    tolerances,
-)
-from .mistakes import by_short_name, message
+from .kinds import Blank, Fault, Number, Undecidable
 from .plain import Plain
 from .plugins import kind_of_values, kinds, sealed_folders
 from .points import spellings
-from .question import FORMAT, OUTCOMES, KnownAnswer, Locker, Note, Place, Question, Sealed
+from .question import FORMAT, OUTCOMES, KnownAnswer, Locker, Note, Place, Question, Sealed, Variant
+from .reading import Reading, canonical, distance, fault, fingerprint, read, tolerances
 from .reply import Reply
-from .variants import own_variant, siblings_of, without_sibling
+from .variants import Given, own_variant, siblings_of, text_of, without_sibling
 
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
@@ -181,6 +170,27 @@ def _moved() -> dict[str, str]:
         if file.is_file():
             now |= Fields(json.loads(file.read_text("utf8")), MOVED).get("moved", by_name(text))
     return now
+
+
+def variant(name: str) -> Given:
+    """Show your variant of a question, and give its numbers.
+
+    Parameters
+    ----------
+    name : str
+        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
+
+    Returns
+    -------
+    Given
+
+    Raises
+    ------
+    NoSuchQuestion
+        If the name is misspelt.
+    """
+    found = find_question(name).question.variant or Variant()
+    return Given(text_of(found), found.given)
 
 
 def own_number(name: str) -> int:

@@ -181,26 +181,3 @@ class Given:
 
     def _repr_markdown_(self) -> str:
         return self._text
-
-
-def variant(name: str) -> Given:
-    """Show your variant of a question, and give its numbers.
-
-    Parameters
-    ----------
-    name : str
-        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
-
-    Returns
-    -------
-    Given
-
-    Raises
-    ------
-    NoSuchQuestion
-        If the name is misspelt.
-    """
-    from .questions import find_question
-
-    found = find_question(name).question.variant or Variant()
-    return Given(text_of(found), found.given)

@@ -21,11 +21,12 @@ from types import SimpleNamespace
 from ...authoring.author import AuthoredQuestion, AuthorError
 from ...authoring.source import MEASURED, checked_names, measured_strengths, read_source, texts_of_questions
 from ...checking.evaluate import MP
-from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
+from ...checking.kinds import PARTS, Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, read_plain
 from ...checking.plugins import packages
 from ...checking.question import Locker
 from ...checking.questions import compare
+from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
 from ..record import MISSING, Answer, Mark, Record, Remembered
 from ..store import write
