@@ -114,10 +114,10 @@ def test_a_folder_beside_the_notebook_comes_first(tmp_path, monkeypatch):
     (tmp_path / "sealed").mkdir()
     (tmp_path / "sealed" / "statics.json").write_text(json.dumps({"format": questions.FORMAT, "questions": asked}))
     try:
-        assert questions.find_question("statics/lever").question == Question("expression", "0")
-        assert questions.find_question("simple-orientations/boom").question.kind == "direction cosine matrix"
+        assert questions.find_question("statics/lever", "").question == Question("expression", "0")
+        assert questions.find_question("simple-orientations/boom", "").question.kind == "direction cosine matrix"
         with pytest.raises(questions.NoSuchQuestion, match="Did you mean 'statics/lever'"):
-            questions.find_question("statics/level")
+            questions.find_question("statics/level", "")
     finally:
         questions.notebook_questions.cache_clear()
 

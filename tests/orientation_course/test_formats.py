@@ -104,7 +104,7 @@ def test_a_new_mistake_changes_nothing_of_what_is_sealed(tmp_path, monkeypatch, 
     request.getfixturevalue("catalogue_in_another_order")
     told = {}
     for mistake in question.mistakes:
-        reply = judge(question.name, questions.find_question(question.name), to_plain(mistake.answer))
+        reply = judge(question.name, questions.find_question(question.name, ""), to_plain(mistake.answer))
         told[mistake.note] = reply.note
     assert told["scalar last"] == "scalar last" and told["conjugate"] == "conjugate"
     assert len(set(told.values())) > 2
@@ -127,16 +127,16 @@ def test_a_format_that_is_not_known_is_refused_in_words(beside, number):
     file = beside / "chapters.json"
     file.write_text(json.dumps({**json.loads(file.read_text("utf8")), "format": number}), "utf8")
     with pytest.raises(RuntimeError, match=f"of chapters are of format {number}.*reads formats 3 and 4.*update"):
-        questions.find_question("chapters/about-x")
+        questions.find_question("chapters/about-x", "")
 
 
 def test_a_question_that_has_another_name_says_so(beside):
     about = {"format": questions.FORMAT, "moved": {"chapters/around-x": "chapters/about-x"}, "questions": {}}
     (beside / questions.MOVED).write_text(json.dumps(about), "utf8")
     with pytest.raises(questions.NoSuchQuestion, match="'chapters/around-x' is called 'chapters/about-x'"):
-        questions.find_question("chapters/around-x")
+        questions.find_question("chapters/around-x", "")
     with pytest.raises(questions.NoSuchQuestion, match="Did you mean"):
-        questions.find_question("chapters/abut-x")
+        questions.find_question("chapters/abut-x", "")
 
 
 def test_a_release_tells_the_names_that_questions_had(tmp_path):

@@ -18,7 +18,7 @@ from coursework.grading.judging.marking import questions_of
 from coursework.grading.record import Record
 from coursework.grading.store import Store, file_name
 from coursework.grading.submissions import intake
-from coursework.grading.submissions.identity import Roster
+from coursework.grading.submissions.roster import Roster
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
 

@@ -33,7 +33,7 @@ from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
 from coursework.grading.store import InUse, Store, file_name
 from coursework.grading.submissions import languages
-from coursework.grading.submissions.identity import Roster
+from coursework.grading.submissions.roster import Roster
 from coursework.grading.tables import as_cell, as_written, table
 from coursework.grading.workers import TaskLost, side_by_side
 

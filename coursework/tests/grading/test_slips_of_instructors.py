@@ -14,7 +14,7 @@ from coursework.grading.grade import NothingToGrade, grade
 from coursework.grading.judging import ledger as judging
 from coursework.grading.judging.ledger import Ledger
 from coursework.grading.store import Store
-from coursework.grading.submissions.identity import Roster
+from coursework.grading.submissions.roster import Roster
 
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 

@@ -17,7 +17,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 
 from .fields import Json, pair, text
-from .identity import identity, plain_identity
+from .identity import plain_identity
 from .question import Question, Variant
 
 #: So many siblings of a question count: with all of them, somebody else's answer would count, too.
@@ -91,10 +91,10 @@ def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -
     return sorted(range(count), key=rank)
 
 
-def own_variant(name: str, question: Question, order: int = 0) -> int:
-    """The number of the variant of whoever works here, or of one of its siblings."""
+def own_variant(student: str, name: str, question: Question, order: int = 0) -> int:
+    """The number of a student's variant, or of one of its siblings."""
     variant = question.variant or Variant()
-    return numbers_of_variants(identity(), name, variant, variant.count)[order % variant.count]
+    return numbers_of_variants(student, name, variant, variant.count)[order % variant.count]
 
 
 def siblings_of(name: str, count: int) -> list[str]:

@@ -31,7 +31,7 @@ from .record import FORMAT, Answer, Cell, Record, Remembered, RunNotebook, Super
 from .reporting.laboratory import Laboratory, Policies
 from .store import REFUSED, Store, as_text, write
 from .submissions import intake
-from .submissions.identity import BadRoster, Roster
+from .submissions.roster import BadRoster, Roster
 from .tables import in_a_line, lines, number
 from .versions import software
 from .workers import processors, side_by_side

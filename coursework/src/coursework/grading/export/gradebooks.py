@@ -19,8 +19,8 @@ from ...checking.reply import plain_text
 from ..judging.ledger import Ledger, appeals_open, with_decisions
 from ..judging.term import EXCUSED, results_of, say_what_marked_costs
 from ..store import REFUSED, as_text, file_name, write
-from ..submissions.identity import local_parts
 from ..submissions.languages import LANGUAGES, in_english
+from ..submissions.roster import local_parts
 from ..tables import in_a_line, number, readable, table
 
 NBGRADER = (

@@ -30,7 +30,7 @@ from ...checking import fields
 from ...checking.fields import Fields, Misread, Reader, many, one_of, text, whole
 from ..locks import lock
 from ..record import Judged, Mark, Record
-from ..submissions.identity import decoded
+from ..submissions.roster import decoded
 from ..tables import as_written
 
 FILE = "ledger.jsonl"

@@ -40,8 +40,8 @@ from typing import NamedTuple
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from ..store import write
-from ..submissions.identity import Roster
 from ..submissions.intake import as_time
+from ..submissions.roster import Roster
 
 EXCUSED = "excused"
 #: What tables of systems call the time at which something was handed in.
@@ -255,7 +255,8 @@ def delay(handed_in, due, zone):
 def _times(path, zone):
     """Who handed in when, by a system's table: a function of what is known of a student, or ``None``."""
     roster, found = Roster(path), {}
-    for student, row in roster.rows.items():
+    for student, person in roster.people.items():
+        row = person.row
         column = next((name for name in TIMES if name in row), None)
         if column is None:
             raise BadRules(f"{path}: no column says when something was handed in; it may be called {', '.join(TIMES)}.")
