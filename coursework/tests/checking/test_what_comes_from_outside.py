@@ -54,9 +54,7 @@ def test_a_student_whose_sealed_file_is_damaged_is_told_what_to_do(tmp_path, mon
     content = {"format": questions.FORMAT, "questions": {"levers/one": {**LEVER, "worth": "two"}}}
     (tmp_path / "sealed" / "levers.json").write_text(json.dumps(content))
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(
-        RuntimeError, match="levers/one: 'worth' should be a number.*Unpack the exercises"
-    ):
+    with pytest.raises(RuntimeError, match="levers/one: 'worth' should be a number.*Unpack the exercises"):
         questions.find_question("levers/one", "")
 
 

@@ -352,17 +352,14 @@ def test_identical_wrong_answers_are_put_together(tmp_path, course):
 
 
 def test_reports_hold_one_record_at_a_time(tmp_path, course, monkeypatch):
-    alive, most = weakref.WeakSet(), 0
-
-    class Record(dict):
-        __hash__ = object.__hash__
+    made, most = [], 0
 
     def all_of_them(store):
         nonlocal most
         for number in range(300):
-            found = Record(record(course, "right"), student=f"student-{number}")
-            alive.add(found)
-            most = max(most, len(alive))
+            found = replace(record(course, "right"), student=f"student-{number}")
+            made.append(weakref.ref(found))
+            most = max(most, sum(one() is not None for one in made))
             yield found
             del found
 
