@@ -140,6 +140,40 @@ def test_a_kind_of_question_has_one_owner(monkeypatch):
         plugins.kinds.__wrapped__()
 
 
+def circles():
+    """The sets of modules that need each other, the imports within functions counted."""
+    needed = {}
+    for folder in (*PACKAGES.values(), PAGES):
+        modules = {path: path.relative_to(folder.parent).with_suffix("").parts for path in folder.rglob("*.py")}
+        for path, parts in modules.items():
+            needed[".".join(parts).removesuffix(".__init__")] = set(imported(path, folder.parent))
+    for module, names in needed.items():
+        # What is named is a module, or lies in one.
+        modules = {name if name in needed else name.rpartition(".")[0] for name in names}
+        needed[module] = (modules & needed.keys()) - {module}
+
+    def reached(module):
+        found, waiting = set(), [module]
+        while waiting:
+            new = needed[waiting.pop()] - found
+            found |= new
+            waiting += new
+        return found
+
+    all_reached = {module: reached(module) for module in needed}
+    return {
+        frozenset({module, *(name for name in names if module in all_reached[name])})
+        for module, names in all_reached.items()
+        if module in names
+    }
+
+
+def test_no_modules_need_each_other():
+    left = set().union(*circles())
+    left = {name for name in left if not name.startswith(("coursework", "orientation_figures"))}
+    assert left == set()
+
+
 def private(name):
     return name.startswith("_") and not name.startswith("__")
 
