@@ -176,7 +176,7 @@ class Drawing:
 
     # Arrows and frames.
 
-    def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, bow=0):
+    def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, bow=0, size=20):
         """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from the tip.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
@@ -201,11 +201,11 @@ class Drawing:
             self._head(tip, along, 1, colour)
             outward, tip = np.sign(bow) * 15 * left, (tail + tip) / 2 + bow * left
         else:
-            size = min(1, 0.5 * length / 14)
-            self.path("ML", [tail, tip - 10 * size * along], f"axis {colour}")
-            self._head(tip, along, size, colour)
+            head = min(1, 0.5 * length / 14)
+            self.path("ML", [tail, tip - 10 * head * along], f"axis {colour}")
+            self._head(tip, along, head, colour)
             outward = 17 * along
-        return self._write(label, tip + (outward if shift is None else shift), colour) if label else self
+        return self._write(label, tip + (outward if shift is None else shift), colour, size) if label else self
 
     def _head(self, tip, along, size, colour):
         corners = size * np.array(HEADS.get(colour, BARB)) @ [along, (-along[1], along[0])]

@@ -20,7 +20,7 @@ from traitlets import TraitError
 
 from orientation import dcm_from_body_fixed
 from orientation_figures.moving import BeltFigure, ChallengeFigure, GraphFigure, HandsFigure
-from orientation_figures.moving.stills.belt import belt
+from orientation_figures.moving.pictures.belt import belt
 
 FULL = 2 * math.pi
 

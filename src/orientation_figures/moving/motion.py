@@ -140,6 +140,6 @@ class MotionFigure(MovingFigure):
 
     def plot(self):
         """Return the ``Drawing`` of how the drift has grown up to ``time``."""
-        from .stills import motion
+        from .pictures import motion
 
         return motion.plot(self)

@@ -77,7 +77,7 @@ export function render({ model, el }) {
 function picture(sheet, theta, passed) {
   const frames = Array.from({ length: PIECES + 1 }, (_, k) => dcmFromQuaternion(quaternionAt(theta, passed, k / PIECES)));
   let place = [0, -LENGTH / 2, 0];
-  sheet.box(IDENTITY, WALL, 'N', add(place, [0, -0.03, 0]));
+  sheet.box(IDENTITY, WALL, { colour: 'N', origin: add(place, [0, -0.03, 0]) });
   for (let k = 0; k < PIECES; k += 1) {
     const next = add(place, scale(LENGTH / PIECES / 2, add(frames[k][1], frames[k + 1][1])));
     const corner = (at, m, side) => add(at, scale(side * WIDTH, frames[k + m][0]));
@@ -86,8 +86,8 @@ function picture(sheet, theta, passed) {
     place = next;
   }
   const end = frames.at(-1), plate = add(place, scale(0.045, end[1]));
-  sheet.box(end, PLATE, 'A', plate);
-  sheet.triad('A', end, { origin: plate, reach: 0.62, labels: false });
+  sheet.box(end, PLATE, { colour: 'A', origin: plate });
+  sheet.triad('A', end, { origin: plate, length: 0.62, labels: [] });
   sheet.grip(plate, 'plate', 40);
 }
 

@@ -100,12 +100,12 @@ export function render({ model, el }) {
       if (now === 'ghost' || shown) {
         const there = now === 'ghost' ? framesOf(partly(given, share)).at(-1) : goal;
         sheet.faded = true;
-        sheet.box(there, BOX, 'E');
-        sheet.triad('E', there, { labels: false });
+        sheet.box(there, BOX, { colour: 'E' });
+        sheet.triad('E', there, { labels: [] });
         sheet.faded = false;
       }
-      sheet.box(dcm, BOX, 'A');
-      sheet.triad('N', IDENTITY, { reach: REACH });
+      sheet.box(dcm, BOX, { colour: 'A' });
+      sheet.triad('N', IDENTITY, { length: REACH });
       sheet.triad('A', dcm);
       if (now === 'ghost' || !made.length) return;
       dcm.forEach((row, k) => { if (AXES[k] !== made.at(-1)[0]) sheet.grip(row, String(k)); });

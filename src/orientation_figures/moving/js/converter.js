@@ -225,7 +225,7 @@ export function render({ model, el }) {
     copy.disabled = !programmed;
     takeAway();
     sheet.draw(() => {
-      sheet.triad('N', IDENTITY, { reach: REACH });
+      sheet.triad('N', IDENTITY, { length: REACH });
       sheet.triad('A', dcm);
     });
     words.say(fault || [said, note(to, numbers, programs)].filter(Boolean).join(' '));

@@ -106,7 +106,7 @@ export function render({ model, el }) {
       const reach = reachOf(spots);
       for (const name of names) {
         const place = at(spots[name]);
-        sheet.triad(name, dcms[name], { origin: place, reach, labels: false });
+        sheet.triad(name, dcms[name], { origin: place, length: reach, labels: [] });
         const tips = dcms[name].map((row) => sheet.onSheet(scale(reach, row)));
         // An arrow that points at the reader or away has no room for its letter.
         dcms[name].forEach((row, k) => {

@@ -360,7 +360,7 @@ export function render({ model, el }) {
   function picture(inertia, matrix, truth) {
     const what = bodyOf(inertia);
     sheet.size = SIZE;
-    sheet.triad('N', IDENTITY, { origin: times(transpose(sheet.view), [-136 / SIZE, -108 / SIZE, 0]), reach: 0.28 });
+    sheet.triad('N', IDENTITY, { origin: times(transpose(sheet.view), [-136 / SIZE, -108 / SIZE, 0]), length: 0.28 });
     sheet.layer = 1;
     sheet.arrow(scale(1.4, run.momentum), { colour: 'accent', label: '$\\mathbf{H}$' });
     // A body that has grown out of the sheet is drawn smaller, and with it what it really is.

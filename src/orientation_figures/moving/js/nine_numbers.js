@@ -97,7 +97,7 @@ export function render({ model, el }) {
 }
 
 function picture(sheet, matrix, dcm) {
-  sheet.triad('N', IDENTITY, { reach: REACH });
+  sheet.triad('N', IDENTITY, { length: REACH });
   sheet.layer = -1;
   dcm?.forEach((row, k) => {
     sheet.arrow(row, { colour: 'D' });

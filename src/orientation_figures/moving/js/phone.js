@@ -214,8 +214,8 @@ export function render({ model, el }) {
 
 function picture(sheet, dcm) {
   const [across, along, out] = dcm, front = scale(BODY[2] / 2 + 1e-3, out);
-  sheet.triad('N', IDENTITY, { reach: REACH });
-  sheet.box(dcm, BODY, 'B');
+  sheet.triad('N', IDENTITY, { length: REACH });
+  sheet.box(dcm, BODY, { colour: 'B' });
   if (dot(out, sheet.view[2]) > 0) {
     sheet.area([[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => add(front, scale(x * SCREEN[0], across),
       scale(y * SCREEN[1], along))), 'ink', 8);

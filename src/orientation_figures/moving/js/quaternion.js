@@ -133,7 +133,7 @@ function doublePicture(sheet, axis, theta, dcm, lit, more) {
   const knob = scale(KNOB, axis), far = axis.map(Math.abs), k = far.indexOf(Math.min(...far));
   const arm = subtract(IDENTITY[k], scale(dot(IDENTITY[k], axis), axis));
   sheet.line([scale(-0.6, axis), knob], 'accent', 'guide');
-  sheet.triad('N', IDENTITY, { reach: 1.25 });
+  sheet.triad('N', IDENTITY, { length: 1.25 });
   sheet.triad('A', dcm);
   sheet.arrow(axis, { colour: 'accent' });
   sheet.dot(knob, 'accent', 5);

@@ -258,6 +258,11 @@ export class Sheet {
     this.text(text, add(this.onSheet(point), shift), colour, size);
   }
 
+  // The point of N that is seen at a place of the sheet.
+  placed(right, down) {
+    return times(transpose(this.view), [right / this.size, -down / this.size, 0]);
+  }
+
   // A label beyond a point as seen from the origin.
   labelBeyond(point, text, colour = 'ink', pixels = 17) {
     this.label(point, text, colour, scale(pixels, unit(this.onSheet(point))));
@@ -328,9 +333,8 @@ export class Sheet {
   }
 
   // The unit vectors of a frame are the rows of its direction cosine matrix.
-  triad(letter, dcm, { origin = [0, 0, 0], reach = 1, labels = true } = {}) {
-    dcm.forEach((row, k) => this.arrow(add(origin, scale(reach, row)), { start: origin, colour: letter,
-      label: labels ? `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$` : '' }));
+  triad(letter, dcm, { origin = [0, 0, 0], length: far = 1, labels = hats(letter.toLowerCase()) } = {}) {
+    dcm.forEach((row, k) => this.arrow(add(origin, scale(far, row)), { start: origin, colour: letter, label: labels[k] }));
   }
 
   // The arc swept by the direction `start`, turned through `angle` about `axis`.
@@ -387,7 +391,7 @@ export class Sheet {
   }
 
   // A box with edges `size` along the rows of `dcm`: the faces that are seen.
-  box(dcm, size, colour, origin = [0, 0, 0]) {
+  box(dcm, size, { origin = [0, 0, 0], colour = 'ink' } = {}) {
     const half = dcm.map((row, k) => scale(size[k] / 2, row));
     [26, 16, 8].forEach((fill, i) => {
       const [u, v] = [half[(i + 1) % 3], half[(i + 2) % 3]];

@@ -69,7 +69,7 @@ function picture(sheet, { k, theta, dcm }, lit) {
   sheet.faded = Boolean(lit);
   // The vane, upright on the shared unit vector; looking down that, it is seen edge on.
   sheet.area(VANE.map(([along, up]) => add(scale(along, pointer), scale(up, axis))), 'A', 26);
-  sheet.triad('N', IDENTITY, { reach: REACH });
+  sheet.triad('N', IDENTITY, { length: REACH });
   dcm.forEach((row, m) => { if (m !== k) sheet.arrow(row, { colour: 'A', label: A[m] }); });
   sheet.arrow(axis, { colour: 'A' });
   for (const m of [(k + 1) % 3, (k + 2) % 3]) {

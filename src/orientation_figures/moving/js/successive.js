@@ -173,9 +173,9 @@ const axisOf = (frames, turns, kind, k) => (kind === 'body' ? frames[k] : IDENTI
 
 function picture(sheet, { turns, kind, share, other, lit }) {
   const now = partly(turns, share), frames = framesOf(now, kind), last = now.length, end = frames.at(-1);
-  sheet.triad('N', IDENTITY, { reach: REACH });
+  sheet.triad('N', IDENTITY, { length: REACH });
   sheet.faded = Boolean(lit || other);
-  for (let k = 1; k < last; k += 1) sheet.triad(LETTERS[k], frames[k], { reach: BEFORE, labels: false });
+  for (let k = 1; k < last; k += 1) sheet.triad(LETTERS[k], frames[k], { length: BEFORE, labels: [] });
   if (last && !other) {
     const axis = axisOf(frames, now, kind, last - 1), angle = now[last - 1][1];
     sheet.line([scale(-0.35, axis), scale(REACH, axis)], 'accent', 'guide');
@@ -222,8 +222,8 @@ function strip(sheet, frames, turns, kind, count, y, radius, colour) {
   const at = (x, down = 0) => times(back, [x / sheet.size, -(y + down) / sheet.size, 0]);
   frames.forEach((dcm, k) => {
     const x = (k - count / 2) * width, origin = at(x), reach = radius / sheet.size;
-    sheet.box(dcm, [1.1 * reach, 0.8 * reach, 0.28 * reach], colour(k), origin);
-    sheet.triad(colour(k), dcm, { origin, reach, labels: false });
+    sheet.box(dcm, [1.1 * reach, 0.8 * reach, 0.28 * reach], { colour: colour(k), origin });
+    sheet.triad(colour(k), dcm, { origin, length: reach, labels: [] });
     if (colour(k) !== 'muted') sheet.label(at(x - radius + 1, -radius + 1), `$${colour(k)}$`, colour(k), [0, 0], 16);
     if (!k) return;
     const from = x - width + radius + 7, to = x - radius - 3, short = Math.max(0, (to - from - 26) / 2);

@@ -92,7 +92,7 @@ function picture(sheet, { axis, angle, dcm }, faded) {
   sheet.faded = faded;
   sheet.line([scale(-1, axis), scale(KNOB, axis)], 'accent', 'guide');
   IDENTITY.forEach((start) => around(sheet, axis, angle, start, { colour: 'muted', head: false }));
-  sheet.triad('N', IDENTITY, { reach: REACH });
+  sheet.triad('N', IDENTITY, { length: REACH });
   sheet.triad('A', dcm);
   sheet.arrow(axis, { colour: 'accent' });
   const knob = scale(KNOB, axis);
@@ -135,7 +135,7 @@ const MEANINGS = {
       words: `${ANGLES[k]} = ${inDegrees(euler[k])}: the ${['first', 'second', 'third'][k]} turn, about ${about}.`
         + (margin < radians(1) ? ' Here this sequence is at gimbal lock: the first and the third turn have one axis.' : ''),
       draw(sheet) {
-        const frame = (rows, letter) => (letter ? sheet.triad(letter, rows, { reach: letter === 'N' ? REACH : 1 })
+        const frame = (rows, letter) => (letter ? sheet.triad(letter, rows, { length: letter === 'N' ? REACH : 1 })
           : rows.forEach((row) => sheet.arrow(row, { colour: 'muted' })));
         frame(before, k === 0 ? 'N' : '');
         frame(after, k === 2 ? 'A' : '');

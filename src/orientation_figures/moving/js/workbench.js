@@ -148,7 +148,7 @@ export function render({ model, el }) {
     sheet.draw(() => {
       for (const [k, letter] of ['A', 'B'].entries()) {
         const origin = scale((2 * k - 1) * APART / SIZE, sheet.view[0]);
-        sheet.triad('N', IDENTITY, { origin, reach: REACH });
+        sheet.triad('N', IDENTITY, { origin, length: REACH });
         sheet.triad(letter, shown[k], { origin });
       }
     });
