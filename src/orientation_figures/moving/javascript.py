@@ -6,8 +6,8 @@ paints stills with them; here they are translated, statement by statement, for t
 kept with the others, as the figures need them where nothing is translated.
 
 A description is plain: functions, constants, loops and comprehensions, conditions, lists. What is given by name
-becomes an object. ``drawing`` and names that begin with ``_`` stay in Python. In JavaScript an empty list counts as
-true, so ask for its length; and a text is no list until ``list`` makes it one.
+becomes an object. What begins with ``_``, and functions of a whole ``figure``, stay in Python. In JavaScript an empty
+list counts as true, so ask for its length; and a text is no list until ``list`` makes it one.
 """
 
 import ast
@@ -17,7 +17,7 @@ from .bundle import FOLDER, PICTURES
 
 COMMAND = "python -m orientation_figures.moving.javascript"
 
-_NAMES = {"len": "{}.length", "abs": "Math.abs({})", "min": "Math.min({})", "max": "Math.max({})", "list": "[...{}]"}
+_NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
 _METHODS = {"append": "push", "index": "indexOf", "lower": "toLowerCase"}
 _OPERATORS = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2), ast.Pow: ("**", 3),
@@ -39,7 +39,7 @@ def translated(name):
                 modules |= {alias.name: source for alias in node.names}
             case ast.Assign(targets=[ast.Name(id=constant)]) if not constant.startswith("_"):
                 parts.append((node, f"export const {constant} = {expression(node.value)};"))
-            case ast.FunctionDef() if node.name != "drawing" and not node.name.startswith("_"):
+            case ast.FunctionDef() if not node.name.startswith("_") and node.args.args[0].arg != "figure":
                 parts.append((node, f"\nexport function {camel(node.name)}({parameters(node.args)}) {block(node)}"))
     used = {one.id for node, _ in parts for one in ast.walk(node) if isinstance(one, ast.Name)}
     lines = [f"// Written by `{COMMAND}` from pictures/{name}.py."]
@@ -66,15 +66,15 @@ def parameters(arguments):
 
 def block(function):
     """The body of a function; a variable is constant if it is set in one place."""
-    counts, found = {}, [*function.body]
+    together, found = [], [*function.body]
     while found:
         node = found.pop()
         if isinstance(node, ast.Assign | ast.AugAssign):
-            for one in names_in(node.targets[0] if isinstance(node, ast.Assign) else node.target):
-                counts[one] = counts.get(one, 0) + 1
+            together.append(names_in(node.targets[0] if isinstance(node, ast.Assign) else node.target))
         if isinstance(node, ast.stmt) and not isinstance(node, ast.FunctionDef):
             found += ast.iter_child_nodes(node)
-    changing = sorted(name for name, count in counts.items() if count > 1)
+    every = sum(together, [])
+    changing = sorted({one for names in together if any(every.count(name) > 1 for name in names) for one in names})
     first = [f"let {', '.join(map(camel, changing))};"] if changing else []
     return braces(first + [statement(one, changing) for one in function.body])
 
@@ -142,7 +142,7 @@ def expression(node):
         case ast.JoinedStr():
             return f"`{''.join(filled(part) for part in node.values)}`"
         case ast.Attribute(value=ast.Name(id="math")):
-            return {"pi": "Math.PI", "inf": "Infinity"}.get(node.attr, f"Math.{node.attr}")
+            return {"pi": "Math.PI", "nan": "NaN"}.get(node.attr, f"Math.{node.attr}")
         case ast.Attribute():
             return f"{within(node.value)}.{_METHODS.get(node.attr) or camel(node.attr)}"
         case ast.List() | ast.Tuple():
@@ -176,6 +176,9 @@ def expression(node):
             return f"{within(node.test, 0.5)} ? {within(node.body, 0.5)} : {within(node.orelse, 0)}"
         case ast.Lambda():
             return f"({parameters(node.args)}) => {expression(node.body)}"
+        case ast.DictComp(generators=[part]):
+            pair = ast.List([node.key, node.value])
+            return f"Object.fromEntries({expression(ast.ListComp(pair, [part]))})"
         case ast.ListComp(generators=[first, *others]):
             if others:
                 inner = ast.ListComp(node.elt, others)
@@ -195,6 +198,8 @@ def call(node):
     given = [expression(one) for one in node.args]
     if node.keywords:
         given.append(entries((one.arg, one.value) for one in node.keywords))
+    if isinstance(node.func, ast.Name) and node.func.id in ("min", "max"):
+        return f"Math.{node.func.id}({'...' if len(given) == 1 else ''}{', '.join(given)})"
     if isinstance(node.func, ast.Name) and node.func.id in _NAMES:
         return _NAMES[node.func.id].format(", ".join(given))
     return f"{within(node.func)}({', '.join(given)})"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..drawing import ROUND, Drawing
+from ..drawing import ROUND, Drawing, _ellipse
 
 
 class Sheet(Drawing):
@@ -56,6 +56,10 @@ class Sheet(Drawing):
         for layer in (kind, f"{kind} core") if kind == "tube" else (kind,):
             self.path("MCC", self.on_sheet(origin) + points, f"{layer} {colour}")
         return self
+
+    def ring(self, point, colour="ink", radius=5):
+        """Draw a small circle with a radius in pixels."""
+        return self.path(*_ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"paper {colour}")
 
     def label_beyond(self, point, text, colour="ink", pixels=17):
         """Write a label beyond a point as seen from the origin."""

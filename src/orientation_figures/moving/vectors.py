@@ -9,6 +9,9 @@ AXES = "xyz"
 IDENTITY = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
 
+degrees = math.degrees
+
+
 def add(*vectors):
     return [sum(entries) for entries in zip(*vectors)]
 

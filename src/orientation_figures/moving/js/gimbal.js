@@ -1,7 +1,8 @@
-import { AXES, add, dot, gimbalLockMargin, length, PROPER_EULER, SEQUENCES, scale, subtract } from './mathematics.js';
-import { INNER, OUTER, SIZE, SYMBOLS, device, picture } from './gimbal_picture.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, glide, group, hats, liveText,
-  numberTable, onceAFrame, open, plain, put, radians, readout, slider, stage, turned, wrapped, write } from './shared.js';
+import { add, AXES, degrees, dot, gimbalLockMargin, length, PROPER_EULER, radians, scale, SEQUENCES,
+  subtract } from './mathematics.js';
+import { device, INNER, OUTER, picture, SIZE, SYMBOLS } from './gimbal_picture.js';
+import { button, change, choice, element, fixed, follow, followTurn, glide, group, hats, liveText,
+  numberTable, onceAFrame, open, plain, put, readout, Sheet, slider, stage, turned, wrapped, write } from './shared.js';
 
 const BOUNDS = [-180, -185, 200, 185], NAMES = ['psi', 'theta', 'phi'];
 const CLOSE = radians(10), LOCKED = radians(0.5);

@@ -1,11 +1,11 @@
 // What the moving figures share: a sheet to draw on, in the look of orientation_figures.drawing, and controls that
 // work by pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
 // contract; on a page of the book without a kernel, `start` gives it a model of its own.
-import { AXES, IDENTITY, add, cross, dcmFromRotationVector, dot, length, multiply, scale, simpleDcm, subtract, times,
-  transpose, unit } from './mathematics.js';
+import { add, AXES, cross, dcmFromRotationVector, degrees, dot, IDENTITY, length, multiply, radians,
+  scale, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
+import { carriedBy } from './address.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
-import { carriedBy } from './address.js';
 
 // ---- elements and words --------------------------------------------------------------------------------
 
@@ -79,8 +79,6 @@ export function fixed(value, digits = 3) {
   return (value < 0 && Number(text) !== 0 ? '\u2212' : '\u2007') + text;
 }
 
-export const degrees = (angle) => angle * 180 / Math.PI;
-export const radians = (angle) => angle * Math.PI / 180;
 // '35', '-12.5': degrees for a field, without the noise of the conversion.
 export const plain = (value, digits = 2) => String(Number(value.toFixed(digits)) + 0);
 

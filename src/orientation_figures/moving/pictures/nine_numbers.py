@@ -1,38 +1,58 @@
-"""The still of nine numbers that should be a direction cosine matrix."""
+"""The picture of nine numbers that should be a direction cosine matrix."""
 
-import numpy as np
+import math
 
-from ...drawing import Drawing, view_from
+from ..vectors import AXES, IDENTITY, add, cross, dot, length, scale, unit
 
-REACH, SIZE = 1.2, 116  # as in js/nine_numbers.js
-VIEW = view_from(np.radians(40), np.radians(24))
+REACH = 1.2
+SIZE = 116
+SMALL = 1e-9
+
+
+def picture(sheet, rows, nearest):
+    """``nearest`` is the nearest triad, or None where several are equally near."""
+    sheet.triad("N", IDENTITY, length=REACH)
+    if nearest is not None:
+        sheet.layer = -1
+        for row, measured in zip(nearest, rows):
+            sheet.arrow(row, colour="D")
+            sheet.line([row, measured], "D", "guide")
+    sheet.layer = 0
+    for k, row in enumerate(rows):
+        sheet.arrow(row, colour="A")
+        sheet.label_beyond(unit(row) if length(row) < 1 else row, rf"$\hat{{a}}_{AXES[k]}$", "A")
+    sheet.layer = 1
+    for row in rows:
+        if abs(dot(row, row) - 1) > SMALL:
+            # Where the tip should be, and what is missing or too much.
+            sheet.line([row, unit(row)], "B", "thick")
+            sheet.ring(unit(row), "B", 5)
+    for i, j in [[0, 1], [1, 2], [2, 0]]:
+        # The corner between two rows: a square, or what has become of it.
+        u, v = scale(0.2, unit(rows[i])), scale(0.2, unit(rows[j]))
+        fails = abs(dot(rows[i], rows[j])) > SMALL
+        sheet.line([u, add(u, v), v], "B" if fails else "muted", "thick" if fails else "")
+    # Where the third row of a right-handed matrix would point.
+    third = cross(rows[0], rows[1])
+    if dot(third, rows[2]) < 0:
+        sheet.arrow(third, colour="B", label=r"$\hat{a}_x\times\hat{a}_y$")
 
 
 def drawing(figure):
-    rows = np.array(figure.matrix)
+    from ...drawing import view_from
+    from ..sheet import Sheet
+
+    rows = figure.matrix
     try:
         nearest = figure.nearest.dcm
     except ValueError:  # several are equally near
-        nearest = np.empty((0, 3))
+        nearest = None
     said = ", ".join(f"a {name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", rows))
-    drawing = Drawing(
+    sheet = Sheet(
         f"In the frame N three arrows that should be the unit vectors of a triad A: {said}. "
         f"{figure.check() or 'They are a direction cosine matrix'}. "
-        + ("Dotted arrows show the nearest triad." if len(nearest) else "Several triads are equally near."),
-        VIEW,
-        SIZE,
+        + ("Dotted arrows show the nearest triad." if nearest is not None else "Several triads are equally near."),
+        view=view_from(math.radians(40), math.radians(24)),
+        scale=SIZE,
     )
-    drawing.triad("N", REACH * np.eye(3))
-    for row, measured in zip(nearest, rows):
-        drawing.arrow(row, colour="D").line([row, measured], "D", "guide")
-    lengths = np.linalg.norm(rows, axis=1)
-    for name, row, length in zip("xyz", rows, lengths):
-        tip = drawing.on_sheet(row)
-        outward = tip / (np.linalg.norm(tip) or 1)
-        beyond = drawing.on_sheet(row / length) if 0 < length < 1 else tip
-        drawing.arrow(row, colour="A", label=rf"$\hat{{a}}_{name}$", shift=beyond - tip + 17 * outward)
-    for i, j in ((0, 1), (1, 2), (2, 0)):
-        u, v = 0.2 * rows[i] / (lengths[i] or 1), 0.2 * rows[j] / (lengths[j] or 1)
-        fails = abs(rows[i] @ rows[j]) > 1e-9
-        drawing.line([u, u + v, v], "B" if fails else "muted", "thick" if fails else "")
-    return drawing
+    return sheet.paint(picture, rows, nearest)

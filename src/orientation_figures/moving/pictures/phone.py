@@ -1,30 +1,36 @@
-"""The still of a phone above the ground."""
+"""The picture of a phone above the ground."""
 
 import math
 
-import numpy as np
+from ..vectors import IDENTITY, add, dot, scale
 
-from ...drawing import Drawing
-
-BODY = (0.62, 1.24, 0.1)  # as in js/phone.js
+BODY = (0.62, 1.24, 0.1)
 SCREEN = (0.27, 0.54)
-REACH, SIZE = 1.3, 112
+REACH = 1.3
+SIZE = 112
+
+
+def picture(sheet, dcm):
+    sheet.triad("N", IDENTITY, length=REACH)
+    sheet.box(dcm, BODY, colour="B")
+    across, along, out = dcm
+    if dot(out, sheet.view[2]) > 0:
+        front = scale(BODY[2] / 2 + 1e-3, out)
+        corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+        places = [add(front, scale(x * SCREEN[0], across), scale(y * SCREEN[1], along)) for x, y in corners]
+        sheet.area(places, "ink", 8)
+    sheet.triad("B", dcm)
 
 
 def drawing(figure):
+    from ..sheet import Sheet
+
     alpha, beta, gamma = (f"{math.degrees(angle):.0f}" for angle in figure.angles)
     rows = [f"{name} at ({', '.join(f'{entry + 0:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
-    drawing = Drawing(
+    sheet = Sheet(
         "A phone, frame B, and the triad of the ground N: n x east, n y north, n z up. The phone is turned by "
         f"alpha {alpha}, beta {beta} and gamma {gamma} degrees, body fixed z-x-y. Along N, b {', b '.join(rows)}. "
         "b x points to the right across the screen, b y to its top, b z out of it.",
         scale=SIZE,
     )
-    drawing.triad("N", REACH * np.eye(3))
-    drawing.box(figure.dcm, BODY, (0, 0, 0), "B")
-    across, along, out = figure.dcm
-    if out @ drawing.view[2] > 0:
-        corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
-        front = BODY[2] / 2 * out
-        drawing.area([front + x * SCREEN[0] * across + y * SCREEN[1] * along for x, y in corners], "ink", 8)
-    return drawing.triad("B", figure.dcm)
+    return sheet.paint(picture, figure.dcm)

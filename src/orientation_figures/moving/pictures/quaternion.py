@@ -1,121 +1,109 @@
-"""The stills of the quaternion and its double, and of three ways from one orientation to another."""
+"""The picture of the quaternion and its double, and of three ways from one orientation to another."""
 
 import math
 
-import numpy as np
+from orientation.axis_angle import axis_angle_from_dcm
 
-from orientation.euler_angles import dcm_from_body_fixed
+from ..vectors import AXES, IDENTITY, degrees, dot, length, multiply, scale, subtract, transpose, unit
 
-from ...drawing import Drawing
-from ..quaternion import SECONDS, angle_between
-
-# As in js/quaternion.js: pixels, places on the sheet.
-SIZE, KNOB, MIDDLE, RADIUS, BALL, SAMPLES = 96, 1.32, (142, 130), 70, 104, 60
-LEFT, RIGHT, TOP, BOTTOM = -120, 150, 144, 196
+SIZE = 96  # of the first picture, and of the second:
+BALL = 104
+KNOB = 1.32
+# Of the circle beside the triads, in pixels.
+MIDDLE = (142, 130)
+RADIUS = 70
+SECONDS = 4
+SAMPLES = 60
+WAYS = ("C", "D", "E")
+# Of the plot below the ways.
+LEFT = -120
+RIGHT = 150
+TOP = 144
+BOTTOM = 196
 TOPS = (30, 60, 90, 120, 180, 360, 720)
 
 
-def drawing(figure):
-    return _double(figure) if figure.view == "double" else _way(figure)
-
-
-def _double(figure):
-    axis, half = np.array(figure.axis), figure.angle / 2
-    q = ", ".join(f"{entry:.3f}" for entry in figure.quaternion)
-    drawing = Drawing(
-        f"The triad of N, and from the same origin the triad of A, turned from N through theta, "
-        f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e with the components "
-        f"({', '.join(f'{entry:.2f}' for entry in axis)}). Beside it a circle of radius 1 with the scalar part of a "
-        f"quaternion to the right and its part along e upwards. The point q stands at half the angle, "
-        f"{math.degrees(half):.0f} degrees{', and minus q opposite to it' if figure.more else ''}. q is ({q}), scalar "
-        f"first{'; minus q is the same orientation' if figure.more else ''}.",
-        scale=SIZE,
-    )
-    drawing.line([-0.6 * axis, KNOB * axis], "accent", "guide")
-    drawing.triad("N", 1.25 * np.eye(3)).triad("A", figure.dcm).arrow(axis, colour="accent")
-    drawing.dot(KNOB * axis, "accent", 5).label(KNOB * axis, r"$\hat{e}$", "accent", (17, 2))
-    start = np.eye(3)[np.argmin(np.abs(axis))]
-    start = start - start @ axis * axis
-    rest = figure.angle - 2 * math.pi
-    if rest > 1e-9:
-        for part in (0, math.pi):
-            drawing.turn(axis, math.pi, start if part == 0 else -start, 0.5, colour="accent", head=False)
-    if figure.angle > 0:
-        drawing.turn(
-            axis,
-            rest if rest > 1e-9 else figure.angle,
-            start,
-            0.6 if rest > 1e-9 else 0.5,
-            r"$\theta$",
-            colour="accent",
-            kind="thick",
-        )
-
-    def at(radius, angle):
-        return _placed(drawing, MIDDLE[0] + radius * math.cos(angle), MIDDLE[1] - radius * math.sin(angle))
-
-    def round_to(radius, angle):
-        return [at(radius, part * angle) for part in np.linspace(0, 1, 49)]
-
-    for angle in (0, math.pi / 2):
-        drawing.line([at(-RADIUS - 12, angle), at(RADIUS + 12, angle)], "muted", "faint")
-    drawing.line(round_to(RADIUS, 2 * math.pi), "muted")
-    drawing.label(at(RADIUS + 12, 0), "$q_0$", shift=(3, 13), size=16)
-    drawing.label(at(RADIUS + 12, math.pi / 2), r"$\hat{e}$", "accent", (12, 2), 16)
+def double(sheet, axis, angle, dcm, more):
+    """A frame that turns in N, and beside it the circle of half the angle with q, and -q if there is ``more``."""
+    knob, sizes = scale(KNOB, axis), [abs(entry) for entry in axis]
+    far = IDENTITY[sizes.index(min(sizes))]
+    arm = subtract(far, scale(dot(far, axis), axis))
+    sheet.line([scale(-0.6, axis), knob], "accent", "guide")
+    sheet.triad("N", IDENTITY, length=1.25)
+    sheet.triad("A", dcm)
+    sheet.arrow(axis, colour="accent")
+    sheet.dot(knob, "accent", 5)
+    sheet.label(knob, r"$\hat{e}$", "accent", [17, 2])
+    # The angle, on its second turn outside the first.
+    rest = angle - 2 * math.pi
+    second = rest > 1e-9
+    if second:
+        sheet.turn(axis, 2 * math.pi, arm, radius=0.5, colour="accent", head=False)
+    if angle > 0:
+        turn, radius = rest if second else angle, 0.6 if second else 0.5
+        sheet.turn(axis, turn, arm, radius=radius, label=r"$\theta$", colour="accent", kind="thick")
+    half = angle / 2
+    sheet.layer = 1
+    for way in [0, math.pi / 2]:
+        sheet.line([on_circle(sheet, -RADIUS - 12, way), on_circle(sheet, RADIUS + 12, way)], "muted", "faint")
+    sheet.line(round_to(sheet, RADIUS, 2 * math.pi), "muted")
+    sheet.label(on_circle(sheet, RADIUS + 12, 0), "$q_0$", "ink", [3, 13], 16)
+    sheet.label(on_circle(sheet, RADIUS + 12, math.pi / 2), r"$\hat{e}$", "accent", [12, 2], 16)
+    sheet.layer = 2
     if half > 1e-9:
-        drawing.line(round_to(RADIUS, half), "accent", "thick").line(round_to(22, half), "accent")
-        drawing.label(at(40, half / 2), r"$\theta/2$", "accent", size=16)
-    drawing.arrow(at(RADIUS, half), at(0, 0), "accent", "$q$")
-    if not figure.more:
-        return drawing
-    return drawing.arrow(at(-RADIUS, half), at(0, 0), "muted", "$-q$")
+        sheet.line(round_to(sheet, RADIUS, half), "accent", "thick")
+        sheet.line(round_to(sheet, 22, half), "accent")
+        sheet.label(on_circle(sheet, 40, half / 2), r"$\theta/2$", "accent", [0, 0], 16)
+    middle = on_circle(sheet, 0, 0)
+    sheet.arrow(on_circle(sheet, RADIUS, half), start=middle, colour="accent", label="$q$")
+    if more:
+        sheet.arrow(on_circle(sheet, -RADIUS, half), start=middle, colour="muted", label="$-q$")
 
 
-def _way(figure):
-    first, second = dcm_from_body_fixed((figure.first, figure.second), "zxy")
-    k = "xyz".index(figure.unit_vector)
-    shares = np.linspace(0, 1, SAMPLES + 1)
-    tracks = list(zip(*map(figure.ways, shares)))
-    speeds = [[angle_between(*pair) * SAMPLES / SECONDS for pair in zip(track, track[1:])] for track in tracks]
-    lengths = np.linalg.norm(figure.blend(figure.share), axis=1)
-    now = [
-        f"{speed:.0f}" if math.isfinite(speed) else "not defined" for speed in np.degrees(figure.speeds(figure.share))
-    ]
-    highest, _, beyond = plotted(speeds)
-    cut = f", cut off at {highest} degrees per second; the fastest is {beyond:.0f}" if beyond else ""
-    drawing = Drawing(
-        f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the orientation of A to "
-        "that of "
-        f"B, a turn of {math.degrees(angle_between(first, second)):.0f} degrees: of C by slerp, an even turn about "
-        "one axis; "
-        "of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by the matrix "
-        "nearest to interpolated entries. A "
-        f"straight dashed line inside the sphere shows where the blended entries lead before they are repaired. "
-        f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D and E are "
-        f"{now[0]}, {now[1]} and {now[2]} "
-        f"degrees per second, and the blended rows have the lengths "
-        f"{', '.join(f'{length:.2f}' for length in lengths)}. Below, the three speeds over time{cut}.",
-        scale=BALL,
-    )
-    drawing.circle(drawing.view[2], kind="faint").circle((0, 0, 1), kind="faint")
-    drawing.line([first[k], second[k]], "E", "guide")
-    for letter, track in zip("CD", tracks):
+def on_circle(sheet, radius, angle):
+    return sheet.placed(MIDDLE[0] + radius * math.cos(angle), MIDDLE[1] - radius * math.sin(angle))
+
+
+def round_to(sheet, radius, angle):
+    return [on_circle(sheet, radius, k / 48 * angle) for k in range(49)]
+
+
+def angle_between(before, after):
+    """Return the angle of the turn between two orientations, NaN where one of them is missing."""
+    return math.nan if before is None or after is None else axis_angle_from_dcm(multiply(after, transpose(before)))[1]
+
+
+def ways(sheet, ends, tracks, speeds, now, raw, k, share):
+    """The tip of a unit vector, the ``k``-th, on its three ways; what is None is not there.
+
+    ``tracks`` are the orientations at even times and ``speeds`` those between them; ``now`` are the three
+    orientations, and ``raw`` is the row of the blended entries.
+    """
+    hats = [rf"$\hat{{{letter}}}_{AXES[k]}$" for letter in list("abcde")]
+    sheet.circle(sheet.view[2], colour="muted", kind="faint")
+    sheet.circle([0, 0, 1], half="front", colour="muted", kind="faint")
+    sheet.circle([0, 0, 1], half="back", colour="muted", kind="guide faint")
+    sheet.line([ends[0][k], ends[1][k]], "E", "guide")
+    for n, track in enumerate(tracks[:2]):
         if track[0] is not None:
-            drawing.line([dcm[k] for dcm in track], letter, "axis")
+            sheet.line([dcm[k] for dcm in track], WAYS[n], "axis")
     # E goes the same way round as C, at another pace: dots a fifth of a second apart.
-    for dcm in tracks[2][::3]:
-        if dcm is not None:
-            drawing.dot(dcm[k], "E", 3)
-    letters = {letter: rf"$\hat{{{letter.lower()}}}_{figure.unit_vector}$" for letter in "ABCDE"}
-    drawing.arrow(first[k], colour="A", label=letters["A"]).arrow(second[k], colour="B", label=letters["B"])
-    raw = figure.blend(figure.share)[k]
-    drawing.line([(0, 0, 0), raw], "E").dot(raw, "E", 4)
-    for letter, dcm in zip("CDE", figure.ways(figure.share)):
-        if dcm is not None and 1e-9 < figure.share < 1 - 1e-9:
-            drawing.arrow(dcm[k], colour=letter, label=letters[letter])
+    for n, dcm in enumerate(tracks[2]):
+        if dcm is not None and n % 3 == 0:
+            sheet.dot(dcm[k], "E", 3)
+    sheet.arrow(ends[0][k], colour="A", label=hats[0])
+    sheet.arrow(ends[1][k], colour="B", label=hats[1])
+    sheet.layer = 1
+    if length(subtract(raw, unit(raw))) > 1e-6:
+        sheet.line([[0, 0, 0], raw], "E")
+    sheet.dot(raw, "E", 4)
+    moving = 1e-9 < share and share < 1 - 1e-9
+    for n, dcm in enumerate(now):
+        if dcm is not None and moving:
+            sheet.arrow(dcm[k], colour=WAYS[n], label=hats[n + 2])
         elif dcm is not None:
-            drawing.dot(dcm[k], letter, 5)
-    return _plot(figure, drawing, speeds)
+            sheet.dot(dcm[k], WAYS[n], 5)
+    plot(sheet, speeds, share)
 
 
 def plotted(speeds):
@@ -123,41 +111,85 @@ def plotted(speeds):
 
     Speeds come in radians per second, and all else is in degrees.
     """
-    degrees = np.degrees(np.array(speeds, dtype=float))
-    fast = np.max(degrees, initial=0, where=np.isfinite(degrees))
-    highest = next((top for top in TOPS if top >= fast), TOPS[-1])
-    pieces = []
-    for track in degrees:
+    fast = degrees(max([0, *[speed for track in speeds for speed in track if speed >= 0]]))
+    tops = [top for top in TOPS if top >= fast]
+    highest, pieces = tops[0] if len(tops) else TOPS[-1], []
+    for track in speeds:
         runs = [[]]
         for n, speed in enumerate(track):
-            if speed <= highest:
-                runs[-1].append(((n + 0.5) / SAMPLES, speed))
-            elif runs[-1]:
+            if degrees(speed) <= highest:
+                runs[-1].append([(n + 0.5) / SAMPLES, degrees(speed)])
+            elif len(runs[-1]):
                 runs.append([])
         pieces.append([run for run in runs if len(run) > 1])
-    return highest, pieces, fast if fast > highest else 0
+    return [highest, pieces, fast if fast > highest else 0]
 
 
-def _plot(figure, drawing, speeds):
+def plot(sheet, speeds, share):
     highest, pieces, beyond = plotted(speeds)
 
     def at(part, speed):
-        return _placed(drawing, LEFT + part * (RIGHT - LEFT), BOTTOM - speed / highest * (BOTTOM - TOP))
+        return sheet.placed(LEFT + part * (RIGHT - LEFT), BOTTOM - speed / highest * (BOTTOM - TOP))
 
-    drawing.line([at(0, 0), at(1, 0)], "muted").line([at(0, 0), at(0, highest)], "muted")
-    drawing.line([at(0, highest), at(1, highest)], "muted", "faint")
-    drawing.label(at(0, highest), rf"${highest}^\circ/\mathrm{{s}}$", shift=(-30, 0), size=14)
-    drawing.label(at(0, 0), "$0$", shift=(-11, 0), size=14)
-    drawing.label(at(1, 0), rf"${SECONDS}\,\mathrm{{s}}$", shift=(0, 14), size=14)
+    sheet.line([at(0, 0), at(1, 0)], "muted")
+    sheet.line([at(0, 0), at(0, highest)], "muted")
+    sheet.line([at(0, highest), at(1, highest)], "muted", "faint")
+    sheet.label(at(0, highest), rf"${highest}^\circ/\mathrm{{s}}$", "ink", [-30, 0], 14)
+    sheet.label(at(0, 0), "$0$", "ink", [-11, 0], 14)
+    sheet.label(at(1, 0), rf"${SECONDS}\,\mathrm{{s}}$", "ink", [0, 14], 14)
     if beyond:
-        drawing.label(at(0.5, highest), r"$\mathrm{cut\ off}$", shift=(0, -9), size=14)
-    drawing.line([at(figure.share, 0), at(figure.share, highest)], "ink", "guide")
-    for letter, runs in zip("CDE", pieces):
+        sheet.label(at(0.5, highest), r"$\mathrm{cut\ off}$", "ink", [0, -9], 14)
+    sheet.line([at(share, 0), at(share, highest)], "ink", "guide")
+    for letter, runs in zip(WAYS, pieces):
         for run in runs:
-            drawing.line([at(*point) for point in run], letter, "axis")
-    return drawing
+            sheet.line([at(part, speed) for part, speed in run], letter, "axis")
 
 
-def _placed(drawing, right, down):
-    """Return a point of N that is seen at a place of the sheet."""
-    return np.array((right, -down, 0)) / drawing.scale @ drawing.view
+def drawing(figure):
+    return _double(figure) if figure.view == "double" else _ways(figure)
+
+
+def _double(figure):
+    from ..sheet import Sheet
+
+    half = figure.angle / 2
+    q = ", ".join(f"{entry:.3f}" for entry in figure.quaternion)
+    sheet = Sheet(
+        f"The triad of N, and from the same origin the triad of A, turned from N through theta, "
+        f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e with the components "
+        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}). Beside it a circle of radius 1 with the "
+        f"scalar part of a quaternion to the right and its part along e upwards. The point q stands at half the angle, "
+        f"{math.degrees(half):.0f} degrees{', and minus q opposite to it' if figure.more else ''}. q is ({q}), scalar "
+        f"first{'; minus q is the same orientation' if figure.more else ''}.",
+        scale=SIZE,
+    )
+    return sheet.paint(double, figure.axis, figure.angle, figure.dcm, figure.more)
+
+
+def _ways(figure):
+    from ..sheet import Sheet
+
+    ends, k = figure.ends, AXES.index(figure.unit_vector)
+    tracks = list(zip(*(figure.ways(n / SAMPLES) for n in range(SAMPLES + 1))))
+    speeds = [[angle_between(*pair) * SAMPLES / SECONDS for pair in zip(track, track[1:])] for track in tracks]
+    raw = figure.blend(figure.share)
+    now = [
+        f"{math.degrees(speed):.0f}" if math.isfinite(speed) else "not defined" for speed in figure.speeds(figure.share)
+    ]
+    highest, _, beyond = plotted(speeds)
+    cut = f", cut off at {highest} degrees per second; the fastest is {beyond:.0f}" if beyond else ""
+    sheet = Sheet(
+        f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the orientation of A to "
+        "that of "
+        f"B, a turn of {math.degrees(angle_between(*ends)):.0f} degrees: of C by slerp, an even turn about "
+        "one axis; "
+        "of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by the matrix "
+        "nearest to interpolated entries. A "
+        f"straight dashed line inside the sphere shows where the blended entries lead before they are repaired. "
+        f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D and E are "
+        f"{now[0]}, {now[1]} and {now[2]} "
+        f"degrees per second, and the blended rows have the lengths "
+        f"{', '.join(f'{size:.2f}' for size in map(length, raw))}. Below, the three speeds over time{cut}.",
+        scale=BALL,
+    )
+    return sheet.paint(ways, ends, tracks, speeds, figure.ways(figure.share), raw[k], k, figure.share)

@@ -1,44 +1,96 @@
-"""The still of a chain of simple turns."""
+"""The picture of a chain of simple turns."""
 
 import math
 
-import numpy as np
-
 from orientation.axis_angle import axis_angle_from_dcm
 
-from ...drawing import Drawing
-from ..successive import COMPARISONS, chain, second_chain
+from ..vectors import AXES, IDENTITY, multiply, scale, times, transpose
+from .common import around, chain, partly
 
-REACH, BEFORE, SIZE = 1.25, 0.66, 96  # of the arrows of N, of the frames before the last, pixels
+REACH = 1.25  # of the arrows of N
+BEFORE = 0.66  # of the frames before the last
+SIZE = 96
 LETTERS = "NABCD"
+COMPARISONS = ("nothing", "1 and 2 exchanged", "2 and 3 exchanged", "3 and 4 exchanged", "body and space fixed")
+
+
+def second_chain(turns, kind, compare):
+    """Return the turns of the chain that is compared, and their kind."""
+    k = COMPARISONS.index(compare)
+    if k == 4:
+        return [turns, "space" if kind == "body" else "body"]
+    return [[*turns[: k - 1], turns[k], turns[k - 1], *turns[k + 1 :]], kind]
+
+
+def axis_of(frames, turns, kind, k):
+    """Return the direction that a turn of the chain is about, along N."""
+    return (frames[k] if kind == "body" else IDENTITY)[AXES.index(turns[k][0])]
+
+
+def picture(sheet, turns, kind, share, compare, lit=False):
+    """Where a number is touched (``lit``) the frames on the way step back, as they do beside a second chain."""
+    now = partly(turns, share)
+    frames = chain(now, kind)
+    last, end = len(now), frames[-1]
+    compared = compare != COMPARISONS[0]
+    sheet.triad("N", IDENTITY, length=REACH)
+    sheet.faded = lit or compared
+    for k in range(1, last):
+        sheet.triad(LETTERS[k], frames[k], length=BEFORE, labels=["", "", ""])
+    if last and not compared:
+        axis = axis_of(frames, now, kind, last - 1)
+        sheet.line([scale(-0.35, axis), scale(REACH, axis)], "accent", "guide")
+        for row in frames[last - 1]:
+            around(sheet, axis, now[last - 1][1], row)
+    sheet.faded = False
+    if last:
+        sheet.triad(LETTERS[last], end)
+    letters = list(LETTERS)[: len(turns) + 1]
+    if compared:
+        other, other_kind = second_chain(turns, kind, compare)
+        other_now = partly(other, share)
+        other_frames = chain(other_now, other_kind)
+        if last:
+            between, angle = axis_angle_from_dcm(multiply(other_frames[-1], transpose(end)))
+            # The axis between two orientations has the same components in both: along N it is found through either.
+            if angle > 0.02:
+                for row in end:
+                    around(sheet, times(transpose(end), between), angle, row)
+            sheet.triad("E", other_frames[-1])
+        colours = ["N", *["muted" for _ in turns[1:]], "E"]
+        strip(sheet, other_frames, other_now, other_kind, colours, 195, 22)
+    strip(sheet, frames, now, kind, letters, 143 if compared else 168, 22 if compared else 27)
+
+
+def strip(sheet, frames, turns, kind, colours, down, radius):
+    """Draw the frames side by side in their order, with the unit vector that each turn is about."""
+    width, reach = 340 / len(colours), radius / SIZE
+
+    def at(x, y=0):
+        return sheet.placed(x, down + y)
+
+    for k, dcm in enumerate(frames):
+        x = (k - (len(colours) - 1) / 2) * width
+        sheet.box(dcm, [1.1 * reach, 0.8 * reach, 0.28 * reach], origin=at(x), colour=colours[k])
+        sheet.triad(colours[k], dcm, origin=at(x), length=reach, labels=["", "", ""])
+        if colours[k] != "muted":
+            sheet.label(at(x - radius + 1, -radius + 1), f"${colours[k]}$", colours[k], [0, 0], 16)
+        if k:
+            start, end = x - width + radius + 7, x - radius - 3
+            short = max(0, (end - start - 26) / 2)
+            sheet.arrow(at(end - short, 4), start=at(start + short, 4), colour="muted")
+            letter, axis = "N" if kind == "space" else colours[k - 1], turns[k - 1][0]
+            # The frames on the way of the second chain have no names.
+            name = axis if letter == "muted" else rf"\hat{{{letter.lower()}}}_{axis}"
+            sheet.label(at((start + end) / 2, -8), f"${name}$", "ink", [0, 0], 15)
 
 
 def drawing(figure):
-    count, now = len(figure.turns), _partly(figure.turns, figure.share)
-    frames, last = chain(now, figure.fixed), len(now)
-    drawing = Drawing(_words(figure, now, frames), scale=SIZE)
-    drawing.triad("N", REACH * np.eye(3))
-    second = None if figure.compare == "nothing" else second_chain(figure.turns, figure.fixed, figure.compare)
-    for k in range(1, last):
-        drawing.triad(LETTERS[k], frames[k], length=BEFORE, labels=("", "", ""))
-    if last and not second:
-        axis = (frames[last - 1] if figure.fixed == "body" else np.eye(3))["xyz".index(now[-1][0])]
-        drawing.line([-0.35 * axis, REACH * axis], "accent", "guide")
-        _around(drawing, axis, now[-1][1], frames[last - 1])
-    if last:
-        drawing.triad(LETTERS[last], frames[-1])
-    if second:
-        turns = _partly(second[0], figure.share)
-        other = chain(turns, second[1])
-        if last:
-            axis, angle = axis_angle_from_dcm(other[-1] @ frames[-1].T)
-            if angle > 0.02:
-                _around(drawing, axis @ frames[-1], angle, frames[-1])
-            drawing.triad("E", other[-1])
-        colours = ["N", *["muted"] * (count - 1), "E"]
-        _strip(drawing, other, turns, second[1], colours, 195, 22)
-    _strip(drawing, frames, now, figure.fixed, LETTERS[: count + 1], 143 if second else 168, 22 if second else 27)
-    return drawing
+    from ..sheet import Sheet
+
+    now = partly(figure.turns, figure.share)
+    sheet = Sheet(_words(figure, now, chain(now, figure.fixed)), scale=SIZE)
+    return sheet.paint(picture, figure.turns, figure.fixed, figure.share, figure.compare)
 
 
 def _words(figure, now, frames):
@@ -67,45 +119,3 @@ def _words(figure, now, frames):
             f"degrees lies between the two ends."
         )
     return words
-
-
-def _partly(turns, share):
-    """Return the turns made so far; each begins and ends at rest."""
-    done = share * len(turns)
-    whole = min(math.floor(done + 1e-9), len(turns))
-    rest = max(0.0, done - whole)
-    turns = list(turns)
-    if rest > 1e-9:
-        axis, angle = turns[whole]
-        return [*turns[:whole], (axis, rest * rest * (3 - 2 * rest) * angle)]
-    return turns[:whole]
-
-
-def _around(drawing, axis, angle, starts):
-    for start in starts:
-        foot = start @ axis * axis
-        if (radius := np.linalg.norm(start - foot)) > 1e-6:
-            drawing.turn(axis, angle, start - foot, radius, origin=foot, colour="muted", head=False)
-
-
-def _strip(drawing, frames, turns, kind, colours, down, radius):
-    """Draw the frames side by side in their order, with the unit vector that each turn is about."""
-    width, reach = 340 / len(colours), radius / SIZE
-
-    def at(x, y=0):
-        return np.array((x, -(down + y), 0)) / SIZE @ drawing.view
-
-    for k, dcm in enumerate(frames):
-        x = (k - (len(colours) - 1) / 2) * width
-        drawing.box(dcm, (1.1 * reach, 0.8 * reach, 0.28 * reach), at(x), colours[k])
-        drawing.triad(colours[k], dcm, at(x), reach, labels=("", "", ""))
-        if colours[k] != "muted":
-            drawing.label(at(x - radius + 1, -radius + 1), f"${colours[k]}$", colours[k], size=16)
-        if k:
-            start, end = x - width + radius + 7, x - radius - 3
-            short = max(0, (end - start - 26) / 2)
-            drawing.arrow(at(end - short, 4), at(start + short, 4), "muted")
-            letter, axis = ("N" if kind == "space" else colours[k - 1]), turns[k - 1][0]
-            # The frames on the way of the second chain have no names.
-            name = axis if letter == "muted" else rf"\hat{{{letter.lower()}}}_{axis}"
-            drawing.label(at((start + end) / 2, -8), f"${name}$", size=15)

@@ -1,30 +1,36 @@
-"""The still of a triad turned in a frame about an axis."""
+"""The picture of a triad turned in a frame about an axis."""
 
 import math
 
-import numpy as np
+from ..vectors import IDENTITY, scale
+from .common import around
 
-from ...drawing import Drawing
-
-REACH, KNOB = 1.25, 1.55  # of the arrows of N and of the line of the axis: labels keep clear of those of A
+REACH = 1.25  # of the arrows of N
+KNOB = 1.55  # of the line of the axis: labels keep clear of those of A
 SIZE = 112
 
 
+def picture(sheet, axis, angle, dcm):
+    knob = scale(KNOB, axis)
+    sheet.line([scale(-1, axis), knob], "accent", "guide")
+    for start in IDENTITY:
+        around(sheet, axis, angle, start)
+    sheet.triad("N", IDENTITY, length=REACH)
+    sheet.triad("A", dcm)
+    sheet.arrow(axis, colour="accent")
+    sheet.dot(knob, "accent", 5)
+    sheet.label(knob, r"$\hat{e}$", "accent", [15, -9])
+
+
 def drawing(figure):
+    from ..sheet import Sheet
+
     rows = [f"{name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
-    axis = np.array(figure.axis)
-    drawing = Drawing(
+    sheet = Sheet(
         f"The triad of frame N, and from the same origin the triad of A: turned from N through theta, "
         f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the components "
-        f"({', '.join(f'{entry:.2f}' for entry in axis)}) in both frames. Along N, a "
+        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}) in both frames. Along N, a "
         f"{', a '.join(rows)}. Thin arcs show the way of each tip, all about e.",
         scale=SIZE,
     )
-    drawing.line([-axis, KNOB * axis], "accent", "guide")
-    for start in np.eye(3):
-        foot = start @ axis * axis
-        if (radius := np.linalg.norm(start - foot)) > 1e-6:
-            drawing.turn(axis, figure.angle, start - foot, radius, origin=foot, colour="muted", head=False)
-    drawing.triad("N", REACH * np.eye(3)).triad("A", figure.dcm)
-    drawing.arrow(axis, colour="accent").dot(KNOB * axis, "accent", 5)
-    return drawing.label(KNOB * axis, r"$\hat{e}$", "accent", (15, -9))
+    return sheet.paint(picture, figure.axis, figure.angle, figure.dcm)

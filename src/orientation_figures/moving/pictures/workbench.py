@@ -1,17 +1,30 @@
-"""The still of the workbench: the last pose of each side, as its numbers are read."""
+"""The picture of the workbench: the last pose of each side, as its numbers are read."""
 
-import numpy as np
+from ..vectors import IDENTITY, scale
 
-from orientation_workbench import explain
-from orientation_workbench.mismatch.meaning import dcms_from_numbers
-from orientation_workbench.mismatch.text import read_poses
+REACH = 1.25
+APART = 165  # pixels
+SIZE = 100
 
-from ...drawing import Drawing
 
-REACH, APART, SIZE = 1.25, 165, 100  # as in js/workbench.js
+def picture(sheet, dcms):
+    """Of A and B the matrices, or None where the numbers can't be read."""
+    for k, letter in enumerate(["A", "B"]):
+        origin = scale((2 * k - 1) * APART / SIZE, sheet.view[0])
+        sheet.triad("N", IDENTITY, origin=origin, length=REACH)
+        if dcms[k] is not None:
+            sheet.triad(letter, dcms[k], origin=origin)
 
 
 def drawing(figure):
+    import numpy as np
+
+    from orientation_workbench import explain
+    from orientation_workbench.mismatch.meaning import dcms_from_numbers
+    from orientation_workbench.mismatch.text import read_poses
+
+    from ..sheet import Sheet
+
     known = [
         {name: value for name, value in side.items() if value != "not known"}
         for side in (figure.first_is, figure.second_is)
@@ -27,16 +40,13 @@ def drawing(figure):
         noise=np.radians(figure.noise),
     )
     said = " ".join(str(found).splitlines())
-    drawing = Drawing(
+    sheet = Sheet(
         "Two pairs of triads side by side, each the triad of the frame N and from the same origin another: on the left "
         f"that of A, as the first program's numbers are read, on the right that of B, as the second's. {said}",
         scale=SIZE,
     )
-    for side, (text, letter) in enumerate(((figure.first, "A"), (figure.second, "B"))):
+    dcms = [None, None]
+    for side, text in enumerate((figure.first, figure.second) if found.chains else ()):
         numbers = read_poses(text, ("first", "second")[side], known[side].get("kind")).numbers
-        reading = found.chains[0][side] if found.chains else None
-        origin = (2 * side - 1) * APART / SIZE * drawing.view[0]
-        drawing.triad("N", REACH * np.eye(3), origin=origin)
-        if reading:
-            drawing.triad(letter, dcms_from_numbers(reading, numbers[-1:])[0], origin=origin)
-    return drawing
+        dcms[side] = dcms_from_numbers(found.chains[0][side], numbers[-1:])[0]
+    return sheet.paint(picture, dcms)
