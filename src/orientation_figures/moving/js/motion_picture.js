@@ -68,7 +68,7 @@ export function racket(sheet, dcm) {
   sheet.line(placed(THROAT, dcm), 'A', 'thick');
   sheet.line(placed(HANDLE, dcm), 'A', 'tube');
   sheet.layer = 3;
-  sheet.area(placed(HEAD.slice(1), dcm), 'A', dot(dcm[2], sheet.view[2]) > 0 ? 8 : 38, false);
+  sheet.area(placed(HEAD.slice(0, -1), dcm), 'A', dot(dcm[2], sheet.view[2]) > 0 ? 8 : 38, false);
   sheet.layer = 3.1;
   sheet.path('MLMLMLMLMLMLMLML', placed(STRINGS, dcm).map((point) => sheet.onSheet(point)), 'faint A');
   sheet.layer = 3.2;

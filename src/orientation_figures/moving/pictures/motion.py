@@ -86,7 +86,7 @@ def racket(sheet, dcm):
     sheet.line(placed(THROAT, dcm), "A", "thick")
     sheet.line(placed(HANDLE, dcm), "A", "tube")
     sheet.layer = 3
-    sheet.area(placed(HEAD[1:], dcm), "A", 8 if dot(dcm[2], sheet.view[2]) > 0 else 38, False)
+    sheet.area(placed(HEAD[:-1], dcm), "A", 8 if dot(dcm[2], sheet.view[2]) > 0 else 38, False)
     sheet.layer = 3.1
     sheet.path("MLMLMLMLMLMLMLML", [sheet.on_sheet(point) for point in placed(STRINGS, dcm)], "faint A")
     sheet.layer = 3.2
