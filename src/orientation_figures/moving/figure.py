@@ -72,7 +72,9 @@ class MovingFigure(anywidget.AnyWidget):
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
         # Imported only now: a still needs NumPy and Matplotlib, the figure itself does not.
-        return import_module(f".pictures.{self.kind}", __package__).drawing(self)
+        from .sheet import Sheet
+
+        return import_module(f".pictures.{self.kind}", __package__).drawing(self, Sheet)
 
     def state(self):
         """Return the attributes that the figure shows, by their names."""

@@ -136,4 +136,6 @@ class MotionFigure(MovingFigure):
 
     def plot(self):
         """Return the ``Drawing`` of how the drift has grown up to ``time``."""
-        return pictures.plot(self)
+        from .sheet import Sheet
+
+        return pictures.plot(self, Sheet)

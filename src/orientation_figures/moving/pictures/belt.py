@@ -65,9 +65,7 @@ def picture(sheet, angle, passed):
     sheet.triad("A", end, origin=plate, length=0.62, labels=["", "", ""])
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     q = ", ".join(f"{entry:.2f}" for entry in figure.quaternion_at(1))
     sheet = Sheet(
         f"A wall on the left, a plate on the right, and between them a belt with one side red and one blue. The plate "

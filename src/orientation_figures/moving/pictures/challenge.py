@@ -28,9 +28,7 @@ _TASKS = {
 }
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     rows = [f"{name} at ({', '.join(f'{entry + 0.0:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
     sheet = Sheet(
         f"A box with the triad of A, and from the same origin the triad of N. {_TASKS[figure.task]} Along N, the unit "

@@ -11,9 +11,7 @@ def picture(sheet, dcm):
     sheet.triad("A", dcm)
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     rows = [f"{name} at ({', '.join(f'{entry + 0:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
     scalar, *vector = (f"{part + 0:.4f}" for part in figure.quaternion)
     sheet = Sheet(

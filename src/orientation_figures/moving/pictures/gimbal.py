@@ -89,9 +89,8 @@ def picture(sheet, gimbal, close=False, lit=None):
     sheet.faded = False
 
 
-def drawing(figure):
+def drawing(figure, Sheet):
     from ...drawing import view_from
-    from ..sheet import Sheet
 
     spoken = ", ".join(
         f"{name} {math.degrees(angle):.0f} degrees about {axis}"

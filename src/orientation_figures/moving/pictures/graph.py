@@ -69,9 +69,7 @@ def picture(sheet, edges, dcms, path):
         sheet.label(place, f"${name}$", name, best)
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     words = "; ".join(
         f"{frame} is turned in {reference} about {axis} by {math.degrees(angle):.0f} degrees"
         for frame, reference, axis, angle in figure.edges

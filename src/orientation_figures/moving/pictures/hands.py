@@ -17,9 +17,7 @@ def picture(sheet, rows, together):
     sheet.triad("E", rows, origin=scale(far, right), labels=LABELS)
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     rows = [f"m {name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", figure.rows)]
     image = "its mirror image" if figure.image == "mirror" else "a copy of it"
     where = "over" if figure.together else "beside"

@@ -143,12 +143,11 @@ _DESCRIPTIONS = {"matrix": "direction cosine matrix", "quaternion": "quaternion"
 _METHODS = {"Euler": "Euler", "Runge-Kutta": "Runge-Kutta", "exponential": "exponential (Magnus)"}
 
 
-def drawing(figure):
+def drawing(figure, Sheet):
     import numpy as np
 
     from orientation.quaternions import dcm_from_quaternion
 
-    from ..sheet import Sheet
     from ..tumbling import error_of, fault_of, momentum
 
     dcm, run = figure.dcm, figure.run()
@@ -175,14 +174,13 @@ def drawing(figure):
     return sheet.paint(picture, figure.moments, dcm, reference, momentum(run, figure.moments))
 
 
-def plot(figure):
+def plot(figure, Sheet):
     """Return the ``Drawing`` of how the drift has grown up to ``time``."""
     import numpy as np
 
     from orientation.euler_angles import body_fixed_from_dcm, gimbal_lock_margin
     from orientation.quaternions import dcm_from_quaternion
 
-    from ..sheet import Sheet
     from ..tumbling import error_of, fault_of, matrices
 
     def curve(part, values, kind):

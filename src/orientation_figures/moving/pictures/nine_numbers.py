@@ -38,9 +38,8 @@ def picture(sheet, rows, nearest):
         sheet.arrow(third, colour="B", label=r"$\hat{a}_x\times\hat{a}_y$")
 
 
-def drawing(figure):
+def drawing(figure, Sheet):
     from ...drawing import view_from
-    from ..sheet import Sheet
 
     rows = figure.matrix
     try:

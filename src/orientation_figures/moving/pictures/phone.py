@@ -22,9 +22,7 @@ def picture(sheet, dcm):
     sheet.triad("B", dcm)
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     alpha, beta, gamma = (f"{math.degrees(angle):.0f}" for angle in figure.angles)
     rows = [f"{name} at ({', '.join(f'{entry + 0:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
     sheet = Sheet(

@@ -145,13 +145,11 @@ def plot(sheet, speeds, share):
             sheet.line([at(part, speed) for part, speed in run], letter, "axis")
 
 
-def drawing(figure):
-    return _double(figure) if figure.view == "double" else _ways(figure)
+def drawing(figure, Sheet):
+    return _double(figure, Sheet) if figure.view == "double" else _ways(figure, Sheet)
 
 
-def _double(figure):
-    from ..sheet import Sheet
-
+def _double(figure, Sheet):
     half = figure.angle / 2
     q = ", ".join(f"{entry:.3f}" for entry in figure.quaternion)
     sheet = Sheet(
@@ -166,9 +164,7 @@ def _double(figure):
     return sheet.paint(double, figure.axis, figure.angle, figure.dcm, figure.more)
 
 
-def _ways(figure):
-    from ..sheet import Sheet
-
+def _ways(figure, Sheet):
     ends, k = figure.ends, AXES.index(figure.unit_vector)
     tracks = list(zip(*(figure.ways(n / SAMPLES) for n in range(SAMPLES + 1))))
     speeds = [[angle_between(*pair) * SAMPLES / SECONDS for pair in zip(track, track[1:])] for track in tracks]

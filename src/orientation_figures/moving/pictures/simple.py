@@ -25,9 +25,7 @@ def picture(sheet, k, angle, dcm):
     sheet.arrow(axis, colour="A")
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     rows = [
         f"a {name} at ({', '.join(f'{entry:.2f}' for entry in row + 0.0)})"
         for name, row in zip("xyz", figure.dcm, strict=True)

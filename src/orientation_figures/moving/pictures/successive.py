@@ -85,9 +85,7 @@ def strip(sheet, frames, turns, kind, colours, down, radius):
             sheet.label(at((start + end) / 2, -8), f"${name}$", "ink", [0, 0], 15)
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     now = partly(figure.turns, figure.share)
     sheet = Sheet(_words(figure, now, chain(now, figure.fixed)), scale=SIZE)
     return sheet.paint(picture, figure.turns, figure.fixed, figure.share, figure.compare)

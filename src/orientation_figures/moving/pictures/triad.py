@@ -22,9 +22,7 @@ def picture(sheet, axis, angle, dcm):
     sheet.label(knob, r"$\hat{e}$", "accent", [15, -9])
 
 
-def drawing(figure):
-    from ..sheet import Sheet
-
+def drawing(figure, Sheet):
     rows = [f"{name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
     sheet = Sheet(
         f"The triad of frame N, and from the same origin the triad of A: turned from N through theta, "

@@ -16,14 +16,12 @@ def picture(sheet, dcms):
             sheet.triad(letter, dcms[k], origin=origin)
 
 
-def drawing(figure):
+def drawing(figure, Sheet):
     import numpy as np
 
     from orientation_workbench import explain
     from orientation_workbench.mismatch.meaning import dcms_from_numbers
     from orientation_workbench.mismatch.text import read_poses
-
-    from ..sheet import Sheet
 
     known = [
         {name: value for name, value in side.items() if value != "not known"}
