@@ -4,6 +4,14 @@ export const REACH = 1.2;
 export const SIZE = 116;
 export const SMALL = 1e-09;
 
+export function off(row) {
+  return Math.abs(dot(row, row) - 1) > SMALL;
+}
+
+export function mirrored(rows) {
+  return dot(cross(rows[0], rows[1]), rows[2]) < 0;
+}
+
 export function picture(sheet, rows, nearest) {
   sheet.triad('N', IDENTITY, { length: REACH });
   if (nearest !== null) {
@@ -20,7 +28,7 @@ export function picture(sheet, rows, nearest) {
   }
   sheet.layer = 1;
   for (const row of rows) {
-    if (Math.abs(dot(row, row) - 1) > SMALL) {
+    if (off(row)) {
       sheet.line([row, unit(row)], 'B', 'thick');
       sheet.ring(unit(row), 'B', 5);
     }
@@ -30,8 +38,7 @@ export function picture(sheet, rows, nearest) {
     const fails = Math.abs(dot(rows[i], rows[j])) > SMALL;
     sheet.line([u, add(u, v), v], fails ? 'B' : 'muted', fails ? 'thick' : '');
   }
-  const third = cross(rows[0], rows[1]);
-  if (dot(third, rows[2]) < 0) {
-    sheet.arrow(third, { colour: 'B', label: '$\\hat{a}_x\\times\\hat{a}_y$' });
+  if (mirrored(rows)) {
+    sheet.arrow(cross(rows[0], rows[1]), { colour: 'B', label: '$\\hat{a}_x\\times\\hat{a}_y$' });
   }
 }

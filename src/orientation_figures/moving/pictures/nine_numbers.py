@@ -9,6 +9,16 @@ SIZE = 116
 SMALL = 1e-9
 
 
+def off(row):
+    """Return whether a row is not of length 1."""
+    return abs(dot(row, row) - 1) > SMALL
+
+
+def mirrored(rows):
+    """Return whether the rows are left-handed."""
+    return dot(cross(rows[0], rows[1]), rows[2]) < 0
+
+
 def picture(sheet, rows, nearest):
     """``nearest`` is the nearest triad, or None where several are equally near."""
     sheet.triad("N", IDENTITY, length=REACH)
@@ -23,7 +33,7 @@ def picture(sheet, rows, nearest):
         sheet.label_beyond(unit(row) if length(row) < 1 else row, rf"$\hat{{a}}_{AXES[k]}$", "A")
     sheet.layer = 1
     for row in rows:
-        if abs(dot(row, row) - 1) > SMALL:
+        if off(row):
             # Where the tip should be, and what is missing or too much.
             sheet.line([row, unit(row)], "B", "thick")
             sheet.ring(unit(row), "B", 5)
@@ -33,9 +43,8 @@ def picture(sheet, rows, nearest):
         fails = abs(dot(rows[i], rows[j])) > SMALL
         sheet.line([u, add(u, v), v], "B" if fails else "muted", "thick" if fails else "")
     # Where the third row of a right-handed matrix would point.
-    third = cross(rows[0], rows[1])
-    if dot(third, rows[2]) < 0:
-        sheet.arrow(third, colour="B", label=r"$\hat{a}_x\times\hat{a}_y$")
+    if mirrored(rows):
+        sheet.arrow(cross(rows[0], rows[1]), colour="B", label=r"$\hat{a}_x\times\hat{a}_y$")
 
 
 def drawing(figure, Sheet):
@@ -50,7 +59,9 @@ def drawing(figure, Sheet):
     sheet = Sheet(
         f"In the frame N three arrows that should be the unit vectors of a triad A: {said}. "
         f"{figure.check() or 'They are a direction cosine matrix'}. "
-        + ("Dotted arrows show the nearest triad." if nearest is not None else "Several triads are equally near."),
+        + ("Dotted arrows show the nearest triad." if nearest is not None else "Several triads are equally near.")
+        + (" Small circles show where tips at length 1 would be." if any(map(off, rows)) else "")
+        + (" A further arrow shows a x cross a y, where a z should point." if mirrored(rows) else ""),
         view=view_from(math.radians(40), math.radians(24)),
         scale=SIZE,
     )
