@@ -309,6 +309,30 @@ def test_angles_as_programs_print_them():
         assert explain(printed([DCM], 6), text).verdict == "same", text
 
 
+def test_a_line_that_names_the_columns_is_read():
+    """Each table says of its numbers what its head says, in the order in which they stand."""
+    yaw, pitch, roll = (f"{angle:.4f}" for angle in np.degrees(body_fixed_from_dcm(DCM, "zyx")))
+    named = parts()
+    turns = {"sequence": "zyx", "axes of the turns": "body fixed", "unit": "degrees"}
+    for text, said in (
+        ("qw,qx,qy,qz\n{w},{x},{y},{z}", {"order": "wxyz"}),
+        ("x y z w\n{x} {y} {z} {w}\n{x} {y} {z} {w}", {"order": "xyzw"}),
+        ("# x y z w\n[{x}, {y}, {z}, {w}]", {"order": "xyzw"}),
+        ("time;p_x;p_y;p_z;q_z;q_y;q_x;q_w\n0.01;1;2;3;{z};{y};{x};{w}", {"order": "zyxw"}),
+        ("| w | x | y | z |\n|---|---|---|---|\n| {w} | {x} | {y} | {z} |", {"order": "wxyz"}),
+        ("IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 {w} {x} {y} {z} 1 2 3 1 a.jpg", {"order": "wxyz"}),
+        ("quaternion (x, y, z, w): {x} {y} {z} {w}", {"order": "xyzw"}),
+        (f"time,roll_deg,pitch_deg,yaw_deg\n0.1,{roll},{pitch},{yaw}", turns | {"places": "321"}),
+        (f"Yaw (\N{DEGREE SIGN})\tPitch (\N{DEGREE SIGN})\tRoll (\N{DEGREE SIGN})\n{yaw}\t{pitch}\t{roll}",
+         turns | {"places": "123"}),
+    ):  # fmt: skip
+        text = text.format(**named)
+        assert read_poses(text, "first").declared == said, text
+        assert (
+            explain("\n".join([printed([DCM], 6)] * len(read_poses(text, "first").numbers)), text).verdict == "same"
+        ), text
+
+
 def test_every_link_leads_to_a_section_or_a_question_that_is_there():
     for (section, title), (question, its_title) in table.TAUGHT.values():
         assert title and its_title

@@ -25,6 +25,19 @@ ORDERS_OF_ANGLES = (
     (r"\brpy\b|\broll\W{1,3}pitch\W{1,3}yaw\b", YAW_PITCH_ROLL | {"places": "321"}),
     (r"\bypr\b|\byaw\W{1,3}pitch\W{1,3}roll\b", YAW_PITCH_ROLL),
 )
+#: The same of the four parts of a quaternion.
+ORDERS_OF_PARTS = (
+    (r"\bq?_?w\W{1,3}q?_?x\W{1,3}q?_?y\W{1,3}q?_?z\b|\bwxyz\b", {"order": "wxyz"}),
+    (r"\bq?_?x\W{1,3}q?_?y\W{1,3}q?_?z\W{1,3}q?_?w\b|\bxyzw\b", {"order": "xyzw"}),
+)
+#: A line that names the columns of a table: what parts its names, the marks before and behind one, the names that are
+#: those of a quaternion rather than of a place, and the entries of a matrix.
+PARTING = r"\s*[,;|\t]\s*"
+AROUND_A_FIELD = r"^[\s\[\](){}<>\"'#/%|]+|[\s\[\](){}<>\"'\u00b0]+$"
+UNIT_OF_A_COLUMN = r"[_ ]?[\[(][^\])]*[\])]?$|[_ ](?:deg(?:rees)?|rad(?:ians)?)$"
+OF_A_QUATERNION = r"q|rot|ori|att"
+ENTRY_OF_A_MATRIX = r"^[a-z]*_?(\d)_?(\d)$"
+NO_ROW = r"^[\s|:=+-]*$|^\s*(?:#|//|%)"
 #: The innermost of brackets in brackets.
 INNERMOST = r"[\[({]([^\[\](){}]*)[\])}]"
 NOT_A_NUMBER = r"(?<![a-z])[-+]?(nan|inf(?:inity)?)(?![a-z])"
@@ -74,6 +87,14 @@ def whole_spelling():
         "radians": RADIANS,
         "yaw pitch roll": YAW_PITCH_ROLL,
         "orders of angles": [list(entry) for entry in ORDERS_OF_ANGLES],
+        "orders of parts": [list(entry) for entry in ORDERS_OF_PARTS],
+        "parting": PARTING,
+        "around a field": AROUND_A_FIELD,
+        "unit of a column": UNIT_OF_A_COLUMN,
+        "of a quaternion": OF_A_QUATERNION,
+        "entry of a matrix": ENTRY_OF_A_MATRIX,
+        "no row": NO_ROW,
+        "whole number": rf"^{NUMBER}$",
         "innermost": INNERMOST,
         "not a number": NOT_A_NUMBER,
         "arithmetic": ARITHMETIC,
