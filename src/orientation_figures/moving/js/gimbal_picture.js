@@ -34,18 +34,21 @@ export function picture(sheet, gimbal, close = false, lit = null) {
     }
   }
   for (const [axis, start, end, colour, layer] of [[axes[1], INNER, OUTER, 'B', 4], [axes[2], 0.2, INNER, 'C', 2]]) {
-    for (const arm of [axis, scale(-1, axis)]) {
+    for (const side of [1, -1]) {
+      const arm = scale(side, axis);
       sheet.layer = layer * near(arm);
-      sheet.line([scale(start, arm), scale(end, arm)], colour, 'tube slim');
+      if (colour === 'B' || side < 0 || at[2] !== 1) {
+        sheet.line([scale(start, arm), scale(end, arm)], colour, 'tube slim');
+      }
     }
   }
   sheet.layer = 0;
   sheet.box(D, CAMERA, { colour: 'D' });
-  sheet.layer = 0.5 * near(D[0]);
-  sheet.cylinder(scale(CAMERA[0] / 2, D[0]), scale(0.5, D[0]), 0.15, 'D');
-  if (near(D[0]) > 0) {
+  sheet.layer = 0.5 * near(D[1]);
+  sheet.cylinder(scale(CAMERA[1] / 2, D[1]), scale(0.5, D[1]), 0.15, 'D');
+  if (near(D[1]) > 0) {
     sheet.layer = 0.6;
-    sheet.circle(D[0], { radius: 0.09, origin: scale(0.5, D[0]), colour: 'D', kind: 'fill-38' });
+    sheet.circle(D[1], { radius: 0.09, origin: scale(0.5, D[1]), colour: 'D', kind: 'fill-38' });
   }
   const rests = [IDENTITY[at[1]], B[at[2]], C[at[1]]];
   for (const [k, axis] of enumerate(axes)) {

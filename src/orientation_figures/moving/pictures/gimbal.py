@@ -44,17 +44,19 @@ def picture(sheet, gimbal, close=False, lit=None):
             sheet.layer = layer * side
             sheet.circle(normal, radius=radius, colour=colour, kind="tube", half=half)
     for axis, start, end, colour, layer in [[axes[1], INNER, OUTER, "B", 4], [axes[2], 0.2, INNER, "C", 2]]:
-        for arm in [axis, scale(-1, axis)]:
+        for side in [1, -1]:
+            arm = scale(side, axis)
             sheet.layer = layer * near(arm)
-            sheet.line([scale(start, arm), scale(end, arm)], colour, "tube slim")
-    # The lens looks along d_x.
+            if colour == "B" or side < 0 or at[2] != 1:  # not before the lens
+                sheet.line([scale(start, arm), scale(end, arm)], colour, "tube slim")
+    # The lens looks along d_y, as in the essay.
     sheet.layer = 0
     sheet.box(D, CAMERA, colour="D")
-    sheet.layer = 0.5 * near(D[0])
-    sheet.cylinder(scale(CAMERA[0] / 2, D[0]), scale(0.5, D[0]), 0.15, "D")
-    if near(D[0]) > 0:
+    sheet.layer = 0.5 * near(D[1])
+    sheet.cylinder(scale(CAMERA[1] / 2, D[1]), scale(0.5, D[1]), 0.15, "D")
+    if near(D[1]) > 0:
         sheet.layer = 0.6
-        sheet.circle(D[0], radius=0.09, origin=scale(0.5, D[0]), colour="D", kind="fill-38")
+        sheet.circle(D[1], radius=0.09, origin=scale(0.5, D[1]), colour="D", kind="fill-38")
     # The axes, outside of what they carry, and which way about each is positive.
     rests = [IDENTITY[at[1]], B[at[2]], C[at[1]]]
     for k, axis in enumerate(axes):
