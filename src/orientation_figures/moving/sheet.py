@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..drawing import ROUND, Drawing, _ellipse
+from ..drawing import ROUND, Drawing, ellipse
 
 
 class Sheet(Drawing):
@@ -59,7 +59,7 @@ class Sheet(Drawing):
 
     def ring(self, point, colour="ink", radius=5):
         """Draw a small circle with a radius in pixels."""
-        return self.path(*_ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"paper {colour}")
+        return self.path(*ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"paper {colour}")
 
     def label_beyond(self, point, text, colour="ink", pixels=17):
         """Write a label beyond a point as seen from the origin."""

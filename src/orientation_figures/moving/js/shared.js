@@ -3,7 +3,7 @@
 // contract; on a page of the book without a kernel, `start` gives it a model of its own.
 import { add, AXES, cross, dcmFromRotationVector, degrees, dot, IDENTITY, length, multiply, radians,
   scale, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
-import { carriedBy } from './address.js';
+import { carriedBy, fragmentOf } from './address.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
 
