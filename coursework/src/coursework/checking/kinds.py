@@ -269,7 +269,7 @@ def listed(names):
 
 
 def shape_fault(wanted, value, got=None):
-    return Fault("shape", f"{wanted} is asked for; this is {got or _describe(value)}.")
+    return Fault("shape", f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {got or _describe(value)}.")
 
 
 def _describe(value):
@@ -437,7 +437,7 @@ def _read_function(question, plain):
         try:
             numbers.append([_number(inner, results[leaf]) for leaf in kinds()[inner.kind].entries(inner, result)])
         except Fault as found:
-            raise Fault(found.note, f"{which} returned something else than was asked for. {found.message}") from None
+            raise Fault(found.note, f"{which} did not return what the question wants. {found.message}") from None
     if len(numbers) != len(question.calls):
         raise Fault("raised an error", "The function did not answer all calls.")
     return Reading(numbers)
@@ -520,7 +520,7 @@ def _order(question, plain):
     parts = [_choice(question, {**plain, "value": part}) for part in value[1]]
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
-        raise Fault("shape", f"{wanted} is asked for; here `{twice}` stands {parts.count(twice)} times.")
+        raise shape_fault(wanted, value, f"one in which `{twice}` stands {parts.count(twice)} times")
     return PARTS["order"].join(parts)
 
 
