@@ -36,6 +36,8 @@ PARTING = r"\s*[,;|\t]\s*"
 AROUND_A_FIELD = r"^[\s\[\](){}<>\"'#/%|]+|[\s\[\](){}<>\"'\u00b0]+$"
 UNIT_OF_A_COLUMN = r"[_ ]?[\[(][^\])]*[\])]?$|[_ ](?:deg(?:rees)?|rad(?:ians)?)$"
 OF_A_QUATERNION = r"q|rot|ori|att"
+#: The names of a quaternion's parts where a place's are there as well.
+PART_OF_A_QUATERNION = r"(?:^|[_.])q_?[wxyz]$"
 ENTRY_OF_A_MATRIX = r"^[a-z]*_?(\d)_?(\d)$"
 NO_ROW = r"^[\s|:=+-]*$|^\s*(?:#|//|%)"
 #: The innermost of brackets in brackets.
@@ -66,8 +68,17 @@ CLEANING = (
     (r"\b(?:size|shape|dims?)\b\W{0,3}[\[(][\d\s,]*[\])]", " "),
     (r"\b\d+\s*[x\u00d7]\s*\d+\b", " "),
     (r"\bwith indices.*$", " "),
+    # The number of a row, where it stands before it.
+    (r"^\s*(?:row\s*)?\d{1,3}\s*[:)]\s+(?=[-+.\d\[(])", " "),
+    # The length of a list before it, the factor of MATLAB's console, Godot's columns with their place.
+    (r"\barray\s*\(\d+\)|\(\d+\)\s*(?=\[)", " "),
+    (r"^\s*1\.0e\+?0+\s*\*\s*$", " "),
+    (r"\bo\s*:\s*\([^)]*\)", " "),
+    (r"\b[xyz]\s*:\s*(?=\([^)]*,)", " "),
+    # Of a pose of SDF the first three numbers are a place.
+    (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
     (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
-    (r"""["']?\b(?:seq|secs?|nsecs?|nanosecs?|id|index|rows|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
+    (r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
      r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""", " "),
     # Stamps of time, and the marks of a list.
     (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
@@ -92,6 +103,7 @@ def whole_spelling():
         "around a field": AROUND_A_FIELD,
         "unit of a column": UNIT_OF_A_COLUMN,
         "of a quaternion": OF_A_QUATERNION,
+        "part of a quaternion": PART_OF_A_QUATERNION,
         "entry of a matrix": ENTRY_OF_A_MATRIX,
         "no row": NO_ROW,
         "whole number": rf"^{NUMBER}$",

@@ -32,6 +32,7 @@ _PARTS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_PART
 _PARTING, _AROUND, _UNIT, _OF_A_QUATERNION, _ENTRY, _NO_ROW = map(_pattern, (
     spelling.PARTING, spelling.AROUND_A_FIELD, spelling.UNIT_OF_A_COLUMN, spelling.OF_A_QUATERNION,
     spelling.ENTRY_OF_A_MATRIX, spelling.NO_ROW))  # fmt: skip
+_PART_OF_A_QUATERNION = _pattern(spelling.PART_OF_A_QUATERNION)
 _WHOLE_NUMBER = _pattern(rf"^{spelling.NUMBER}$")
 _SUM, _PART, _SCALAR = map(_pattern, (spelling.SUM, spelling.PART_OF_A_SUM, spelling.SCALAR_OF_A_SUM))
 _SIGNS, _CLEANING = _replacing(spelling.SIGNS_OF_A_SUM), _replacing(spelling.CLEANING)
@@ -126,11 +127,10 @@ def _rows_of_text(text, name):
             f"the {name} side holds no numbers: '{shown}'" if shown else f"the {name} side is empty: paste its numbers"
         )
     declared = {"unit": "degrees"} if _DEGREES.search(text) else {"unit": "radians"} if _RADIANS.search(text) else {}
-    half = _half(NUMBER.findall(text))
-    labelled = _labelled(text)
-    if labelled:
-        rows, more = labelled
+    if labelled := _labelled(text):
+        rows, half, more = labelled
         return rows, half, declared | more
+    half = _half(NUMBER.findall(text))
     rows = [[float(number) for number in NUMBER.findall(group)] for group in _INNERMOST.findall(text)]
     rows = [row for row in rows if row]
     in_brackets = {len(row) for row in rows}
@@ -235,7 +235,8 @@ def _without_places(text):
 def _labelled(text):
     """Numbers that come with their names, ``w: 1, x: 0, ...`` or ``roll = ...``; None if they do not."""
     pairs = [(match[1].lower(), NUMBER.match(text, match.end())) for match in _NAMED.finditer(text)]
-    pairs = [(re.sub(r"^(.*[_.])?q?_*", "", key), float(found[0])) for key, found in pairs if found]
+    parts = [(key, found) for key, found in pairs if found and _PART_OF_A_QUATERNION.search(key)]
+    pairs = [(re.sub(r"^(.*[_.])?q?_*", "", key), found[0]) for key, found in parts or pairs if found]
     for place, more in _NAMES:
         size = max(place.values()) + 1
         kept = [(place[key], value) for key, value in pairs if key in place]
@@ -243,9 +244,9 @@ def _labelled(text):
             continue
         rows = [[None] * size for _ in range(len(kept) // size)]
         for which, (where, value) in enumerate(kept):
-            rows[which // size][where] = value
+            rows[which // size][where] = float(value)
         if not any(None in row for row in rows):
-            return rows, more
+            return rows, _half([value for _, value in kept]), more
     return None
 
 

@@ -59,8 +59,9 @@ function rowsOf(given, name, spelling) {
     throw new Error(start ? `the ${name} side holds no numbers: '${start}'` : `the ${name} side is empty: paste its numbers`);
   }
   const declared = has(spelling.degrees, text) ? { unit: 'degrees' } : has(spelling.radians, text) ? { unit: 'radians' } : {};
-  const half = halfUnit(found), named = labelled(text, spelling);
-  if (named) return { rows: named.rows, half, declared: { ...declared, ...named.more } };
+  const named = labelled(text, spelling);
+  if (named) return { rows: named.rows, half: named.half, declared: { ...declared, ...named.more } };
+  const half = halfUnit(found);
   let rows = [...text.matchAll(spelling.innermost)].map(([, group]) => (group.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
   const inBrackets = [3, 4, 9, 12, 16].includes(rows[0]?.length) && rows.every((row) => row.length === rows[0].length);
   if (!inBrackets || rows.flat().length !== found.length) rows = rowsOfLines(text, spelling);
@@ -145,19 +146,21 @@ function withoutPlaces(text, spelling) {
 }
 
 function labelled(text, spelling) {
-  const pairs = [];
+  const all = [];
   for (const match of text.matchAll(spelling.named)) {
     const behind = new RegExp(spelling.number.source, 'yi');
     behind.lastIndex = match.index + match[0].length;
     const number = behind.exec(text);
-    if (number) pairs.push([match[1].toLowerCase().replace(/^(.*[_.])?q?_*/, ''), Number.parseFloat(number[0])]);
+    if (number) all.push([match[1].toLowerCase(), number[0]]);
   }
+  const parts = all.filter(([key]) => has(spelling['part of a quaternion'], key));
+  const pairs = (parts.length ? parts : all).map(([key, number]) => [key.replace(/^(.*[_.])?q?_*/, ''), number]);
   for (const [place, more] of spelling.names) {
     const size = Math.max(...Object.values(place)) + 1, kept = pairs.filter(([key]) => Object.hasOwn(place, key));
     if (!kept.length || kept.length % size || (size === 3 && 'x' in place && pairs.some(([key]) => key === 'w'))) continue;
     const rows = blocks(Array(kept.length).fill(null), size);
-    kept.forEach(([key, value], which) => { rows[Math.floor(which / size)][place[key]] = value; });
-    if (!rows.flat().includes(null)) return { rows, more };
+    kept.forEach(([key, value], which) => { rows[Math.floor(which / size)][place[key]] = Number(value); });
+    if (!rows.flat().includes(null)) return { rows, half: halfUnit(kept.map(([, value]) => value)), more };
   }
   return null;
 }
@@ -647,7 +650,7 @@ export function drawnDcms(explanation, table, pose) {
   });
 }
 
-// For each of the words of a chain the section of the book that teaches it and a question on it, each [address, title].
+// For each of the words of a chain the section of the book that teaches it and the questions on it, each [address, title].
 export function taughtBy({ first, second, relation: whole }, table) {
   const links = [], relation = whole.said ?? whole;
   for (const { kind, words, shared } of [first, second]) {
@@ -657,9 +660,11 @@ export function taughtBy({ first, second, relation: whole }, table) {
       links.push(table.taught[own?.group] ?? null);
     }
   }
-  if (relation.inverse) links.push(table.taught.inverse);
+  if (relation.inverse) links.push(table.taught[`inverse ${second.kind}`]);
   for (const whose of ['body', 'world']) if (relation[`${whose} turn`]) links.push(table.taught.turn);
-  return [...links, table.taught.axes, table.taught.axes];
+  if (relation.hand) return [...links, table.taught.hand];
+  const swapped = relation.swapped ?? relation.inverse, named = { body: relation[swapped ? 'world' : 'body'], world: relation[swapped ? 'body' : 'world'] };
+  return [...links, ...['body', 'world'].filter((whose) => named[whose] !== SAME_AXES).map((whose) => table.taught[whose])];
 }
 
 // ---- the line that mends it: as orientation_workbench.mismatch.mend ----------------------------------------
