@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from coursework.authoring.attack import Family, of_pools, of_words, one_sign, size_of
-from coursework.checking.kinds import calls_for
+from coursework.checking.reading import calls_for
 
 
 def families(public, at):

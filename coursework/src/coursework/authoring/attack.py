@@ -23,10 +23,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checking import sealing
-from ..checking.kinds import EXACT, EXACT_WIDTH, FAR, NEAR, PARTS, calls_for, sign_limit, tolerances
-from ..checking.kinds import offsets as offsets_of
+from ..checking.kinds import PARTS, sign_limit
 from ..checking.plugins import kinds, plugins
 from ..checking.points import points
+from ..checking.reading import EXACT, EXACT_WIDTH, FAR, NEAR, calls_for, tolerances
+from ..checking.reading import offsets as offsets_of
 from ..checking.units import unit
 from . import typed
 
@@ -287,7 +288,7 @@ def _with_units(public, numbers):
 def fingerprints_of(public, numbers):
     """The fingerprints of many candidates: texts, with ``None`` where a candidate is not finite.
 
-    As :func:`coursework.checking.kinds.fingerprint`, in double precision; a test compares the two.
+    As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the two.
     """
     if isinstance(numbers, list):
         return numbers

@@ -19,8 +19,9 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
+from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable
-from ..checking.mistakes import GENERAL, message
+from ..checking.mistakes import GENERAL
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
 from ..checking.questions import judge, notebook_questions
