@@ -73,12 +73,12 @@ export function told(side, orientation) {
   return side.unit === 'degrees' ? values.map(degrees) : values;
 }
 
-// The orientation by the target's axes, where both manuals say where the axes of a thing, or of its world, point to. One
+// The orientation by the axes of the target, where both manuals say where the axes of a thing, or of its world, point to. One
 // triad of the other hand makes no orientation: then nothing is exchanged.
 export function byAxesOf(source, target, programs, dcm) {
   const sides = [source, target].map(({ program }) => ({ program, ...programs[program] })), [one, other] = sides;
   const [body, world] = [0, 1].map((k) => (one.axes?.[k] && other.axes?.[k] ? multiply(other.axes[k], transpose(one.axes[k])) : IDENTITY));
-  if (determinant(body) !== determinant(world)) return { dcm, said: "One world's axes are unknown: none are exchanged." };
+  if (determinant(body) !== determinant(world)) return { dcm, said: 'Axes of one world unknown: none are exchanged.' };
   return { dcm: multiply(body, dcm, transpose(world)),
     said: body === world ? '' : `x, y, z point ${sides.map((side) => `${side.body.join(', ')} in ${side.program}`).join('; ')}.` };
 }
