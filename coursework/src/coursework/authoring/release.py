@@ -21,7 +21,7 @@ from pathlib import Path
 from ..checking import sealing
 from ..checking.evaluate import MP
 from ..checking.kinds import canonical, read
-from ..checking.questions import FORMAT, MOVED, beside
+from ..checking.questions import FORMAT, MOVED, beside, salt_of_all
 from ..checking.variants import image
 from .author import AuthorError, solution_code
 from .selftest import secrets_of, told_openly, try_question
@@ -194,8 +194,13 @@ def _release_one(path, course):
         max((rule.count for rule in source.rules.values()), default=1),
         pages,
         solution_code(source.notebook),
-        {name: _answer_of(source.questions[name]) for name in source.rules},
+        {name: _about_answer(source.questions[name]) for name in source.rules},
     )
+
+
+def _about_answer(question):
+    """What the variants of a question are compared by: :func:`_answer_of`, and the names under which others find it."""
+    return [_answer_of(question), question.names_for_others()]
 
 
 def _answer_of(question):
@@ -209,7 +214,7 @@ def _answer_of(question):
 def _demand_answers(name, answers):
     """Variants with one answer are one question: what a classmate has found is right for everybody."""
     for question in answers[0]:
-        found = [one[question] for one in answers if question in one]
+        found = [one[question][0] for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:
             raise AuthorError(
                 f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: what is drawn "
@@ -238,7 +243,7 @@ def _release_variant(path, number, pages, course):
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()
         kept.write_text(sealed_file(source, json.loads(first)["questions"], pages), "utf8")
-        answers.write_text(json.dumps({name: _answer_of(one) for name, one in source.questions.items()}), "utf8")
+        answers.write_text(json.dumps({name: _about_answer(one) for name, one in source.questions.items()}), "utf8")
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
@@ -273,8 +278,24 @@ def _even_out(name, code, course):
         most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
         for one in ones:
             one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
+        # So with the pages that each variant has of its own, beside those of the first one.
+        own = [one for one in ones[1:] if contents[0]["questions"][question].get("pages")]
+        most = max((len(one.get("pages") or ()) for one in own), default=0)
+        for one in own if most else ():
+            one["pages"] = sealing.pages_filled_up(one.get("pages") or [], most)
     for file, content in zip(files, contents, strict=True):
         file.write_text(_as_text(content), "utf8")
+
+
+def _add_names_for_others(name, answers, course):
+    """Seal with the first variant of each question what is right in any: so a classmate's answer is recognised."""
+    file = course.sealed / f"{name}.json"
+    content = json.loads(file.read_text("utf8"))
+    for question in answers[0]:
+        names = [bytes.fromhex(text) for one in answers if question in one for text in one[question][1]]
+        if names:
+            content["questions"][question]["others"] = [salt_of_all(question), sealing.pack_names(names, TOGETHER)]
+    file.write_text(_as_text(content), "utf8")
 
 
 def _run_one(path, sealed):
@@ -342,6 +363,7 @@ def release(course, only=(), run=True, variants=None):
                 ):
                     path.unlink()  # this notebook made it when it had more variants
             _even_out(name, code, course)
+            _add_names_for_others(name, answers[course.sources / f"{name}.ipynb"], course)
         if run:
             made = [course.exercises / f"{name}.ipynb" for name in names if name != CHAPTERS]
             list(pool.map(_run_one, made, [course.sealed] * len(made)))

@@ -11,6 +11,7 @@ from .identity import forgotten
 from .kinds import calls_for
 from .plain import NotPlain, to_plain
 from .questions import (
+    OTHER_NUMBERS,
     code_text,
     find_question,
     judge,
@@ -37,7 +38,7 @@ MOST_ANSWERS = 100
 #: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are the same.
 MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
-NO_HELP = ("", "rounded too far")
+NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
 
 
 class NotCorrect(AssertionError):
@@ -74,7 +75,7 @@ def check(name: str, answer: object) -> Reply:
     if reply.outcome == "correct" and "solution" in content:
         reply.solution = solution_on(question, open_page(question, *content["solution"]))
     entry = _remember(name, reply, content)
-    if reply.outcome == "wrong" and entry:
+    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS and entry:
         _show_next_hint(question, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
@@ -307,7 +308,7 @@ def _remember(name, reply, content):
         if reply.outcome == "wrong" and reply.note not in NO_HELP:
             entry.setdefault("help", "mistake")
     entry["note"] = reply.note
-    if reply.outcome == "wrong":
+    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS:  # which is no try at one's own
         answers = entry.setdefault("answers", [])
         if isinstance(answers, list) and reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers.append(reply.answer)

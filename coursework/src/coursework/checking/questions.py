@@ -41,6 +41,12 @@ NOT_IN_THIS_CATALOGUE = (
 ALWAYS_WRONG = ("not unit length",)
 #: Up to so many tolerances from the right answer, its locker opens, and one is told that it is close.
 NEARLY = 3
+#: The note of an answer that is right for another variant, here and in the marks, and what is said of it.
+OTHER_NUMBERS = "other numbers"
+FOR_OTHERS = (
+    "This would be right for other numbers than yours: those of another student, or those that everybody sees. Yours "
+    "stand in the text of the question, as its cell shows it once it has run."
+)
 #: As far from it one is told so where the locker has opened all the same: its cell is wider for several numbers.
 CLOSE = 30
 #: What numbers may be off by that were rounded to two digits after the point.
@@ -174,8 +180,30 @@ def judge(name, question, plain):
     tuple (Reply, dict)
         The reply, and what the answer opened: hints, the worked solution, hints for another question.
     """
-    reply = compare(name, question, plain, None if question.get("exam") else lambda text: opened(question, text))
+    if question.get("exam"):
+        reply = compare(name, question, plain, None)
+    else:
+        find, for_others = functools.partial(opened, question), functools.partial(is_right_for_others, question, plain)
+        reply = compare(name, question, plain, find, for_others)
     return reply, reply.opened
+
+
+def salt_of_all(name):
+    """The salt that all variants of a question have in common: for what is right in one of them."""
+    return hashlib.sha256(f"{name}, all variants".encode()).hexdigest()[:16]
+
+
+def is_right_for_others(question, plain):
+    """Whether a wrong answer is right in some other variant of the question, as a classmate's pasted one is."""
+    if "others" not in question:
+        return False
+    salt, names = question["others"]
+    common = {**question, "salt": salt}
+    try:
+        text = fingerprint(common, read(common, plain))
+    except (Blank, Fault, Undecidable):
+        return False
+    return sealing.is_among(names, sealing.slow_key(salt, text))
 
 
 def code_text(code):
@@ -223,7 +251,7 @@ def solution_on(question, content):
     return sealing.lengthen(short, open_page(question, *place)["words"])
 
 
-def compare(name, question, plain, find):
+def compare(name, question, plain, find, for_others=lambda: False):
     """Compare an answer, as plain data, with what is known of a question. Gives the reply.
 
     Parameters
@@ -236,6 +264,8 @@ def compare(name, question, plain, find):
         ``None`` where there is nothing to compare with, as in an exam: then only the form of the answer is looked at.
         It gives what is known of a fingerprint, or ``None``: a dictionary whose ``"cases"`` are each an outcome with
         its notes and, where answers have a tolerance, the numbers that it is meant for.
+    for_others : function, optional
+        It says of an answer that is not known whether it is right for other numbers.
     """
     try:
         reading = read(question, plain)
@@ -244,7 +274,10 @@ def compare(name, question, plain, find):
             said = f"A person will read this text of {words} {'word' if words == 1 else 'words'} and decide."
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
-        reply = _compare(name, question, plain, reading, text, find) if find else _taken_down(name, question, reading)
+        if find is None:
+            reply = _taken_down(name, question, reading)
+        else:
+            reply = _compare(name, question, plain, reading, text, find, for_others)
         reply.answer = hashlib.sha256(text.encode()).hexdigest()[:12]
         return reply
     except Blank:
@@ -272,7 +305,7 @@ def _taken_down(name, question, reading):
     )
 
 
-def _compare(name, question, plain, reading, text, find):
+def _compare(name, question, plain, reading, text, find, for_others):
     content = find(text)
     case = _case_of(question, reading, content)
     found = fault(question, reading) if case is None or case["outcome"] == "correct" else None
@@ -281,7 +314,7 @@ def _compare(name, question, plain, reading, text, find):
         said = "" if found.note == "stray symbol" else _decimals(question, plain, reading) or _coarse(question, reading)
         return Reply(name, "invalid", found.note, [said, found.message] if said else [found.message])
     if case is None:
-        reply = _not_known(name, question, plain, reading, find, content)
+        reply = _not_known(name, question, plain, reading, find, content, for_others)
         slip, _, mistake = reply.note.partition(", and ")
         # What is right once a slip is undone twice is the right answer itself, but for the last digits.
         return _close(name, question) if mistake and slip == mistake else reply
@@ -327,7 +360,7 @@ def _far(question, reading, case):
     return distance(question, canonical(question, reading), [MP.mpf(number) for number in case["numbers"]])
 
 
-def _not_known(name, question, plain, reading, find, content):
+def _not_known(name, question, plain, reading, find, content, for_others):
     """The reply to an answer that is neither right nor a mistake of the catalogue."""
     if content is not None and any(
         case["outcome"] == "correct" and _far(question, reading, case) <= CLOSE for case in content["cases"]
@@ -338,7 +371,10 @@ def _not_known(name, question, plain, reading, find, content):
     precise, rounded = _precision(plain) if decimals else (True, False)
     near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
     others = [] if rounded else list(other_readings(question, reading))
-    found = _each(find, near + [fingerprint(question, turned) for _, _, turned in others])
+    texts = near + [fingerprint(question, turned) for _, _, turned in others]
+    right_for_others, *found = _each([for_others, *(functools.partial(find, one) for one in texts)])
+    if right_for_others:
+        return Reply(name, "wrong", OTHER_NUMBERS, [FOR_OTHERS])
     if near and found.pop(0) is not None:
         return Reply(
             name,
@@ -363,12 +399,12 @@ def _not_known(name, question, plain, reading, find, content):
     return Reply(name, "wrong", "", [" ".join(filter(None, said))])
 
 
-def _each(find, texts):
-    """What is known of each fingerprint. The slow hash lets other threads run: they are looked up at once."""
-    if len(texts) > 1:
-        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
-            return list(threads.map(find, texts))
-    return [find(text) for text in texts]
+def _each(looks):
+    """What comes of each look. The slow hash lets other threads run: all looks are taken at once."""
+    if len(looks) > 1:
+        with suppress(RuntimeError), ThreadPoolExecutor(len(looks)) as threads:  # a browser's Python has no threads
+            return [found.result() for found in [threads.submit(look) for look in looks]]
+    return [look() for look in looks]
 
 
 def other_readings(question, reading):

@@ -17,7 +17,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from .identity import identity, plain_identity
+from .identity import forgotten, identity, plain_identity
 
 #: So many siblings of a question count: with all of them, somebody else's answer would count, too.
 SIBLINGS = 2
@@ -201,4 +201,5 @@ def variant(name: str) -> Given:
     from .questions import find_question
 
     question = find_question(name)
-    return Given(text_of(question), question.get("given", {}))
+    note = forgotten(question)
+    return Given(text_of(question) + (f"\n\n*{note}*" if note else ""), question.get("given", {}))

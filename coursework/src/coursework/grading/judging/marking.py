@@ -24,7 +24,7 @@ from ...checking.evaluate import MP
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
 from ...checking.plain import NotPlain, read_plain
 from ...checking.plugins import packages
-from ...checking.questions import compare
+from ...checking.questions import OTHER_NUMBERS, compare
 from ...checking.reply import HELP, Reply
 from ..store import write
 from ..versions import software
@@ -291,9 +291,9 @@ def _mark(name, question, answer, finished, limited):
         said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
         reply = _undecided(name, "numbers of another edition", said)
     elif short and any(_is_right(name, other, answer) for other in question.get("siblings", [])):
-        reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
+        reply = Reply(name, "wrong", OTHER_NUMBERS, ["This is right for other numbers than the ones given to you."])
     share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
-    if reply.outcome == "wrong" and question["partial"] and reply.note != "other numbers":
+    if reply.outcome == "wrong" and question["partial"] and reply.note != OTHER_NUMBERS:
         right, parts, beyond_chance = parts_right(question, text)
         share = max(share, beyond_chance)
         pairs = "pairs stand in the right order" if question["public"]["kind"] == "order" else "are right"
