@@ -472,7 +472,7 @@ def _numbers_attacked(source):
 def attack_kept(question, text, budget, folder):
     """The attack on a question; what came of it is kept in a folder, for the same question and the same attack."""
     known = {known: entry.outcome for known, entry in question.entries.items()}
-    asked = json.dumps([question.public, known, text, budget, digest_of_code()], sort_keys=True)
+    asked = json.dumps([question.public, known, text, budget, digest_of_attack()], sort_keys=True)
     place = Path(folder, f"{hashlib.sha256(asked.encode()).hexdigest()[:24]}.json")
     if not place.exists():
         found = attack(question, text, budget)
