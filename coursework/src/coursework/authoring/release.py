@@ -30,6 +30,7 @@ from .source import (
     answered_in,
     checked_names,
     digest_of_code,
+    names_asked,
     notebooks_in,
     posed,
     read_source,
@@ -195,6 +196,7 @@ def _release_one(path, course):
         pages,
         solution_code(source.notebook),
         {name: _about_answer(source.questions[name]) for name in source.rules},
+        {name: list(question.after) for name, question in source.questions.items() if question.after},
     )
 
 
@@ -220,6 +222,16 @@ def _demand_answers(name, answers):
                 f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: what is drawn "
                 "does not change it. Draw what the answer depends on, or ask it without variants."
             )
+
+
+def _demand_later(course, after):
+    """What a right answer opens hints for is asked somewhere; under its name of today."""
+    for question, later in after.items():
+        for one in later:
+            file = course.sources / f"{one.partition('/')[0]}.ipynb"
+            if not file.is_file() or one not in names_asked(file):
+                now = f" It is called '{course.moved[one]}' now." if one in course.moved else ""
+                raise AuthorError(f"{question}: `after` names '{one}', and no notebook asks such a question.{now}")
 
 
 def _release_variant(path, number, pages, course):
@@ -348,14 +360,15 @@ def release(course, only=(), run=True, variants=None):
             for number in range(1, count)
             if variants is None or number in variants
         ]
-        answers = {path: [first] for path, (*_, first) in zip(paths, made, strict=True)}
+        answers = {path: [first] for path, (*_, first, _) in zip(paths, made, strict=True)}
         if wanted:
             found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
             for (path, *_), more in zip(wanted, found, strict=True):
                 answers[path].append(more)
         for path in paths:
             _demand_answers(path.name, answers[path])
-        for name, count, _, code, _ in made:
+        _demand_later(course, {question: later for *_, after in made for question, later in after.items()})
+        for name, count, _, code, *_ in made:
             for path in (course.sealed / "variants").glob(f"{name}-*.json"):
                 if (
                     re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))

@@ -13,6 +13,7 @@ import json
 import re
 import textwrap
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import coursework
@@ -36,7 +37,7 @@ PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 LONGEST_WORD = 40
 #: The file beside the sources in which the selftest writes after how many tries each question was guessed, if it was.
 MEASURED = "strengths.json"
-FORMAT_OF_MEASURED = 1
+FORMAT_OF_MEASURED = 2
 
 SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
 HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
@@ -111,8 +112,18 @@ def digest_of_code():
     return digest.hexdigest()
 
 
+def names_asked(path):
+    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
+    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
+    cells = [
+        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
+        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
+    ]
+    return checked_names(SimpleNamespace(cells=cells))
+
+
 def measured_strengths(sources):
-    """After how many tries the attack of the selftest guessed each question, by name: 0 where it did not.
+    """After how many tries the attack guessed each question in its weakest variant, by name: 0 where it did not.
 
     A question that is not named there has not been attacked yet.
 
@@ -121,13 +132,19 @@ def measured_strengths(sources):
     AuthorError
         The file is of another version of coursework.
     """
+    measured = measured_questions(sources)
+    return {name: min((count for count in one["tries"] if count), default=0) for name, one in measured.items()}
+
+
+def measured_questions(sources):
+    """What was measured of each question by name, as :func:`coursework.authoring.selftest.measured_of` gives it."""
     file = Path(sources, MEASURED)
     if not file.is_file():
         return {}
     measured = json.loads(file.read_text("utf8"))
     if measured.get("format") != FORMAT_OF_MEASURED:
-        raise author.AuthorError(f"{file} is of another version of coursework: run `coursework selftest` anew.")
-    return measured["tries"]
+        raise author.AuthorError(f"{file} is of another version of coursework: delete it, and release anew.")
+    return measured["questions"]
 
 
 def read_source(path, variant=0, edition="", only=None, pictures=None):

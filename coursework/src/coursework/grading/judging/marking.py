@@ -15,11 +15,10 @@ import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 from ...authoring.author import AuthorError
-from ...authoring.source import MEASURED, checked_names, measured_strengths, read_source, texts_of_questions
+from ...authoring.source import MEASURED, measured_strengths, names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
 from ...checking.plain import NotPlain, read_plain
@@ -61,16 +60,6 @@ CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
 
 # --- what is known of each question -------------------------------------------------------------
-
-
-def names_asked(path):
-    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
-    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
-    cells = [
-        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
-        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
-    ]
-    return checked_names(SimpleNamespace(cells=cells))
 
 
 def questions_of(path, secret, edition=""):
