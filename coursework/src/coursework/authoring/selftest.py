@@ -441,12 +441,12 @@ def measured_of(source, course, names, all_variants=False, budget=BUDGET):
         question, count = source.questions[name], source.rules[name].count if name in source.rules else 1
         digest = digest_of_question(source, course, name)
         one = known.get(name)
-        if one is None or one["digest"] != digest or len(one["tries"]) != count:
+        if one is None or one["digest"] != digest or len(one["tries"]) not in (0, count):
             one = {"digest": digest, "tries": [None] * count, "way": ""}
         one["worth"] = question.worth
         found[name] = one
         if _says_nothing(question):
-            one["tries"] = [0] * count
+            one["tries"] = []
             continue
         for number in range(count if all_variants else 1):
             if one["tries"][number] is None:
@@ -465,10 +465,10 @@ def attack_variant(source, course, name, number, one, budget=BUDGET):
         one["way"] = found.way
 
 
-def weakest_of(one):
+def weakest_of(one, budget=BUDGET):
     """What was found of the weakest variant of a question that was measured."""
     tries = [count for count in one["tries"] if count]
-    return Found(min(tries), one["way"]) if tries else Found(BUDGET, "")
+    return Found(min(tries), one["way"]) if tries else Found(budget, "") if one["tries"] else NOTHING
 
 
 def digest_of_question(source, course, name):
@@ -522,7 +522,8 @@ def _try_notebook(path, course, budget):
     measured = measured_of(source, course, source.questions, True, budget) if budget else {}
     secrets, findings = secrets_of(source), []
     for name, question in source.questions.items():
-        finding = try_question(question, found=found_of(question, measured.get(name)))
+        found = weakest_of(measured[name], budget) if measured else NOTHING
+        finding = try_question(question, found=found)
         findings.append(finding._replace(faults=[*finding.faults, *told_openly(question, secrets)]))
     return findings, measured, {} if source.name == CHAPTERS else secrets
 
@@ -530,11 +531,6 @@ def _try_notebook(path, course, budget):
 def _says_nothing(question):
     """Whether a question has nothing to try a guess on."""
     return bool(question.public.get("exam")) or kinds()[question.public["kind"]].by_a_person
-
-
-def found_of(question, one):
-    """What was found of the weakest variant of a question, from what was measured of it, if anything was."""
-    return NOTHING if one is None or _says_nothing(question) else weakest_of(one)
 
 
 def text_of(source, question):
@@ -567,14 +563,14 @@ def _share_beyond(measured):
     beyond = 0
     for one in measured.values():
         tries = [count for count in one["tries"] if count is not None]
-        beyond += one["worth"] * tries.count(0) / max(1, len(tries))
+        beyond += one["worth"] * (tries.count(0) / len(tries) if tries else 1)
     return f"{beyond / max(1, points):.0%}"
 
 
 def _of_how_many(measured):
     """In how many variants something was measured, where there are any."""
     tries = [count for one in measured.values() for count in one["tries"]]
-    if len(tries) == len(measured):
+    if all(len(one["tries"]) < 2 for one in measured.values()):
         return ""
     return f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
 

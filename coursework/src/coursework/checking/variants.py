@@ -202,4 +202,4 @@ def variant(name: str) -> Given:
 
     question = find_question(name)
     note = forgotten(question)
-    return Given(text_of(question) + (f"\n\n*{note}*" if note else ""), question.get("given", {}))
+    return Given(text_of(question) + (f"\n\n{note}" if note else ""), question.get("given", {}))

@@ -72,6 +72,7 @@ export class Answers {
     this.answer = `${PREFIX}answer ${page} `;
     this.aside = `${PREFIX}earlier ${page} `;
     this.agreed = `${PREFIX}agreed ${page}`;
+    this.given = `${PREFIX}given ${page} `;
   }
 
   // The entries whose keys begin with ``start``: what follows it, and the value.
@@ -126,6 +127,16 @@ export class Answers {
   earlier(name, ...shown) {
     return Answers.entries(`${this.aside}${name} `).map(([, entry]) => entry)
       .filter(({ code }) => !shown.includes(code)).sort((one, other) => other.at - one.at);
+  }
+
+  // What a question gives its reader, whose numbers are nobody else's: {student, text, original}, by the cell's name.
+  keepGiven(name, entry) {
+    put(this.given + name, entry);
+  }
+
+  givenTo(student, name, original) {
+    const entry = parsed(this.given + name);
+    return entry?.student === student && entry.original === fingerprint(original) ? entry.text : undefined;
   }
 
   // What this page and its notebook last agreed on: fingerprints by the names of the cells.

@@ -218,11 +218,16 @@
       const shown = /\bvariant\(\s*["']([^"']+)["']/.exec(originals[number]), checked = /\bcheck\(\s*["']([^"']+)["']/.exec(originals[number]);
       const outcome = record[checked?.[1]]?.outcome;
       let said = "";
-      if (shown && student) said = `Below are the numbers that everybody sees. Run this cell: you get those of ${student}.`;
+      if (shown && student) said = `Run this cell: you get the numbers of ${student}.`;
       else if (outcome === "correct") said = "✓ Correct, when you checked it last. Run this cell to see the reply again.";
       else if (outcome) said = "You have tried this one before. Run this cell to see the reply again.";
       if (!said || !output) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
+      if (shown && student) { // everybody's numbers are not taken for one's own
+        const folded = make("details", { className: "live-built" }, make("summary", {}, "The numbers that everybody sees"));
+        folded.append(...output.childNodes);
+        output.append(folded);
+      }
       output.prepend(make("p", { className: "live-known" }, said));
     });
   };
@@ -231,7 +236,7 @@
   } catch {} // a damaged record: then nothing is known
 
   // What the reader has written here before comes back, also from another tab; see answers.js for the keys.
-  const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`];
+  const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`, `book ${place} given ${data.page} `];
   const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));
   const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
   if (again.page) note(sessionStorage, RUN, "tried");
