@@ -10,6 +10,7 @@ import pytest
 from places import REPOSITORY
 
 from coursework.checking import plugins, questions
+from coursework.checking.question import Question
 from notebook_pages.paths import PACKAGES
 
 #: What the modules of a room may import of this repository's packages, the room itself not named.
@@ -96,12 +97,12 @@ def test_checking_needs_no_course():
 def test_a_folder_beside_the_notebook_comes_first(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     questions.notebook_questions.cache_clear()
-    asked = {"statics/lever": {"kind": "expression", "salt": "0", "lockers": {}}}
+    asked = {"statics/lever": {"kind": "expression", "salt": "0", "lockers": ""}}
     (tmp_path / "sealed").mkdir()
     (tmp_path / "sealed" / "statics.json").write_text(json.dumps({"format": questions.FORMAT, "questions": asked}))
     try:
-        assert questions.find_question("statics/lever") == asked["statics/lever"]
-        assert questions.find_question("simple-orientations/boom")["kind"] == "direction cosine matrix"
+        assert questions.find_question("statics/lever").question == Question("expression", "0")
+        assert questions.find_question("simple-orientations/boom").question.kind == "direction cosine matrix"
         with pytest.raises(questions.NoSuchQuestion, match="Did you mean 'statics/lever'"):
             questions.find_question("statics/level")
     finally:

@@ -11,13 +11,14 @@ import io
 import random
 import statistics
 import time
+from dataclasses import replace
 
 from coursework.authoring.course import find_course
 from coursework.authoring.forms import another_answer
 from coursework.authoring.source import notebooks_in, read_source
 from coursework.checking import sealing
 from coursework.checking.plugins import kinds
-from coursework.checking.questions import in_variant, judge
+from coursework.checking.questions import judge, notebook_questions
 
 WRONG, TIMES = 62, 5
 
@@ -27,7 +28,7 @@ def main():
     names = ("as released", "without classmates")
     took, hashed = {name: [] for name in names}, []
     for name, question, plain in tried:
-        alone = {part: about for part, about in question.items() if part != "others"}
+        alone = replace(question, others=None)
         hashed.append(least(lambda: sealing.slow_key("a salt of sixteen", "an answer")))
         for how, asked in zip(names, (question, alone), strict=True):
             took[how].append(least(lambda name=name, asked=asked, plain=plain: judge(name, asked, plain)))
@@ -48,7 +49,7 @@ def wrong_answers(count):
         with contextlib.redirect_stdout(io.StringIO()):
             source = read_source(path, edition=course.edition)
         for name, question in source.questions.items():
-            if question.public.get("exam") or kinds()[question.public["kind"]].by_a_person:
+            if question.public.exam or kinds()[question.public.kind].by_a_person:
                 continue
             for seed in range(9):
                 plain = question.to_plain(another_answer(question.public, question.answer, random.Random(seed)))
@@ -56,7 +57,7 @@ def wrong_answers(count):
                     found.append((name not in source.rules, name, plain))
                     break
     for _, name, plain in sorted(found, key=lambda one: one[:2])[:count]:
-        yield name, in_variant(name, 0), plain
+        yield name, notebook_questions(name.partition("/")[0])[name], plain
 
 
 def least(work):

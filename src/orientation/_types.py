@@ -1,23 +1,122 @@
-"""What public functions take and give, for readers' editors and type checkers."""
+"""What functions take and give, for readers' editors and type checkers.
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+SymPy has no types of its own. What it makes is told here, as in the functions themselves, by what its objects have and
+no others: free symbols. Annotations are not evaluated, so neither SymPy nor NumPy is loaded for the sake of a name.
+"""
 
-#: Where it follows from the values, and not from their types, what comes out: one number, or an array of them.
-Result: TypeAlias = Any
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
     import numpy
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
-    Expression: TypeAlias = sympy.Basic | sympy.MatrixBase
-    #: Numbers, one or several: whatever NumPy makes an array of.
-    Numbers: TypeAlias = ArrayLike
-    #: SymPy's objects, one or several, with numbers among them.
-    Symbols: TypeAlias = Expression | list[Expression] | tuple[Expression | float, ...] | list[list[Expression]]
-    Values: TypeAlias = Numbers | Symbols
-    #: What a function gives for numbers, and what for symbols.
+    #: What comes out for numbers, and what for symbols; where the question has one number for an answer, the second
+    #: two: one of them, or those of a batch.
     Array: TypeAlias = NDArray[numpy.float64]
     Matrix: TypeAlias = sympy.MutableDenseMatrix
-else:  # neither SymPy nor NumPy is loaded for the sake of a name
-    Numbers = Symbols = Values = Array = Matrix = Any
+    Scalars: TypeAlias = float | Array
+    #: Numbers, one or several: whatever NumPy makes an array of.
+    Numbers: TypeAlias = ArrayLike
+    #: What comes of a comparison: of numbers, of a batch, of symbols.
+    Relation: TypeAlias = sympy.core.relational.Relational
+    Truth: TypeAlias = bool | NDArray[numpy.bool] | Relation
+
+
+class Symbolic(Protocol):
+    """An object of SymPy: an expression, a matrix."""
+
+    @property
+    def free_symbols(self) -> AbstractSet[object]: ...
+
+
+class Expression(Symbolic, Protocol):
+    """What formulas do with an expression of SymPy."""
+
+    def __add__(self, other: Expression | float, /) -> Expression: ...
+    def __radd__(self, other: float, /) -> Expression: ...
+    def __sub__(self, other: Expression | float, /) -> Expression: ...
+    def __rsub__(self, other: float, /) -> Expression: ...
+    def __mul__(self, other: Expression | float, /) -> Expression: ...
+    def __rmul__(self, other: float, /) -> Expression: ...
+    def __truediv__(self, other: Expression | float, /) -> Expression: ...
+    def __rtruediv__(self, other: float, /) -> Expression: ...
+    def __pow__(self, other: int, /) -> Expression: ...
+    def __neg__(self) -> Expression: ...
+    def __abs__(self) -> Expression: ...
+    def __lt__(self, other: float, /) -> Relation: ...
+    def __le__(self, other: float, /) -> Relation: ...
+    def __gt__(self, other: float, /) -> Relation: ...
+    def __ge__(self, other: float, /) -> Relation: ...
+    def __float__(self) -> float: ...
+    def __complex__(self) -> complex: ...
+    def atoms(self, kind: type[object], /) -> set[Expression]: ...
+    def evalf(self) -> Expression: ...
+    def xreplace(self, rule: Mapping[Expression, Expression], /) -> Expression: ...
+
+    @property
+    def free_symbols(self) -> AbstractSet[Expression]: ...
+    @property
+    def func(self) -> type[object]: ...
+
+
+#: A component of one item that is read; and of a batch, too.
+Entry: TypeAlias = "float | Expression"
+Column: TypeAlias = "Entry | Array"
+#: Symbols, one or several, with numbers among them.
+Symbols: TypeAlias = "Symbolic | Sequence[Symbolic] | Sequence[Sequence[Symbolic]]"
+Values: TypeAlias = "Array | Numbers | Symbols | Sequence[Symbolic | float] | Sequence[Sequence[Symbolic | float]]"
+
+#: What a formula computes with. A type checker reads each formula three times: for a number, for a batch, for symbols;
+#: twice, if it is for numbers only, since it chooses its branch by their sizes.
+Component = TypeVar("Component", float, "Array", Expression)
+Number = TypeVar("Number", float, "Array")
+
+
+class Functions(Protocol[Component]):
+    """The functions that a formula may use, for each kind of component."""
+
+    def sin(self, angle: Component, /) -> Component: ...
+    def cos(self, angle: Component, /) -> Component: ...
+    def norm(self, *components: Component | float) -> Component: ...
+    def where(self, condition: Truth, yes: Component | float, no: Component | float, /) -> Component: ...
+
+
+class NumberFunctions(Functions[Number], Protocol[Number]):
+    """Those that a formula for numbers may use besides."""
+
+    def atan2(self, sine: Number, cosine: Number, /) -> Number: ...
+    def largest(self, *sizes: Number) -> Number: ...
+    def pick(self, scores: Sequence[Number], rows: Sequence[Sequence[Number]], /) -> Sequence[Number]: ...
+
+
+#: As many components as the shapes say that stand beside a formula: no type can count them.
+Components: TypeAlias = Any  # type: ignore[explicit-any]
+
+
+class Formula(Protocol):
+    """``formula(functions, *components)`` returns the components of the result."""
+
+    def __call__(self, f: Functions[Component], /, *components: Components) -> Sequence[Component | float]: ...
+
+
+class NumberFormula(Protocol):
+    """The same, of numbers."""
+
+    def __call__(self, f: NumberFunctions[Number], /, *components: Components) -> Sequence[Number | float]: ...
+
+
+class Excess(Protocol):
+    """``excess(functions, *components)`` is at most :data:`TOLERANCE` for valid input."""
+
+    def __call__(self, f: NumberFunctions[Number], /, *components: Components) -> Number: ...
+
+
+class Explain(Protocol):
+    """``explain(components, where)`` raises the error that says what is wrong."""
+
+    def __call__(self, components: Sequence[float], where: str, /) -> None: ...

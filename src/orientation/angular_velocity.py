@@ -4,19 +4,26 @@ The angular velocity :math:`\\boldsymbol{\\omega}` of :math:`A` in :math:`N` is 
 along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in radians per second.
 """
 
-from typing import overload
+from __future__ import annotations
 
-from ._types import Array, Matrix, Numbers, Result, Symbols, Values
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, overload
+
 from .direction_cosines import AXES, DCM_GUARD
 from .euler_angles import layout_of
 from .numbers_and_symbols import Guard, evaluate
 
+if TYPE_CHECKING:
+    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
 
+
+@overload
+def angular_velocity_matrix(angles: Symbols, sequence: str) -> Matrix: ...
 @overload
 def angular_velocity_matrix(angles: Numbers, sequence: str) -> Array: ...
 @overload
-def angular_velocity_matrix(angles: Symbols, sequence: str) -> Matrix: ...
-def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
+def angular_velocity_matrix(angles: Values, sequence: str) -> Matrix: ...
+def angular_velocity_matrix(angles: Values, sequence: str) -> Array | Matrix:
     r"""Matrix that turns the rates of body fixed Euler angles into the angular velocity.
 
     .. math::
@@ -61,9 +68,9 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
     i, j, k, sign = layout_of(sequence)
     last = AXES.index(sequence[2])
 
-    def formula(f, psi, theta, phi):
+    def formula(f: Functions[Component], psi: Component, theta: Component, phi: Component) -> list[Component | float]:
         s2, c2, s3, c3 = sign * f.sin(theta), f.cos(theta), sign * f.sin(phi), f.cos(phi)
-        entries = [0] * 9
+        entries: list[Component | float] = [0] * 9
         entries[3 * last + 2] = 1
         if last == i:
             entries[3 * i], entries[3 * j], entries[3 * k] = c2, s2 * s3, s2 * c3
@@ -77,10 +84,12 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Result:
 
 
 @overload
+def angular_velocity_from_dcm_rate(dcm: Symbols, rate: Symbols) -> Matrix: ...
+@overload
 def angular_velocity_from_dcm_rate(dcm: Numbers, rate: Numbers) -> Array: ...
 @overload
 def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Matrix: ...
-def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Result:
+def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     r"""Angular velocity of a direction cosine matrix that changes.
 
     This is how the angular velocity is defined: :math:`\dot{\mathbf{C}}\mathbf{C}^T` is skew, because
@@ -122,11 +131,12 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Result:
     Source: Hughes (1986).
     """
 
-    def formula(f, *entries):
+    def formula(f: Functions[Component], *entries: Component) -> Sequence[Component]:
         rows, rates = [entries[k : k + 3] for k in (0, 3, 6)], [entries[k : k + 3] for k in (9, 12, 15)]
 
-        def product(i, j):
-            return sum(a * b for a, b in zip(rates[i], rows[j]))
+        def product(i: int, j: int) -> Component:
+            (a, b, c), (x, y, z) = rates[i], rows[j]
+            return a * x + b * y + c * z
 
         return [(product(i, j) - product(j, i)) / 2 for i, j in ((1, 2), (2, 0), (0, 1))]
 
@@ -134,10 +144,12 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Result:
 
 
 @overload
+def dcm_rate(dcm: Symbols, angular_velocity: Symbols) -> Matrix: ...
+@overload
 def dcm_rate(dcm: Numbers, angular_velocity: Numbers) -> Array: ...
 @overload
 def dcm_rate(dcm: Values, angular_velocity: Values) -> Matrix: ...
-def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
+def dcm_rate(dcm: Values, angular_velocity: Values) -> Array | Matrix:
     r"""Time derivative of a direction cosine matrix.
 
     .. math::
@@ -167,7 +179,21 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
     In the book: :eq:`equation-dcm-rate`.
     """
 
-    def formula(f, xx, xy, xz, yx, yy, yz, zx, zy, zz, x, y, z):
+    def formula(
+        f: Functions[Component],
+        xx: Component,
+        xy: Component,
+        xz: Component,
+        yx: Component,
+        yy: Component,
+        yz: Component,
+        zx: Component,
+        zy: Component,
+        zz: Component,
+        x: Component,
+        y: Component,
+        z: Component,
+    ) -> Sequence[Component]:
         return (
             z * yx - y * zx,
             z * yy - y * zy,
@@ -184,10 +210,12 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Result:
 
 
 @overload
+def quaternion_rate(quaternion: Symbols, angular_velocity: Symbols) -> Matrix: ...
+@overload
 def quaternion_rate(quaternion: Numbers, angular_velocity: Numbers) -> Array: ...
 @overload
 def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Matrix: ...
-def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
+def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Array | Matrix:
     r"""Time derivative of a quaternion.
 
     .. math::
@@ -217,7 +245,16 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
     In the book: :eq:`equation-quaternion-rate`.
     """
 
-    def formula(f, a, b, c, d, x, y, z):
+    def formula(
+        f: Functions[Component],
+        a: Component,
+        b: Component,
+        c: Component,
+        d: Component,
+        x: Component,
+        y: Component,
+        z: Component,
+    ) -> Sequence[Component]:
         return (
             (-b * x - c * y - d * z) / 2,
             (a * x + c * z - d * y) / 2,
@@ -229,10 +266,12 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Result:
 
 
 @overload
+def rotation_vector_rate(vector: Symbols, angular_velocity: Symbols) -> Matrix: ...
+@overload
 def rotation_vector_rate(vector: Numbers, angular_velocity: Numbers) -> Array: ...
 @overload
 def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Matrix: ...
-def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Result:
+def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Matrix:
     r"""Time derivative of a rotation vector: Bortz's equation.
 
     With :math:`\theta = |\mathbf{r}|`,
@@ -273,17 +312,25 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Result:
     Source: Bortz (1971).
     """
 
-    def excess(f, x, y, z):
+    def excess(f: NumberFunctions[Number], x: Number, y: Number, z: Number) -> Number:
         angle = f.norm(x, y, z)
         return f.where(angle > 1, f.where(abs(f.sin(angle / 2)) < 1e-9, 1, 0), 0)
 
-    def explain(components, where):
+    def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
             f"vector{where} is {components}, a whole turn: there the rate of a rotation vector is not "
             f"defined. Keep it below half a turn, by taking a whole turn off, or use a quaternion"
         )
 
-    def formula(f, x, y, z, p, q, r):
+    def formula(
+        f: Functions[Component],
+        x: Component,
+        y: Component,
+        z: Component,
+        p: Component,
+        q: Component,
+        r: Component,
+    ) -> Sequence[Component]:
         angle = f.norm(x, y, z)
         turning = angle > 0
         length = f.where(turning, angle, 1.0)

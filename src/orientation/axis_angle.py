@@ -1,24 +1,29 @@
 """Axis and angle: Euler's theorem, Rodrigues' formula, and back again from 0 to pi."""
 
-from typing import overload
+from __future__ import annotations
 
-from ._types import Array, Matrix, Numbers, Result, Values
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, overload
+
 from .direction_cosines import DCM_GUARD
-from .numbers_and_symbols import Guard, evaluate
+from .numbers_and_symbols import Guard, evaluate, evaluate_numbers
 from .quaternions import quaternion_components_from_dcm
+
+if TYPE_CHECKING:
+    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Scalars, Symbols, Values
 
 #: Shortest axis whose direction can be computed; the longest is its inverse.
 SHORTEST = 1e-150
 
 
-def _length_missing(f, x, y, z):
-    # True, which is 1 and so more than the tolerance, where no direction can be computed: beyond these
-    # limits the square of the length is no longer a number with all its digits.
+def _length_missing(f: NumberFunctions[Number], x: Number, y: Number, z: Number) -> Number:
+    # 1, which is more than the tolerance, where no direction can be computed: beyond these limits the square of the
+    # length is no longer a number with all its digits.
     length = f.norm(x, y, z)
-    return (length <= SHORTEST) | (length >= 1 / SHORTEST)
+    return f.where((length <= SHORTEST) | (length >= 1 / SHORTEST), 1, 0)
 
 
-def _explain_zero(components, where):
+def _explain_zero(components: Sequence[float], where: str) -> None:
     largest = max(map(abs, components))
     if largest:
         raise ValueError(
@@ -35,10 +40,12 @@ AXIS_GUARD = Guard(3, _length_missing, _explain_zero)
 
 
 @overload
+def dcm_from_axis_angle(axis: Symbols, angle: Symbols) -> Matrix: ...
+@overload
 def dcm_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
 @overload
 def dcm_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
-def dcm_from_axis_angle(axis: Values, angle: Values) -> Result:
+def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a turn about one axis.
 
     :math:`A` is turned with respect to :math:`N` through :math:`\theta` about the unit vector
@@ -79,7 +86,9 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Result:
     return evaluate(axis_angle_formula, (3, 3), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD)
 
 
-def axis_angle_formula(f, x, y, z, angle):
+def axis_angle_formula(
+    f: Functions[Component], x: Component, y: Component, z: Component, angle: Component
+) -> Sequence[Component]:
     """Formula of :func:`dcm_from_axis_angle`, for the components of the axis and the angle."""
     length = f.norm(x, y, z)
     cosine, sine = f.cos(angle), f.sin(angle) / length
@@ -100,10 +109,12 @@ def axis_angle_formula(f, x, y, z, angle):
 
 
 @overload
+def quaternion_from_axis_angle(axis: Symbols, angle: Symbols) -> Matrix: ...
+@overload
 def quaternion_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
 @overload
 def quaternion_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
-def quaternion_from_axis_angle(axis: Values, angle: Values) -> Result:
+def quaternion_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     r"""Unit quaternion of a turn about one axis.
 
     .. math::
@@ -131,14 +142,18 @@ def quaternion_from_axis_angle(axis: Values, angle: Values) -> Result:
     In the book: :eq:`equation-half-angle`.
     """
 
-    def formula(f, x, y, z, angle):
+    def formula(
+        f: Functions[Component], x: Component, y: Component, z: Component, angle: Component
+    ) -> Sequence[Component]:
         share = f.sin(angle / 2) / f.norm(x, y, z)
         return f.cos(angle / 2), share * x, share * y, share * z
 
     return evaluate(formula, (4,), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD)
 
 
-def axis_angle_components(f, scalar, x, y, z):
+def axis_angle_components(
+    f: NumberFunctions[Number], scalar: Number, x: Number, y: Number, z: Number
+) -> Sequence[Number]:
     length = f.norm(x, y, z)
     angle = 2 * f.atan2(length, abs(scalar))
     at_rest = length == 0
@@ -146,7 +161,7 @@ def axis_angle_components(f, scalar, x, y, z):
     return f.where(at_rest, 1.0, share * x), share * y, share * z, angle
 
 
-def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Result]:
+def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Scalars]:
     r"""Axis and angle of a direction cosine matrix.
 
     The quaternion of the matrix is found first, and
@@ -184,9 +199,9 @@ def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Result]:
     In the book: :eq:`equation-back-axis`.
     """
 
-    def formula(f, *entries):
+    def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
         return axis_angle_components(f, *quaternion_components_from_dcm(f, *entries))
 
-    combined = evaluate(formula, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    combined = evaluate_numbers(formula, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
     angle = combined[..., 3]
     return combined[..., :3], angle if angle.ndim else float(angle)

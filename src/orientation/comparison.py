@@ -5,21 +5,35 @@ take seconds, or not come back at all. Like the conversions, this works on compo
 no NumPy.
 """
 
+from __future__ import annotations
+
 import functools
 import itertools
 import math
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias, TypeGuard
 
-from ._types import Result, Values
 from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
 from .mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
 from .numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, one_item, symbol_components
 from .quaternions import demand_unit_length, product_components
-from .random_points import at_random_points, points_for, put_in, unknowns
+from .random_points import Names, Point, at_random_points, points_for, put_in, unknowns
+
+if TYPE_CHECKING:
+    from ._types import Array, Column, Entry, Values
 
 
-def _read(value, name):
+#: The components of an answer at each point.
+Answers: TypeAlias = Sequence[Sequence[complex]]
+#: What is said of a mix-up, and what the answer would be at each point.
+Mixup: TypeAlias = tuple[str, Iterable[Sequence[complex]]]
+#: The three angles at each point, and the sequence; None if the answer is not known to be made so.
+Turned: TypeAlias = tuple[Sequence[Sequence[float]], str] | tuple[None, None]
+Match: TypeAlias = Callable[[Sequence[complex], Sequence[complex]], bool]
+
+
+def _read(value: Values, name: str) -> Sequence[Column]:
     """Components of a matrix or a quaternion: SymPy expressions, floats, or the columns of a batch."""
     if not is_symbolic(value):
         for item in ((3, 3), (4,)):
@@ -37,26 +51,42 @@ def _read(value, name):
     raise ValueError(f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of shape (4,)")
 
 
-def _read_both(first, second, *names):
-    first, second = _read(first, names[0]), _read(second, names[1])
-    if len(first) != len(second):
+def _read_both(
+    first: Values, second: Values, name: str, name_of_second: str
+) -> tuple[Sequence[Column], Sequence[Column]]:
+    one, other = _read(first, name), _read(second, name_of_second)
+    if len(one) != len(other):
         kinds = {9: "a direction cosine matrix", 4: "a quaternion"}
         raise ValueError(
-            f"{names[0]} is {kinds[len(first)]} and {names[1]} is {kinds[len(second)]}: convert one of them"
+            f"{name} is {kinds[len(one)]} and {name_of_second} is {kinds[len(other)]}: convert one of them"
         )
-    return first, second
+    return one, other
 
 
-def _match(first, second, tolerance=TOLERANCE):
-    """Whether numbers, or columns of a batch, are equal; quaternions: up to their signs."""
+def _is_one(entries: Sequence[Column]) -> TypeGuard[Sequence[Entry]]:
+    return not getattr(entries[0], "ndim", 0)
+
+
+def _match(first: Sequence[complex], second: Sequence[complex], tolerance: float = TOLERANCE) -> bool:
+    """Whether numbers are equal; quaternions: up to their signs."""
     if len(first) == 4:
-        sign = (sum((a * b.conjugate()).real for a, b in zip(first, second)) >= 0) * 2 - 1
+        sign = 1 if sum((a * b.conjugate()).real for a, b in zip(first, second)) >= 0 else -1
         second = [sign * entry for entry in second]
-    equal = [abs(a - b) <= tolerance for a, b in zip(first, second)]
-    return all(entry if isinstance(entry, bool) else entry.all() for entry in equal)
+    return all(abs(a - b) <= tolerance for a, b in zip(first, second))
 
 
-def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE) -> Result:
+def _columns_match(first: Sequence[complex | Array], second: Sequence[complex | Array], tolerance: float) -> bool:
+    """The same of the columns of a batch."""
+    import numpy
+
+    ones, others = (list(map(numpy.asarray, entries)) for entries in (first, second))
+    if len(ones) == 4:
+        sign = numpy.where(sum((a * b.conjugate()).real for a, b in zip(ones, others)) >= 0, 1, -1)
+        others = [sign * entry for entry in others]
+    return all((abs(a - b) <= tolerance).all() for a, b in zip(ones, others))
+
+
+def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE) -> bool:
     """Tell whether two direction cosine matrices, or two quaternions, are the same orientation.
 
     Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function of
@@ -86,11 +116,13 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     >>> same_orientation(simple_dcm('z', a) * simple_dcm('z', b), simple_dcm('z', a + b))
     True
     """
-    first, second = _read_both(first, second, "first", "second")
-    shapes = [getattr(entries[0], "shape", ()) for entries in (first, second)]
+    one, other = _read_both(first, second, "first", "second")
+    if _is_one(one) and _is_one(other):
+        return all(_match(first, second, tolerance) for first, second in at_random_points(one, other))
+    shapes = [getattr(entries[0], "shape", ()) for entries in (one, other)]
     if () not in shapes and shapes[0] != shapes[1]:
         raise ValueError(f"batches of shapes {shapes[0]} and {shapes[1]} cannot be compared")
-    return all(_match(one, other, tolerance) for one, other in at_random_points(first, second))
+    return all(_columns_match(first, second, tolerance) for first, second in at_random_points(one, other))
 
 
 class Diagnosis(NamedTuple):
@@ -158,28 +190,29 @@ def diagnose(
     >>> diagnose(dcm_from_space_fixed(angles, 'zxy'), expected).causes
     ('the matrices are multiplied in the other order, which is space fixed',)
     """
-    given, expected = _read_both(given, expected, "given", "expected")
-    if any(getattr(entry, "ndim", 0) for entry in given + expected):
+    answer, truth = _read_both(given, expected, "given", "expected")
+    if not (_is_one(answer) and _is_one(truth)):
         raise ValueError("diagnose looks at one answer at a time, not at a batch")
     if (angles is None) != (sequence is None):
         raise ValueError("angles and sequence belong together: give both, or neither")
+    turns: Sequence[Entry] | None = None
     if angles is not None:
-        angles = (
+        turns = (
             symbol_components(angles, (3,), "angles")
             if is_symbolic(angles)
             else one_item(angles, (3,), "angles") or number_array(angles, (3,), "angles").tolist()
         )
-    names = unknowns(given + expected + (angles or []))
+    names = unknowns([*answer, *truth, *(turns or ())])
     points = points_for(names)
-    answers, truths = ([put_in(entries, names, point) for point in points] for entries in (given, expected))
+    answers, truths = ([put_in(entries, names, point) for point in points] for entries in (answer, truth))
     match = functools.partial(_match, tolerance=tolerance)
-    turned, sequence = _turns(expected, truths, names, points, angles, sequence, match)
+    turned, sequence = _turns(truth, truths, names, points, turns, sequence, match)
     if all(map(match, answers, truths)):
         return Diagnosis(True, ())
     mixups = itertools.chain(
-        _transpositions(truths) if len(given) == 9 else _quaternion_mixups(truths),
-        _substitutions(expected, names, points),
-        _sequence_mixups(turned, sequence, given=angles is not None, symbols=bool(names)),
+        _transpositions(truths) if len(answer) == 9 else _quaternion_mixups(truths),
+        _substitutions(truth, names, points),
+        _sequence_mixups(turned, sequence, given=turns is not None, symbols=bool(names)),
     )
     causes = [cause for cause, values in mixups if all(map(match, answers, values))]
     # A matrix that is no orientation comes from no turn: then its fault is told. Symbols that obey a condition, as
@@ -191,7 +224,7 @@ def diagnose(
     return Diagnosis(False, tuple(dict.fromkeys(causes)))
 
 
-def _fault(values, tolerance):
+def _fault(values: Iterable[Sequence[complex]], tolerance: float) -> str | None:
     """What is wrong with numbers that should be an orientation at every point; None if nothing is."""
     for entries in values:
         try:
@@ -204,18 +237,18 @@ def _fault(values, tolerance):
     return None
 
 
-def _transpositions(truths):
+def _transpositions(truths: Answers) -> Iterator[Mixup]:
     yield (
         f"it is {TRANSPOSE}",
         [[entries[3 * column + row] for row in range(3) for column in range(3)] for entries in truths],
     )
 
 
-def _substitutions(expected, names, points):
+def _substitutions(expected: Sequence[Entry], names: Names, points: Sequence[Point]) -> Iterator[Mixup]:
     """Mix-ups of the angles' signs, places and units in a symbolic answer."""
     own = list(unknowns(expected))
 
-    def with_changes(change):
+    def with_changes(change: Callable[[Point], Point]) -> Iterable[Sequence[complex]]:
         return (put_in(expected, names, {**point, **change(point)}) for point in points)
 
     for name in own:
@@ -237,9 +270,17 @@ def _substitutions(expected, names, points):
         )
 
 
-def _turns(expected, truths, names, points, angles, sequence, match):
+def _turns(
+    expected: Sequence[Entry],
+    truths: Answers,
+    names: Names,
+    points: Sequence[Point],
+    angles: Sequence[Entry] | None,
+    sequence: str | None,
+    match: Match,
+) -> Turned:
     """Values of the three angles at each point, and the sequence: as given, or else recognised."""
-    if angles is None:
+    if angles is None or sequence is None:
         return _recognise(truths, list(unknowns(expected)), points, match) if len(expected) == 9 else (None, None)
     values = [[entry.real for entry in put_in(angles, names, point)] for point in points]
     if not all(map(match, truths, _body_fixed(values, sequence))):
@@ -247,14 +288,16 @@ def _turns(expected, truths, names, points, angles, sequence, match):
     return values, sequence
 
 
-def _body_fixed(values, sequence):
+def _body_fixed(values: Iterable[Sequence[float]], sequence: str) -> Iterator[Sequence[float]]:
     formula = body_fixed_formula(sequence)
     return (formula(NUMBERS, *angles) for angles in values)
 
 
-def _sequence_mixups(values, sequence, given, symbols):
+def _sequence_mixups(
+    values: Sequence[Sequence[float]] | None, sequence: str | None, given: bool, symbols: bool
+) -> Iterator[Mixup]:
     """Mix-ups of a body fixed sequence of turns."""
-    if sequence is None:
+    if values is None or sequence is None:
         return
     back = [angles[::-1] for angles in values]
     yield ("the matrices are multiplied in the other order, which is space fixed", _body_fixed(back, sequence[::-1]))
@@ -280,7 +323,7 @@ def _sequence_mixups(values, sequence, given, symbols):
         )
 
 
-def _recognise(truths, names, points, match):
+def _recognise(truths: Answers, names: Sequence[str], points: Sequence[Point], match: Match) -> Turned:
     """Find the sequence and the signed angles that make the expected matrix out of its symbols."""
     if not 1 < len(names) <= 3:
         return None, None
@@ -294,8 +337,8 @@ def _recognise(truths, names, points, match):
     return None, None
 
 
-def _quaternion_mixups(truths):
-    def rearranged(rule):
+def _quaternion_mixups(truths: Answers) -> Iterator[Mixup]:
+    def rearranged(rule: Callable[[complex, complex, complex, complex], Sequence[complex]]) -> Answers:
         return [rule(*entries) for entries in truths]
 
     yield (f"{SCALAR_LAST}; in this book it stands first", rearranged(lambda a, b, c, d: [b, c, d, a]))

@@ -1,19 +1,37 @@
 """Direction cosine matrices: simple orientations, validity, and the nearest valid matrix."""
 
-from typing import NamedTuple, overload
+from __future__ import annotations
 
-from ._types import Array, Matrix, Numbers, Result, Symbols, Values
-from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, is_symbolic, number_array, symbol_components
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple, overload
+
+from .numbers_and_symbols import (
+    NUMBERS,
+    TOLERANCE,
+    Guard,
+    evaluate,
+    evaluate_numbers,
+    is_symbolic,
+    number_array,
+    symbol_components,
+)
 from .random_points import at_random_points
+
+if TYPE_CHECKING:
+    import numpy
+
+    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
 
 AXES = ("x", "y", "z")
 
 
 @overload
+def simple_dcm(axis: str, angle: Symbols) -> Matrix: ...
+@overload
 def simple_dcm(axis: str, angle: Numbers) -> Array: ...
 @overload
-def simple_dcm(axis: str, angle: Symbols) -> Matrix: ...
-def simple_dcm(axis: str, angle: Values) -> Result:
+def simple_dcm(axis: str, angle: Values) -> Matrix: ...
+def simple_dcm(axis: str, angle: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a simple orientation.
 
     :math:`A` is turned with respect to :math:`N` through ``angle`` about a unit vector that both
@@ -66,9 +84,9 @@ def simple_dcm(axis: str, angle: Values) -> Result:
     first = AXES.index(axis)
     second, third = (first + 1) % 3, (first + 2) % 3
 
-    def formula(f, angle):
+    def formula(f: Functions[Component], angle: Component) -> list[Component | float]:
         sine, cosine = f.sin(angle), f.cos(angle)
-        entries = [0] * 9
+        entries: list[Component | float] = [0] * 9
         entries[4 * first] = 1
         entries[4 * second] = entries[4 * third] = cosine
         entries[3 * second + third], entries[3 * third + second] = sine, -sine
@@ -114,20 +132,35 @@ def check_dcm(dcm: Values) -> None:
         for (values,) in at_random_points(entries):
             demand_dcm(values, " at random values of its symbols" if unknown else "")
     else:
-        evaluate(lambda f, *entries: entries, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+        evaluate_numbers(_as_they_are, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
 
 
-def demand_dcm(entries, where="", name="dcm", tolerance=TOLERANCE):
+def _as_they_are(f: Functions[Component], *entries: Component) -> Sequence[Component]:
+    return entries
+
+
+def demand_dcm(entries: Sequence[complex], where: str = "", name: str = "dcm", tolerance: float = TOLERANCE) -> None:
     """Raise the error of :func:`check_dcm` for nine numbers, with the caller's words for them."""
     imaginary = max(abs(entry.imag) for entry in entries)
     if imaginary > tolerance:
         raise ValueError(f"{name}{where} is not real: an entry has an imaginary part of {imaginary:.3g}")
-    entries = [entry.real for entry in entries]
-    if not _excess(NUMBERS, *entries) <= tolerance:
-        _explain(entries, where, name)
+    real = [entry.real for entry in entries]
+    if not dcm_excess(NUMBERS, *real) <= tolerance:
+        explain_dcm(real, where, name)
 
 
-def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
+def dcm_excess(
+    f: NumberFunctions[Number],
+    xx: Number,
+    xy: Number,
+    xz: Number,
+    yx: Number,
+    yy: Number,
+    yz: Number,
+    zx: Number,
+    zy: Number,
+    zz: Number,
+) -> Number:
     """Largest departure of the rows from being orthonormal, and of the third from the cross product."""
     return f.largest(
         abs(xx * xx + xy * xy + xz * xz - 1),
@@ -139,7 +172,8 @@ def _excess(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
     )
 
 
-def _explain(entries, where, name="dcm"):
+def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None:
+    """Raise the error that says what is wrong with nine numbers, which are no direction cosine matrix."""
     rows = {"x": entries[0:3], "y": entries[3:6], "z": entries[6:9]}
     names = list(rows)
     # Added in this order by every Python and in the page: sum() rounds otherwise since 3.12.
@@ -184,14 +218,14 @@ def _explain(entries, where, name="dcm"):
 
 
 #: What every conversion from a direction cosine matrix asks of it first.
-DCM_GUARD = Guard(9, _excess, _explain)
+DCM_GUARD = Guard(9, dcm_excess, explain_dcm)
 
 
 class NearestDCM(NamedTuple):
     """Result of :func:`nearest_dcm`: the matrix, and how far it is from the one that was given."""
 
     dcm: Array
-    distance: Result
+    distance: numpy.float64 | Array
 
 
 def nearest_dcm(matrix: Values) -> NearestDCM:
@@ -251,5 +285,5 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     return NearestDCM(dcm, numpy.linalg.norm(dcm - array, axis=(-2, -1)))
 
 
-def _six_decimals(number):
+def _six_decimals(number: float) -> str:
     return f"{round(float(number), 6) + 0.0:.6f}"  # adding zero turns -0 into 0

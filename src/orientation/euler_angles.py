@@ -1,10 +1,32 @@
 """Euler angles: all twelve sequences, body fixed and space fixed, in both directions."""
 
-from typing import overload
+from __future__ import annotations
 
-from ._types import Array, Matrix, Numbers, Result, Symbols, Values
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, TypeAlias, overload
+
 from .direction_cosines import AXES, DCM_GUARD
-from .numbers_and_symbols import evaluate, is_symbolic, number_array, one_item, symbol_components
+from .numbers_and_symbols import evaluate, evaluate_numbers, is_symbolic, number_array, one_item, symbol_components
+
+if TYPE_CHECKING:
+    from ._types import (
+        Array,
+        Component,
+        Formula,
+        Functions,
+        Matrix,
+        Number,
+        NumberFormula,
+        NumberFunctions,
+        Numbers,
+        Scalars,
+        Symbols,
+        Values,
+    )
+
+#: The places of the three axes of a sequence, the third of them for the one that a proper sequence leaves out, and
+#: whether they follow each other as x, y, z do: 1, or else -1.
+Layout: TypeAlias = tuple[int, int, int, int]
 
 #: Sequences whose first and last axes are the same.
 PROPER_EULER = ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy")
@@ -16,7 +38,7 @@ TAIT_BRYAN = ("xyz", "yzx", "zxy", "xzy", "zyx", "yxz")
 SEQUENCES = PROPER_EULER + TAIT_BRYAN
 
 
-def _layout(sequence):
+def _layout(sequence: str) -> Layout:
     """Return the first, the second and the remaining axis as indices, and the sign of their order."""
     first, second = AXES.index(sequence[0]), AXES.index(sequence[1])
     return first, second, 3 - first - second, 1 if (second - first) % 3 == 1 else -1
@@ -25,7 +47,7 @@ def _layout(sequence):
 _LAYOUTS = {sequence: _layout(sequence) for sequence in SEQUENCES}
 
 
-def layout_of(sequence):
+def layout_of(sequence: str) -> Layout:
     try:
         return _LAYOUTS[sequence]
     except (KeyError, TypeError):
@@ -43,10 +65,12 @@ def layout_of(sequence):
 
 
 @overload
+def dcm_from_body_fixed(angles: Symbols, sequence: str) -> Matrix: ...
+@overload
 def dcm_from_body_fixed(angles: Numbers, sequence: str) -> Array: ...
 @overload
-def dcm_from_body_fixed(angles: Symbols, sequence: str) -> Matrix: ...
-def dcm_from_body_fixed(angles: Values, sequence: str) -> Result:
+def dcm_from_body_fixed(angles: Values, sequence: str) -> Matrix: ...
+def dcm_from_body_fixed(angles: Values, sequence: str) -> Array | Matrix:
     r"""Direction cosine matrix of three successive turns, each about an axis of the turned frame.
 
     For the sequence z-x-y, with angles :math:`\psi, \theta, \varphi`,
@@ -91,15 +115,15 @@ def dcm_from_body_fixed(angles: Values, sequence: str) -> Result:
     return evaluate(body_fixed_formula(sequence), (3, 3), ("angles", angles, (3,)))
 
 
-def body_fixed_formula(sequence):
+def body_fixed_formula(sequence: str) -> Formula:
     """Formula of :func:`dcm_from_body_fixed`, for the components of the angles."""
     i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
-    def formula(f, psi, theta, phi):
+    def formula(f: Functions[Component], psi: Component, theta: Component, phi: Component) -> list[Component | float]:
         s1, s2, s3 = sign * f.sin(psi), sign * f.sin(theta), sign * f.sin(phi)
         c1, c2, c3 = f.cos(psi), f.cos(theta), f.cos(phi)
-        entries = [None] * 9
+        entries: list[Component | float] = [0] * 9
         if proper:
             entries[3 * i + i], entries[3 * i + j], entries[3 * i + k] = c2, s1 * s2, -c1 * s2
             entries[3 * j + i] = s2 * s3
@@ -162,8 +186,8 @@ def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
     i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
-    def formula(f, *entries):
-        def c(row, column):
+    def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
+        def c(row: int, column: int) -> Number:
             return entries[3 * row + column]
 
         # Adding zero turns -0 into 0: atan2(0, -0) would be pi.
@@ -183,14 +207,16 @@ def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
             phi = f.atan2(c(i, j) * cosine + c(i, k) * sine, jj)
         return sign * psi, sign * theta, sign * phi
 
-    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    return evaluate_numbers(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
 
 
+@overload
+def dcm_from_space_fixed(angles: Symbols, sequence: str) -> Matrix: ...
 @overload
 def dcm_from_space_fixed(angles: Numbers, sequence: str) -> Array: ...
 @overload
-def dcm_from_space_fixed(angles: Symbols, sequence: str) -> Matrix: ...
-def dcm_from_space_fixed(angles: Values, sequence: str) -> Result:
+def dcm_from_space_fixed(angles: Values, sequence: str) -> Matrix: ...
+def dcm_from_space_fixed(angles: Values, sequence: str) -> Array | Matrix:
     r"""Direction cosine matrix of three successive turns about the axes of the frame that stays.
 
     Turning about fixed axes multiplies the matrices in the other order: for the sequence z-x-y,
@@ -227,7 +253,7 @@ def space_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
     return body_fixed_from_dcm(dcm, sequence[::-1])[..., ::-1]
 
 
-def gimbal_lock_margin(angles: Values, sequence: str) -> Result:
+def gimbal_lock_margin(angles: Values, sequence: str) -> Scalars:
     r"""How far three Euler angles are from gimbal lock, in radians.
 
     Lock is where the first and the last axes are parallel: at :math:`\theta = \pm\pi/2` for three
@@ -251,15 +277,15 @@ def gimbal_lock_margin(angles: Values, sequence: str) -> Result:
     >>> gimbal_lock_margin((0.3, math.pi / 2 - 0.01, 0.1), 'zxy').__round__(12)
     0.01
     """
-    return evaluate(lock_margin_formula(sequence), (), ("angles", angles, (3,)), symbols=False)
+    return evaluate_numbers(lock_margin_formula(sequence), (), ("angles", angles, (3,)))
 
 
-def lock_margin_formula(sequence):
+def lock_margin_formula(sequence: str) -> NumberFormula:
     """Formula of :func:`gimbal_lock_margin`, for the components of the angles."""
     layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
-    def formula(f, psi, theta, phi):
+    def formula(f: NumberFunctions[Number], psi: Number, theta: Number, phi: Number) -> Sequence[Number]:
         along, across = f.cos(theta), f.sin(theta)
         if not proper:
             along, across = across, along
@@ -268,7 +294,7 @@ def lock_margin_formula(sequence):
     return formula
 
 
-def _reversed(angles):
+def _reversed(angles: Values) -> Values:
     if is_symbolic(angles):
         return symbol_components(angles, (3,), "angles")[::-1]
     entries = one_item(angles, (3,), "angles")

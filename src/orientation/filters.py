@@ -1,11 +1,17 @@
 """A filter that follows an orientation: gyroscope in, directions in, orientation and its uncertainty out."""
 
-from typing import Any, NamedTuple
+from __future__ import annotations
 
-from ._types import Values
+from typing import TYPE_CHECKING, NamedTuple
+
 from .direction_cosines import check_dcm
 from .numbers_and_symbols import number_array
 from .rotation_vector import dcm_from_rotation_vector
+
+if TYPE_CHECKING:
+    import numpy
+
+    from ._types import Array, Numbers, Values
 
 
 class Innovation(NamedTuple):
@@ -20,11 +26,11 @@ class Innovation(NamedTuple):
         :math:`\mathbf{S} = \mathbf{H}\mathbf{P}\mathbf{H}^T + \sigma^2\mathbf{I}`.
     """
 
-    difference: Any
-    covariance: Any
+    difference: Array
+    covariance: Array
 
     @property
-    def normalised_square(self):
+    def normalised_square(self) -> numpy.float64 | Array:
         r"""The square :math:`(\tilde{y} - \hat{y})^T\mathbf{S}^{-1}(\tilde{y} - \hat{y})`, shape ``(...)``.
 
         A direction differs from another in two ways, so of a true claim this is 2 on average. No truth is needed.
@@ -32,7 +38,8 @@ class Innovation(NamedTuple):
         import numpy
 
         solved = numpy.linalg.solve(self.covariance, self.difference[..., None])[..., 0]
-        return (self.difference * solved).sum(axis=-1)
+        square: numpy.float64 | Array = (self.difference * solved).sum(axis=-1)
+        return square
 
 
 class MultiplicativeKalmanFilter:
@@ -53,9 +60,9 @@ class MultiplicativeKalmanFilter:
         The first estimate of :math:`{}^B\mathbf{C}^N`.
     covariance : array of shape ``(6, 6)`` or ``(..., 6, 6)``
         Of :math:`\boldsymbol\delta` (square radians) and the bias (squares of radians per second).
-    gyroscope_noise : float
+    gyroscope_noise : float or array of shape ``(...)``
         Angle random walk, radians per square root of a second.
-    bias_noise : float
+    bias_noise : float or array of shape ``(...)``
         Random walk of the bias, radians per second per square root of a second.
 
     Attributes
@@ -64,6 +71,8 @@ class MultiplicativeKalmanFilter:
     bias : array of shape ``(..., 3)``
         Radians per second.
     covariance : array of shape ``(..., 6, 6)``
+    noise : array of shape ``(..., 2)``
+        Of the gyroscope and of its bias, as they were given.
 
     Examples
     --------
@@ -82,7 +91,7 @@ class MultiplicativeKalmanFilter:
     In the book: :eq:`equation-filter-turn` and :eq:`equation-filter-observe`.
     """
 
-    def __init__(self, dcm, covariance, gyroscope_noise, bias_noise):
+    def __init__(self, dcm: Values, covariance: Values, gyroscope_noise: Numbers, bias_noise: Numbers) -> None:
         import numpy
 
         self.dcm = number_array(dcm, (3, 3), "dcm")
@@ -91,32 +100,31 @@ class MultiplicativeKalmanFilter:
         self.bias = numpy.zeros((*batch, 3))
         covariance = number_array(covariance, (6, 6), "covariance")
         self.covariance = numpy.broadcast_to(covariance, (*batch, 6, 6)).copy()
-        self.gyroscope_noise = float(gyroscope_noise)
-        self.bias_noise = float(bias_noise)
+        self.noise = numpy.stack(numpy.broadcast_arrays(gyroscope_noise, bias_noise), axis=-1)
 
-    def turn(self, angular_velocity: Values, step: float) -> None:
+    def turn(self, angular_velocity: Values, step: Values) -> None:
         r"""Turn with the gyroscope for one step.
 
         Parameters
         ----------
         angular_velocity : array of shape ``(..., 3)``
             What the gyroscope says, bias and noise included, along the body; radians per second.
-        step : float
+        step : float or array of shape ``(...)``
             Seconds.
         """
         import numpy
 
         rate = number_array(angular_velocity, (3,), "rate") - self.bias
+        step = numpy.asarray(step, dtype=float)[..., None]
         turned = dcm_from_rotation_vector(rate * step)
         self.dcm = turned @ self.dcm
         carried = numpy.zeros_like(self.covariance) + numpy.eye(6)
         carried[..., :3, :3] = turned
-        carried[..., :3, 3:] = -step * numpy.eye(3)
-        variances = self.gyroscope_noise**2 * step, self.bias_noise**2 * step
-        noise = numpy.diag(numpy.repeat(variances, 3))
+        carried[..., :3, 3:] = -step[..., None] * numpy.eye(3)
+        noise = numpy.repeat(self.noise**2 * step, 3, axis=-1)[..., None] * numpy.eye(6)
         self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + noise
 
-    def observe(self, observed: Values, reference: Values, deviation: float) -> Innovation:
+    def observe(self, observed: Values, reference: Values, deviation: Values) -> Innovation:
         r"""Correct the estimate with one direction that was measured.
 
         Parameters
@@ -135,18 +143,18 @@ class MultiplicativeKalmanFilter:
         """
         import numpy
 
-        observed = number_array(observed, (3,), "observed")
-        reference = number_array(reference, (3,), "reference")
-        observed = observed / numpy.linalg.norm(observed, axis=-1, keepdims=True)
-        reference = reference / numpy.linalg.norm(reference, axis=-1, keepdims=True)
-        expected = (self.dcm @ reference[..., None])[..., 0]
+        seen = number_array(observed, (3,), "observed")
+        known = number_array(reference, (3,), "reference")
+        seen = seen / numpy.linalg.norm(seen, axis=-1, keepdims=True)
+        known = known / numpy.linalg.norm(known, axis=-1, keepdims=True)
+        expected = (self.dcm @ known[..., None])[..., 0]
         # A body turned by delta sees expected + expected x delta.
         slope = numpy.zeros((*expected.shape, 6))
         across = numpy.cross(expected[..., None, :], numpy.eye(3))
         slope[..., :3] = across.swapaxes(-1, -2)
         spread = self.covariance @ slope.swapaxes(-1, -2)
         variance = numpy.asarray(deviation, dtype=float)[..., None, None] ** 2
-        innovation = Innovation(observed - expected, slope @ spread + variance * numpy.eye(3))
+        innovation = Innovation(seen - expected, slope @ spread + variance * numpy.eye(3))
         gain = spread @ numpy.linalg.inv(innovation.covariance)
         change = (gain @ innovation.difference[..., None])[..., 0]
         self.dcm = dcm_from_rotation_vector(change[..., :3]) @ self.dcm

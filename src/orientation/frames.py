@@ -1,8 +1,10 @@
 """A graph of named frames that cannot go stale."""
 
-from typing import NamedTuple
+from __future__ import annotations
 
-from ._types import Result, Values
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
 from .axis_angle import dcm_from_axis_angle
 from .comparison import same_orientation
 from .direction_cosines import check_dcm, simple_dcm
@@ -10,40 +12,74 @@ from .euler_angles import dcm_from_body_fixed
 from .numbers_and_symbols import is_symbolic, number_array, symbol_components
 from .quaternions import dcm_from_quaternion
 
+if TYPE_CHECKING:
+    import sympy
+    from sympy.physics.mechanics import ReferenceFrame
 
-class _Turn(NamedTuple):
-    """One factor of a product: a simple turn, or a matrix with the words that describe it."""
+    from ._types import Array, Matrix, Values
 
-    axis: str | None
-    angle: object
-    matrix: object
+
+#: One angle, or those of a batch.
+Angle: TypeAlias = "float | Array | sympy.Expr"
+
+
+class _AxisTurn(NamedTuple):
+    """One factor of a product: a simple turn."""
+
+    axis: str
+    angle: Angle
+
+    def dcm(self) -> Array | Matrix:
+        return simple_dcm(self.axis, self.angle)
+
+    def is_symbolic(self) -> bool:
+        return is_symbolic(self.angle)
+
+    def batch(self) -> tuple[int, ...]:
+        """Shape of the batch that this turn is, () for a single one."""
+        return () if self.is_symbolic() else getattr(self.angle, "shape", ())
+
+    def back(self) -> _AxisTurn:
+        return self._replace(angle=-self.angle)
+
+    def described(self) -> str:
+        return rf"{self.axis},\ {_latex(self.angle)}"
+
+
+class _MatrixTurn(NamedTuple):
+    """One factor of a product: a matrix, with the words that describe it."""
+
+    matrix: Array | Matrix
     words: str
 
-    def dcm(self):
+    def dcm(self) -> Array | Matrix:
         # A copy: what a reader does with the result must not change the frames.
-        return simple_dcm(self.axis, self.angle) if self.axis else self.matrix.copy()
+        return self.matrix.copy()
 
-    def is_symbolic(self):
-        return is_symbolic(self.angle) or is_symbolic(self.matrix)
+    def is_symbolic(self) -> bool:
+        return is_symbolic(self.matrix)
 
-    def batch(self):
+    def batch(self) -> tuple[int, ...]:
         """Shape of the batch that this turn is, () for a single one."""
-        if self.is_symbolic():
-            return ()
-        return getattr(self.angle, "shape", ()) if self.axis else self.matrix.shape[:-2]
+        return () if self.is_symbolic() else self.matrix.shape[:-2]
 
-    def back(self):
-        if self.axis:
-            return self._replace(angle=-self.angle)
-        return self._replace(matrix=_transposed(self.matrix), words=self.words + r",\ \text{back}")
+    def back(self) -> _MatrixTurn:
+        transposed = self.matrix.T if self.is_symbolic() else self.matrix.swapaxes(-1, -2)
+        return _MatrixTurn(transposed, self.words + r",\ \text{back}")
+
+    def described(self) -> str:
+        return self.words
+
+
+_Turn: TypeAlias = _AxisTurn | _MatrixTurn
 
 
 class _Edge(NamedTuple):
     frame: str
     reference: str
-    turns: tuple
+    turns: tuple[_Turn, ...]
 
-    def back(self):
+    def back(self) -> _Edge:
         return _Edge(self.reference, self.frame, tuple(turn.back() for turn in reversed(self.turns)))
 
 
@@ -75,7 +111,7 @@ class Frames:
     def __init__(self) -> None:
         self._edges: tuple[_Edge, ...] = ()
 
-    def orient_axis(self, frame: str, reference: str, axis: str | Values, angle: Values) -> "Frames":
+    def orient_axis(self, frame: str, reference: str, axis: str | Values, angle: Values) -> Frames:
         r"""Return frames with ``frame`` turned in ``reference`` about one axis through ``angle``.
 
         Parameters
@@ -93,44 +129,43 @@ class Frames:
             If the two frames are connected already and not by this same orientation.
         """
         symbolic = is_symbolic((axis, angle))
-        angle = _own(angle, (), "angle", symbolic)
+        (own_angle,) = _own(angle, (), "angle", symbolic)
         if isinstance(axis, str):
-            simple_dcm(axis, angle)  # refuses what is not valid, before it is stored
-            return self._with(frame, reference, _Turn(axis, angle, None, ""))
-        axis = _own(axis, (3,), "axis", symbolic)
-        words = rf"\text{{axis }}({', '.join(map(_latex, axis))}),\ {_latex(angle)}"
-        return self._with(frame, reference, _Turn(None, None, dcm_from_axis_angle(axis, angle), words))
+            simple_dcm(axis, own_angle)  # refuses what is not valid, before it is stored
+            return self._with(frame, reference, _AxisTurn(axis, own_angle))
+        own_axis = _own(axis, (3,), "axis", symbolic)
+        words = rf"\text{{axis }}({', '.join(map(_latex, own_axis))}),\ {_latex(own_angle)}"
+        return self._with(frame, reference, _MatrixTurn(dcm_from_axis_angle(axis, angle), words))
 
-    def orient_body_fixed(self, frame: str, reference: str, angles: Values, sequence: str) -> "Frames":
+    def orient_body_fixed(self, frame: str, reference: str, angles: Values, sequence: str) -> Frames:
         """Return frames with ``frame`` turned in ``reference`` by three body fixed turns.
 
         Parameters are those of :func:`orientation.dcm_from_body_fixed`.
         """
         dcm_from_body_fixed(angles, sequence)  # refuses what is not valid, before it is stored
-        angles = _own(angles, (3,), "angles", is_symbolic(angles))
-        if not is_symbolic(angles):
-            angles = [angles[..., k] for k in range(3)]
-        return self._with(frame, reference, *(_Turn(axis, angle, None, "") for axis, angle in zip(sequence, angles)))
+        own = _own(angles, (3,), "angles", is_symbolic(angles))
+        return self._with(frame, reference, *(_AxisTurn(axis, angle) for axis, angle in zip(sequence, own)))
 
-    def orient_dcm(self, frame: str, reference: str, dcm: Values) -> "Frames":
+    def orient_dcm(self, frame: str, reference: str, dcm: Values) -> Frames:
         r"""Return frames with ``dcm`` as the matrix of ``frame`` with respect to ``reference``.
 
         With ``('A', 'N', A_C_N)`` the matrix is :math:`{}^A\mathbf{C}^N`; it is checked first.
         """
         check_dcm(dcm)
-        symbolic = is_symbolic(dcm)
-        dcm = _own(dcm, (3, 3), "dcm", symbolic)
-        if symbolic:
+        own: Array | Matrix
+        if is_symbolic(dcm):
             import sympy
 
-            dcm = sympy.Matrix(3, 3, dcm)
-        return self._with(frame, reference, _Turn(None, None, dcm, r"\text{matrix}"))
+            own = sympy.Matrix(3, 3, symbol_components(dcm, (3, 3), "dcm"))
+        else:
+            own = number_array(dcm, (3, 3), "dcm") + 0.0
+        return self._with(frame, reference, _MatrixTurn(own, r"\text{matrix}"))
 
-    def orient_quaternion(self, frame: str, reference: str, quaternion: Values) -> "Frames":
+    def orient_quaternion(self, frame: str, reference: str, quaternion: Values) -> Frames:
         """Return frames with ``frame`` turned in ``reference`` by a unit quaternion, scalar first."""
-        return self._with(frame, reference, _Turn(None, None, dcm_from_quaternion(quaternion), r"\text{quaternion}"))
+        return self._with(frame, reference, _MatrixTurn(dcm_from_quaternion(quaternion), r"\text{quaternion}"))
 
-    def _with(self, frame, reference, *turns):
+    def _with(self, frame: str, reference: str, *turns: _Turn) -> Frames:
         for name in (frame, reference):
             if not isinstance(name, str) or not name.isidentifier():
                 raise ValueError(f"a frame is named by a string such as 'A', not {name!r}")
@@ -149,9 +184,9 @@ class Frames:
             f"path could contradict the first. To change an orientation, build the frames anew"
         )
 
-    def _walk(self, target, source):
+    def _walk(self, target: str, source: str) -> tuple[_Edge, ...] | None:
         """Edges from the source to the target, each turned the way it is walked; None if there are none."""
-        reached = {source: ()}
+        reached: dict[str, tuple[_Edge, ...]] = {source: ()}
         waiting = [source]
         for name in waiting:
             for edge in self._edges:
@@ -161,7 +196,7 @@ class Frames:
                     waiting.append(step.frame)
         return reached.get(target)
 
-    def _edges_between(self, target, source):
+    def _edges_between(self, target: str, source: str) -> tuple[_Edge, ...]:
         known = {name for edge in self._edges for name in (edge.frame, edge.reference)}
         for name in (target, source):
             if name not in known:
@@ -175,7 +210,7 @@ class Frames:
         """Return the frames from ``target`` to ``source`` as text, in the order of the matrices."""
         return " - ".join([*(edge.frame for edge in reversed(self._edges_between(target, source))), source])
 
-    def dcm(self, target: str, source: str) -> Result:
+    def dcm(self, target: str, source: str) -> Array | Matrix:
         r"""Direction cosine matrix of ``target`` with respect to ``source``, over the path between them.
 
         ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy. Successive
@@ -188,18 +223,19 @@ class Frames:
             shapes, or a batch and symbols.
         """
         turns = [turn for edge in self._edges_between(target, source) for turn in edge.turns]
-        return _product(turns or [_Turn("x", self._zero(), None, "")])
+        return _product(turns or [_AxisTurn("x", self._zero())])
 
-    def _zero(self):
+    def _zero(self) -> Angle:
         """The angle of a frame in itself: of the kind that these frames hold."""
         symbols = [turn for edge in self._edges for turn in edge.turns if turn.is_symbolic()]
         if not symbols:
             return 0.0
         import sympy
 
-        return sympy.Integer(0)
+        zero: Angle = sympy.Integer(0)
+        return zero
 
-    def equation(self, target: str, source: str) -> "Equation":
+    def equation(self, target: str, source: str) -> Equation:
         r"""Return :math:`{}^D\mathbf{C}^A` as the product over the path, each factor with its turns."""
         edges = self._edges_between(target, source)
         factors = [
@@ -208,13 +244,13 @@ class Frames:
         ]
         return Equation(f"{_symbol(target, source)} = " + r"\; ".join(factors or [r"\mathbf{I}"]))
 
-    def reference_frames(self) -> Result:
+    def reference_frames(self) -> dict[str, ReferenceFrame]:
         """Return a dictionary of new SymPy ``ReferenceFrame`` objects, oriented like these frames."""
         import sympy.physics.mechanics as me
 
         names = list(dict.fromkeys(name for edge in self._edges for name in (edge.reference, edge.frame)))
         frames = {name: me.ReferenceFrame(name) for name in names}
-        done = set()
+        done: set[str] = set()
         for root in names:
             if root in done:
                 continue
@@ -238,21 +274,21 @@ class Equation:
     def __init__(self, tex: str) -> None:
         self.tex = tex
 
-    def _repr_latex_(self):
+    def _repr_latex_(self) -> str:
         return rf"$\displaystyle {self.tex}$"
 
     def __repr__(self) -> str:
         return self.tex
 
 
-def _orient(frame, reference, edge):
+def _orient(frame: ReferenceFrame, reference: ReferenceFrame, edge: _Edge) -> None:
     shapes = [turn.batch() for turn in edge.turns if turn.batch()]
     if shapes:
         raise ValueError(
             f"{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}; a ReferenceFrame holds one orientation"
         )
-    if len(edge.turns) == 1 and edge.turns[0].axis:
-        (turn,) = edge.turns
+    turn, *others = edge.turns
+    if not others and isinstance(turn, _AxisTurn):
         frame.orient_axis(reference, getattr(reference, turn.axis), turn.angle)
         return
     import sympy
@@ -260,24 +296,20 @@ def _orient(frame, reference, edge):
     frame.orient_dcm(reference, sympy.Matrix(_product(edge.turns)))
 
 
-def _own(value, item, name, symbolic):
-    """The frames' own copy of what they were given: SymPy expressions or a float array."""
+def _own(value: Values, item: tuple[int, ...], name: str, symbolic: bool) -> Sequence[Angle]:
+    """The frames' own copy of the components that they were given: SymPy expressions, or columns of a float array."""
     if symbolic:
-        components = symbol_components(value, item, name)
-        return components if item else components[0]
-    return number_array(value, item, name) + 0.0
+        return symbol_components(value, item, name)
+    array = number_array(value, item, name) + 0.0
+    return [array[..., k] for k in range(*item)] if item else [array]
 
 
-def _same(turns, others):
+def _same(turns: Sequence[_Turn], others: Sequence[_Turn]) -> bool:
     first, second = _product(turns), _product(others)
     return first.shape == second.shape and same_orientation(first, second)
 
 
-def _transposed(matrix):
-    return matrix.T if is_symbolic(matrix) else matrix.swapaxes(-1, -2)
-
-
-def _product(turns):
+def _product(turns: Sequence[_Turn]) -> Array | Matrix:
     shapes = dict.fromkeys(turn.batch() for turn in turns if turn.batch())
     if shapes and any(turn.is_symbolic() for turn in turns):
         raise ValueError(
@@ -293,11 +325,13 @@ def _product(turns):
             raise ValueError(
                 f"the batches along this path do not fit each other: their shapes are {' and '.join(map(str, shapes))}"
             ) from None
-    joined = []
+    joined: list[_Turn] = []
     for turn in turns:
-        if joined and turn.axis and turn.axis == joined[-1].axis:
-            turn = turn._replace(angle=joined.pop().angle + turn.angle)
-        joined.append(turn)
+        before = joined[-1] if joined else None
+        if isinstance(turn, _AxisTurn) and isinstance(before, _AxisTurn) and turn.axis == before.axis:
+            joined[-1] = _AxisTurn(turn.axis, before.angle + turn.angle)
+        else:
+            joined.append(turn)
     matrices = [turn.dcm() for turn in joined]
     if any(map(is_symbolic, matrices)):
         import sympy
@@ -309,18 +343,18 @@ def _product(turns):
     return result
 
 
-def _latex(value):
+def _latex(value: Angle) -> str:
     if is_symbolic(value):
         import sympy
 
-        return sympy.latex(value)
+        return str(sympy.latex(value))
     return f"{value:.6g}" if not getattr(value, "ndim", 0) else r"\text{batch}"
 
 
-def _symbol(target, source):
+def _symbol(target: str, source: str) -> str:
     target, source = (name.replace("_", r"\_") for name in (target, source))
     return rf"{{}}^{{{target}}}\mathbf{{C}}^{{{source}}}"
 
 
-def _description(edge):
-    return r";\ ".join(rf"{turn.axis},\ {_latex(turn.angle)}" if turn.axis else turn.words for turn in edge.turns)
+def _description(edge: _Edge) -> str:
+    return r";\ ".join(turn.described() for turn in edge.turns)

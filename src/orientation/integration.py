@@ -4,18 +4,22 @@ Every step is a turn, so what comes out is a direction cosine matrix however lon
 it is the right one depends on them.
 """
 
-from collections.abc import Callable
-from typing import Any
+from __future__ import annotations
 
-from ._types import Array, Values
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 from .direction_cosines import check_dcm
 from .numbers_and_symbols import number_array
 from .rotation_vector import dcm_from_rotation_vector
 
+if TYPE_CHECKING:
+    from ._types import Array, Numbers
+
 ORDERS = (1, 2, 4)
 
 
-def turns_from_angular_velocity(angular_velocity: Callable[[Any], Any], times: Values, order: int = 4) -> Array:
+def turns_from_angular_velocity(angular_velocity: Callable[[Array], Numbers], times: Numbers, order: int = 4) -> Array:
     r"""Return the rotation vector of the turn in each interval of time.
 
     For a step of the duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its beginning,
@@ -71,7 +75,7 @@ def turns_from_angular_velocity(angular_velocity: Callable[[Any], Any], times: V
         )
     starts, steps = times[:-1], numpy.diff(times)[:, None]
 
-    def at(share):
+    def at(share: float) -> Array:
         found = number_array(angular_velocity(starts + share * steps[:, 0]), (3,), "angular_velocity(times)")
         if found.shape not in ((3,), (len(starts), 3)):
             raise ValueError(
@@ -86,7 +90,7 @@ def turns_from_angular_velocity(angular_velocity: Callable[[Any], Any], times: V
     return steps / 2 * (first + second) + 3**0.5 / 12 * steps**2 * numpy.cross(first, second)
 
 
-def dcms_after_turns(start: Values, turns: Values) -> Array:
+def dcms_after_turns(start: Numbers, turns: Numbers) -> Array:
     r"""Return an orientation and those that successive turns lead to from there.
 
     .. math::

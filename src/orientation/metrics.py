@@ -1,12 +1,19 @@
 """How far orientations are apart, what is in their middle, and orientations chosen at random."""
 
-from typing import Any
+from __future__ import annotations
 
-from ._types import Array, Result, Values
-from .direction_cosines import DCM_GUARD, check_dcm, nearest_dcm
-from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, number_array
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from .direction_cosines import check_dcm, dcm_excess, explain_dcm, nearest_dcm
+from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate_numbers, number_array
 from .quaternions import dcm_from_quaternion, quaternion_components_from_dcm
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
+
+if TYPE_CHECKING:
+    import numpy
+
+    from ._types import Array, Number, NumberFunctions, Scalars, Values
 
 METRICS = ("entries", "angle")
 #: The mean by angle is looked for from so many of the orientations, if they are spread too far to be sure of one.
@@ -15,7 +22,7 @@ STARTS = 100
 MOST_STEPS = 200
 
 
-def angle_between(first: Values, second: Values) -> Result:
+def angle_between(first: Values, second: Values) -> Scalars:
     r"""Return the angle of the one turn that leads from one orientation to another.
 
     For :math:`{}^A\mathbf{C}^N` and :math:`{}^B\mathbf{C}^N` it is the angle of :math:`{}^B\mathbf{C}^A`, the length of
@@ -46,29 +53,27 @@ def angle_between(first: Values, second: Values) -> Result:
     -----
     Source: Huynh (2009).
     """
-    _, excess_of_one, explain_one = DCM_GUARD
 
-    def excess(f, *entries):
-        return f.largest(excess_of_one(f, *entries[:9]), excess_of_one(f, *entries[9:18]))
+    def excess(f: NumberFunctions[Number], *entries: Number) -> Number:
+        return f.largest(dcm_excess(f, *entries[:9]), dcm_excess(f, *entries[9:18]))
 
-    def explain(entries, where):
+    def explain(entries: Sequence[float], where: str) -> None:
         for name, nine in (("first", entries[:9]), ("second", entries[9:18])):
-            if not excess_of_one(NUMBERS, *nine) <= TOLERANCE:
-                explain_one(nine, where, name)
+            if not dcm_excess(NUMBERS, *nine) <= TOLERANCE:
+                explain_dcm(nine, where, name)
 
-    def formula(f, *entries):
+    def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
         rows, others = [[entries[k + 3 * i : k + 3 * i + 3] for i in range(3)] for k in (0, 9)]
-        product = [sum(a * b for a, b in zip(other, row)) for other in others for row in rows]
+        product = [a * d + b * e + c * g for a, b, c in others for d, e, g in rows]
         scalar, x, y, z = quaternion_components_from_dcm(f, *product)
         return (2 * f.atan2(f.norm(x, y, z), scalar),)
 
-    return evaluate(
+    return evaluate_numbers(
         formula,
         (),
         ("first", first, (3, 3)),
         ("second", second, (3, 3)),
         guard=Guard(18, excess, explain),
-        symbols=False,
     )
 
 
@@ -130,7 +135,7 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     return _mean_by_angle(dcms, shares, average)
 
 
-def _shares(weights, count):
+def _shares(weights: Values | None, count: int) -> Array:
     import numpy
 
     if weights is None:
@@ -140,13 +145,14 @@ def _shares(weights, count):
         raise ValueError(f"weights has shape {weights.shape}, where ({count},) was expected, one for each orientation")
     if weights.min() < 0 or weights.sum() == 0:
         raise ValueError(f"weights are from {weights.min():g} to {weights.max():g}: none may be negative, nor all zero")
-    return weights / weights.sum()
+    shares: Array = weights / weights.sum()
+    return shares
 
 
-def _mean_by_angle(dcms, weights, average):
+def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
     import numpy
 
-    def settled(guess):
+    def settled(guess: Array) -> tuple[Array, Array]:
         for _ in range(MOST_STEPS):
             step = weights @ rotation_vector_from_dcm(dcms @ guess.T)
             guess = dcm_from_rotation_vector(step) @ guess
@@ -154,7 +160,7 @@ def _mean_by_angle(dcms, weights, average):
                 break
         # Rounding may have brought it a little off, in hundreds of products.
         guess = nearest_dcm(guess).dcm
-        return guess, angle_between(dcms, guess)
+        return guess, numpy.asarray(angle_between(dcms, guess))
 
     try:
         guess, angles = settled(nearest_dcm(average).dcm)
@@ -177,7 +183,7 @@ def _mean_by_angle(dcms, weights, average):
     return best[0]
 
 
-def random_orientations(count: int, random: Any = None) -> Array:
+def random_orientations(count: int, random: numpy.random.Generator | int | None = None) -> Array:
     r"""Return orientations chosen at random, none likelier than another.
 
     Four normally distributed numbers, divided by their length, are a point on the sphere of unit quaternions that
@@ -206,4 +212,5 @@ def random_orientations(count: int, random: Any = None) -> Array:
     import numpy
 
     four = numpy.random.default_rng(random).normal(size=(count, 4))
-    return dcm_from_quaternion(four / numpy.linalg.norm(four, axis=1, keepdims=True))
+    unit: Array = four / numpy.linalg.norm(four, axis=1, keepdims=True)
+    return dcm_from_quaternion(unit)

@@ -10,14 +10,38 @@ own floats, which is faster than with arrays, and needs NumPy for the result onl
 a browser, the result is a :class:`~orientation._plain_arrays.PlainArray`. Batches need NumPy.
 """
 
+from __future__ import annotations
+
 import functools
 import math
 import numbers
 from collections.abc import Callable, Sequence
-from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias, TypeGuard, TypeVar, overload
 
 from ._plain_arrays import PlainArray
+
+if TYPE_CHECKING:
+    from ._types import (
+        Array,
+        Excess,
+        Explain,
+        Expression,
+        Formula,
+        Functions,
+        Matrix,
+        NumberFormula,
+        NumberFunctions,
+        Scalars,
+        Symbols,
+        Truth,
+        Values,
+    )
+
+#: What a caller was given, with its name, and the shape of one item of it.
+Argument: TypeAlias = "tuple[str, Values, tuple[int, ...]]"
+Given = TypeVar("Given")
+#: One number, or numbers in tuples of any depth.
+Nested: TypeAlias = "float | tuple[Nested, ...]"
 
 #: Largest departure from orthogonality, or from unit length, that still counts as rounding.
 TOLERANCE = 1e-9
@@ -48,22 +72,24 @@ class Guard(NamedTuple):
     """
 
     size: int
-    excess: Callable[..., Any]
-    explain: Callable[[list[float], str], None]
+    excess: Excess
+    explain: Explain
 
 
-def is_symbolic(value):
+def is_symbolic(value: object) -> TypeGuard[Symbols]:
     """Tell whether a value is a SymPy object, or a sequence or object array that holds one."""
     if isinstance(value, (list, tuple)):
         return any(is_symbolic(entry) for entry in value)
     if isinstance(value, (PlainArray, float)):
         return False
-    if getattr(value, "dtype", None) == object:  # noqa: E721 (not the type of something: a kind of array)
+    if hasattr(value, "dtype") and hasattr(value, "tolist") and value.dtype == object:
         return is_symbolic(value.tolist())
     return hasattr(value, "free_symbols")
 
 
-def evaluate(formula, shape, *arguments, guard=None, symbols=True):
+def evaluate(
+    formula: Formula, shape: tuple[int, ...], *arguments: Argument, guard: Guard | None = None
+) -> Array | Matrix:
     """Apply a formula to its arguments, whatever kind they are of.
 
     Parameters
@@ -75,43 +101,58 @@ def evaluate(formula, shape, *arguments, guard=None, symbols=True):
     arguments : tuples ``(name, value, shape)``
         What the caller was given, and the shape of one item of it.
     guard : Guard, optional
-    symbols : bool
-        False for a formula that needs numbers, to choose its branch by their sizes.
     """
-    components = []
+    components = _all_at_a_glance(arguments)
+    if components is not None:
+        return _evaluate_item(formula, shape, components, guard)
+    if any(is_symbolic(value) for _, value, _ in arguments):
+        return _evaluate_symbols(formula, shape, arguments, guard)
+    return _evaluate_what_is_read(formula, shape, arguments, guard)
+
+
+@overload
+def evaluate_numbers(
+    formula: NumberFormula, shape: tuple[()], *arguments: Argument, guard: Guard | None = None
+) -> Scalars: ...
+@overload
+def evaluate_numbers(
+    formula: NumberFormula, shape: tuple[int] | tuple[int, int], *arguments: Argument, guard: Guard | None = None
+) -> Array: ...
+def evaluate_numbers(
+    formula: NumberFormula, shape: tuple[int, ...], *arguments: Argument, guard: Guard | None = None
+) -> Scalars:
+    """Apply a formula that needs numbers, to choose its branch by their sizes; as :func:`evaluate`."""
+    components = _all_at_a_glance(arguments)
+    if components is not None:
+        return _evaluate_item(formula, shape, components, guard)
+    return _evaluate_what_is_read(formula, shape, arguments, guard)
+
+
+def _all_at_a_glance(arguments: Sequence[Argument]) -> list[float] | None:
+    components: list[float] = []
     for _, value, item in arguments:
         entries = _at_a_glance(value, item)
         if entries is None:
-            break
+            return None
         components += entries
-    else:
-        return _evaluate_numbers(formula, shape, components, guard)
-    if symbols and any(is_symbolic(value) for _, value, _ in arguments):
-        return _evaluate_symbols(formula, shape, arguments, guard)
-    single = [one_item(value, item, name) for name, value, item in arguments]
-    if None not in single:
-        return _evaluate_numbers(formula, shape, [entry for entries in single for entry in entries], guard)
-    arrays = [number_array(value, item, name) for name, value, item in arguments]
-    return _evaluate_batch(formula, shape, arrays, arguments, guard)
+    return components
 
 
-def _at_a_glance(value, item):
-    """The floats of one item as a list, where a look is enough to be sure that they are right; else None."""
-    kind = type(value)
-    if kind is float or kind is int:
+def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None:
+    """The floats of one item in a row, where a look is enough to be sure that they are right; else None."""
+    entries: Sequence[float] | None = None
+    if type(value) is float or type(value) is int:
         entries = None if item else [value]
-    elif kind is tuple or kind is list:
+    elif type(value) is tuple or type(value) is list:
         if len(item) == 2 and len(value) == item[0] and all(type(row) is list and len(row) == item[1] for row in value):
             value = [entry for row in value for entry in row]
         elif len(item) != 1 or len(value) != item[0]:
             return None
         entries = value if _PLAIN.issuperset(map(type, value)) else None
-    elif kind is PlainArray and value.shape == item:
-        entries = value.entries()
-    elif kind.__name__ == "ndarray" and value.shape == item and value.dtype.char == "d":
+    elif type(value) is PlainArray:
+        entries = value.entries() if value.shape == item else None
+    elif _is_array(value) and value.shape == item and value.dtype.char == "d":
         entries = value.ravel().tolist()
-    else:
-        entries = None
     try:
         # The difference is not zero where a number is infinite or missing, or the sum is too large.
         return entries if entries and (total := math.fsum(entries)) - total == 0 else None
@@ -119,10 +160,14 @@ def _at_a_glance(value, item):
         return None
 
 
+def _is_array(value: object) -> TypeGuard[Array]:
+    return type(value).__name__ == "ndarray"
+
+
 _PLAIN = {float, int}
 
 
-def one_item(value, item, name):
+def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | None:
     """The floats of one item of the given shape as a list; None for what needs NumPy: a batch, or another shape."""
     entries = _at_a_glance(value, item)
     if entries is not None:
@@ -132,13 +177,29 @@ def one_item(value, item, name):
     if isinstance(value, (list, tuple)) and len(value) != sum(item[:1]):
         return None
     try:
-        entries = number_tuples(value, item, name)
+        return _flat(number_tuples(value, item, name))
     except WrongShape:
         return None  # a batch, or a mistake, which number_array explains
-    return [entry for row in entries for entry in row] if len(item) == 2 else list(entries) if item else [entries]
 
 
-def _evaluate_symbols(formula, shape, arguments, guard):
+def _flat(value: Nested) -> list[float]:
+    return [entry for part in value for entry in _flat(part)] if isinstance(value, tuple) else [value]
+
+
+def _evaluate_what_is_read(
+    formula: NumberFormula, shape: tuple[int, ...], arguments: Sequence[Argument], guard: Guard | None
+) -> Scalars:
+    single = [one_item(value, item, name) for name, value, item in arguments]
+    given = [entries for entries in single if entries is not None]
+    if len(given) == len(single):
+        return _evaluate_item(formula, shape, [entry for entries in given for entry in entries], guard)
+    arrays = [number_array(value, item, name) for name, value, item in arguments]
+    return _evaluate_batch(formula, shape, arrays, arguments, guard)
+
+
+def _evaluate_symbols(
+    formula: Formula, shape: tuple[int, ...], arguments: Sequence[Argument], guard: Guard | None
+) -> Matrix:
     import sympy
 
     components = [entry for name, value, item in arguments for entry in symbol_components(value, item, name)]
@@ -150,7 +211,7 @@ def _evaluate_symbols(formula, shape, arguments, guard):
     return sympy.Matrix(*(shape if len(shape) == 2 else (*shape, 1)), result)
 
 
-def _guard_exact_numbers(components, guard):
+def _guard_exact_numbers(components: Sequence[Expression], guard: Guard) -> None:
     try:
         numbers = [float(entry) for entry in components[: guard.size]]
     except TypeError:
@@ -159,7 +220,9 @@ def _guard_exact_numbers(components, guard):
         guard.explain(numbers, "")
 
 
-def _evaluate_numbers(formula, shape, components, guard):
+def _evaluate_item(
+    formula: NumberFormula, shape: tuple[int, ...], components: Sequence[float], guard: Guard | None
+) -> Scalars:
     if guard:
         looked_at = components[: guard.size]
         if not guard.excess(NUMBERS, *looked_at) <= TOLERANCE:
@@ -171,11 +234,17 @@ def _evaluate_numbers(formula, shape, components, guard):
     try:
         from numpy import array
     except ModuleNotFoundError:
-        return PlainArray.of(result, shape)
+        return PlainArray.of(result, shape)  # type: ignore[return-value]  # it stands for an array
     return array(result).reshape(shape) if len(shape) > 1 else array(result)
 
 
-def _evaluate_batch(formula, shape, arrays, arguments, guard):
+def _evaluate_batch(
+    formula: NumberFormula,
+    shape: tuple[int, ...],
+    arrays: list[Array],
+    arguments: Sequence[Argument],
+    guard: Guard | None,
+) -> Array:
     import numpy
 
     shapes = [array.shape[: array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)]
@@ -206,7 +275,7 @@ def _evaluate_batch(formula, shape, arrays, arguments, guard):
     return result.reshape(batch + shape)
 
 
-def number_array(value, item, name):
+def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
     """Return a float array of shape ``(..., *item)``, or raise an error that explains.
 
     SymPy matrices of plain numbers are numbers here; a symbol among them raises
@@ -248,7 +317,7 @@ def number_array(value, item, name):
     return array
 
 
-def number_tuples(value, shape, name):
+def number_tuples(value: object, shape: tuple[int, ...], name: str) -> Nested:
     """Return a float, or nested tuples of floats of exactly this shape, or raise an error that explains.
 
     What :func:`number_array` takes, without batches, and without NumPy; True and False are no numbers here.
@@ -263,7 +332,7 @@ def number_tuples(value, shape, name):
     return result
 
 
-def _tuples(value, name, whole):
+def _tuples(value: object, name: str, whole: object) -> Nested:
     if hasattr(value, "free_symbols"):
         value = _floats(_listed(value), name)
     elif hasattr(value, "tolist"):  # an array, or a number of NumPy
@@ -278,17 +347,16 @@ def _tuples(value, name, whole):
         raise _not_numbers(name, whole) from None
 
 
-def _shape(value):
+def _shape(value: Nested) -> tuple[int, ...] | None:
     """Return the shape of nested tuples, None if they are ragged."""
     if not isinstance(value, tuple):
         return ()
     shapes = set(map(_shape, value)) or {()}
-    if len(shapes) > 1 or None in shapes:
-        return None
-    return (len(value), *shapes.pop())
+    inner = shapes.pop()
+    return None if shapes or inner is None else (len(value), *inner)
 
 
-def _demand_finite(value, name, index=()):
+def _demand_finite(value: Nested, name: str, index: tuple[int, ...] = ()) -> None:
     if isinstance(value, tuple):
         for k, entry in enumerate(value):
             _demand_finite(entry, name, (*index, k))
@@ -296,26 +364,29 @@ def _demand_finite(value, name, index=()):
         raise _not_finite(name, index, value)
 
 
-def _unmasked(value):
+def _unmasked(value: Given) -> Given | Array:
     # A masked array: what is masked is missing.
-    return value.astype(float).filled(math.nan) if hasattr(value, "filled") else value
+    if hasattr(value, "filled") and hasattr(value, "astype"):
+        filled: Array = value.astype(float).filled(math.nan)
+        return filled
+    return value
 
 
-def _not_numbers(name, value):
+def _not_numbers(name: str, value: object) -> TypeError:
     return TypeError(f"{name} must hold real numbers or SymPy expressions in a regular shape, not {value!r}")
 
 
-def _not_finite(name, index, value):
+def _not_finite(name: str, index: tuple[int, ...], value: float) -> ValueError:
     where = f"[{', '.join(map(str, index))}]" if index else ""
     return ValueError(f"{name}{where} is {value}: a number is missing or a division by zero happened before")
 
 
-def _floats(value, name):
+def _floats(value: object, name: str) -> object:
     """Nested lists of floats from SymPy objects without symbols."""
     if isinstance(value, list):
         return [_floats(entry, name) for entry in value]
     try:
-        return float(value)
+        return float(value)  # type: ignore[arg-type]  # whether it is one is what is asked
     except TypeError:
         raise SymbolsNotPossible(
             f"{name} holds {value}, and this conversion needs numbers: which branch it takes depends "
@@ -323,20 +394,20 @@ def _floats(value, name):
         ) from None
 
 
-def _listed(value):
+def _listed(value: object) -> object:
     """Nested lists of the entries, whatever holds them; a column or a row becomes one list."""
     if hasattr(value, "tolist"):
         shape = getattr(value, "shape", ())
-        flat = len(shape) == 2 and 1 in shape
-        value = value.tolist()
-        if flat:
-            value = [entry for row in value for entry in row]
-    if isinstance(value, (list, tuple)) or type(value).__name__ == "Tuple":
+        rows = value.tolist()
+        value = [entry for row in rows for entry in row] if len(shape) == 2 and 1 in shape else rows
+    if isinstance(value, (list, tuple)):
         return [_listed(entry) for entry in value]
+    if type(value).__name__ == "Tuple" and hasattr(value, "args"):
+        return [_listed(entry) for entry in value.args]
     return value
 
 
-def symbol_components(value, item, name):
+def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[Expression]:
     """Return the SymPy components of one item of the given shape."""
     import sympy
 
@@ -345,16 +416,16 @@ def symbol_components(value, item, name):
             f"{name} is the vector {value}: give its components along one frame, which its method to_matrix finds"
         )
     nested = _listed(value)
+    shape: tuple[int, ...] = ()
+    entries: list[object] = [nested]
     if isinstance(nested, list):
         lengths = {len(row) if isinstance(row, list) else 0 for row in nested}
         shape = (len(nested),) if lengths == {0} else (len(nested), *sorted(lengths))
-        value = [entry for row in nested for entry in (row if isinstance(row, list) else [row])]
-    else:
-        shape, value = (), [nested]
+        entries = [entry for row in nested for entry in (row if isinstance(row, list) else [row])]
     if shape != item:
         raise WrongShape(_shape_message(name, shape, item) + " (SymPy expressions come one item at a time)")
     try:
-        components = [sympy.sympify(entry, strict=True) for entry in value]
+        components: list[Expression] = [sympy.sympify(entry, strict=True) for entry in entries]
     except sympy.SympifyError as error:
         raise TypeError(f"{name} holds {error.expr!r}, which is neither a number nor a SymPy expression") from None
     for position, entry in enumerate(components):
@@ -365,7 +436,7 @@ def symbol_components(value, item, name):
     return components
 
 
-def _shape_message(name, shape, item):
+def _shape_message(name: str, shape: tuple[int, ...], item: tuple[int, ...]) -> str:
     if item == ():
         return f"{name} has shape {shape}, where one number was expected"
     return f"{name} has shape {shape}, where {item} or (..., {', '.join(map(str, item))}) was expected"
@@ -374,48 +445,72 @@ def _shape_message(name, shape, item):
 # --- the functions that a formula may use, for each kind ----------------------------------------
 
 
-def _pick_number(scores, rows):
-    return rows[scores.index(max(scores))]
+class _OneNumber:
+    sin = staticmethod(math.sin)
+    cos = staticmethod(math.cos)
+    atan2 = staticmethod(math.atan2)
+    norm = staticmethod(math.hypot)
+
+    @staticmethod
+    def where(condition: Truth, yes: float, no: float) -> float:
+        return yes if condition else no
+
+    @staticmethod
+    def largest(*sizes: float) -> float:
+        return max(sizes)
+
+    @staticmethod
+    def pick(scores: Sequence[float], rows: Sequence[Sequence[float]]) -> Sequence[float]:
+        return rows[scores.index(max(scores))]
 
 
-NUMBERS = SimpleNamespace(
-    sin=math.sin,
-    cos=math.cos,
-    atan2=math.atan2,
-    norm=math.hypot,
-    pick=_pick_number,
-    where=lambda condition, yes, no: yes if condition else no,
-    largest=max,
-)
+NUMBERS: NumberFunctions[float] = _OneNumber()
 
 
 @functools.cache
-def _array_functions():
+def _array_functions() -> NumberFunctions[Array]:
     import numpy
 
-    def pick(scores, rows):
-        best = numpy.argmax(scores, axis=0)
-        return [numpy.choose(best, entries) for entries in zip(*rows)]
+    class Columns:
+        def __init__(self) -> None:
+            self.sin: Callable[[Array], Array] = numpy.sin
+            self.cos: Callable[[Array], Array] = numpy.cos
+            self.atan2: Callable[[Array, Array], Array] = numpy.arctan2
+            self.where: Callable[[Truth, Array | float, Array | float], Array] = numpy.where
 
-    return SimpleNamespace(
-        sin=numpy.sin,
-        cos=numpy.cos,
-        atan2=numpy.arctan2,
-        pick=pick,
-        where=numpy.where,
-        norm=lambda *components: numpy.sqrt(sum(entry * entry for entry in components)),
-        largest=lambda *sizes: functools.reduce(numpy.maximum, sizes),
-    )
+        @staticmethod
+        def norm(*components: Array | float) -> Array:
+            return numpy.sqrt(sum(entry * entry for entry in components))
+
+        @staticmethod
+        def largest(*sizes: Array) -> Array:
+            return functools.reduce(numpy.maximum, sizes)
+
+        @staticmethod
+        def pick(scores: Sequence[Array], rows: Sequence[Sequence[Array]], /) -> Sequence[Array]:
+            best = numpy.argmax(scores, axis=0)
+            return [numpy.choose(best, entries) for entries in zip(*rows)]
+
+    return Columns()
 
 
 @functools.cache
-def _symbol_functions():
+def _symbol_functions() -> Functions[Expression]:
     import sympy
 
-    return SimpleNamespace(
-        sin=sympy.sin,
-        cos=sympy.cos,
-        # Symbols take the general branch; an exact number may decide for the special one.
-        where=lambda condition, yes, no: no if condition == False else yes,  # noqa: E712
-        norm=lambda *components: sympy.sqrt(sum(entry**2 for entry in components)),
-    )
+    class Expressions:
+        sin = staticmethod(sympy.sin)
+        cos = staticmethod(sympy.cos)
+
+        @staticmethod
+        def where(condition: Truth, yes: Expression | float, no: Expression | float, /) -> Expression:
+            # Symbols take the general branch; an exact number may decide for the special one.
+            chosen: Expression = sympy.sympify(no if condition == False else yes)  # noqa: E712
+            return chosen
+
+        @staticmethod
+        def norm(*components: Expression | float) -> Expression:
+            root: Expression = sympy.sqrt(sum(entry**2 for entry in components))
+            return root
+
+    return Expressions()

@@ -4,8 +4,14 @@ A direction that is known in a frame :math:`N` (up, north, a star) is measured a
 directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two are fitted.
 """
 
-from ._types import Array, Values
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from .numbers_and_symbols import number_array
+
+if TYPE_CHECKING:
+    from ._types import Array, Numbers, Values
 
 #: Sine of the angle below which two directions count as one.
 PARALLEL = 1e-6
@@ -60,7 +66,7 @@ def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
     return body.swapaxes(-1, -2) @ fixed
 
 
-def _triad(pair, name):
+def _triad(pair: Array, name: str) -> Array:
     import numpy
 
     first, second = (_unit(pair[..., k, :], name) for k in (0, 1))
@@ -75,16 +81,17 @@ def _triad(pair, name):
     return numpy.stack([first, across, numpy.cross(first, across)], axis=-2)
 
 
-def _unit(directions, name):
+def _unit(directions: Array, name: str) -> Array:
     import numpy
 
     length = numpy.linalg.norm(directions, axis=-1, keepdims=True)
     if not numpy.all(length > 0):
         raise ValueError(f"{name} holds a direction of length zero: was a measurement missing, and written as 0?")
-    return directions / length
+    units: Array = directions / length
+    return units
 
 
-def dcm_from_directions(observed: Values, reference: Values, deviations: Values | None = None) -> Array:
+def dcm_from_directions(observed: Numbers, reference: Numbers, deviations: Values | None = None) -> Array:
     r"""Direction cosine matrix that fits many observed directions best: Wahba's problem.
 
     Finds the :math:`{}^B\mathbf{C}^N` with the least
@@ -144,10 +151,11 @@ def dcm_from_directions(observed: Values, reference: Values, deviations: Values 
         )
     handed = left.copy()
     handed[..., :, 2] *= numpy.round(sign)[..., None]
-    return handed @ right
+    fitted: Array = handed @ right
+    return fitted
 
 
-def directions_covariance(observed: Values, deviations: Values) -> Array:
+def directions_covariance(observed: Numbers, deviations: Values) -> Array:
     r"""Covariance of the error of an orientation that was fitted to directions.
 
     The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the true one, along
@@ -188,14 +196,15 @@ def directions_covariance(observed: Values, deviations: Values) -> Array:
     """
     import numpy
 
-    observed, _, weights = _weighted(observed, observed, deviations)
-    information = numpy.sum(weights) * numpy.eye(3) - (weights * observed).swapaxes(-1, -2) @ observed
+    units, _, weights = _weighted(observed, observed, deviations)
+    information = weights.sum() * numpy.eye(3) - (weights * units).swapaxes(-1, -2) @ units
     if not numpy.all(numpy.linalg.eigvalsh(information)[..., 0] > PARALLEL**2 * numpy.sum(weights)):
         raise ValueError("the directions lie along one line: nothing is known of the turn around it")
-    return numpy.linalg.inv(information)
+    covariance: Array = numpy.linalg.inv(information)
+    return covariance
 
 
-def _weighted(observed, reference, deviations):
+def _weighted(observed: Numbers, reference: Numbers, deviations: Values | None) -> tuple[Array, Array, Array]:
     import numpy
 
     observed, reference = numpy.asarray(observed, dtype=float), numpy.asarray(reference, dtype=float)
@@ -209,4 +218,5 @@ def _weighted(observed, reference, deviations):
     deviations = number_array(deviations, (observed.shape[-2],), "deviations")
     if not numpy.all(deviations > 0):
         raise ValueError(f"a standard deviation is a positive number of radians; one of these is {deviations.min():g}")
-    return _unit(observed, "observed"), _unit(reference, "reference"), deviations[:, None] ** -2.0
+    spread: Array = deviations[:, None] ** -2.0
+    return _unit(observed, "observed"), _unit(reference, "reference"), spread

@@ -1,19 +1,24 @@
 """Unit quaternions, scalar first: to and from direction cosine matrices, and their product."""
 
-from typing import overload
+from __future__ import annotations
 
-from ._types import Array, Matrix, Numbers, Result, Symbols, Values
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, overload
+
 from .direction_cosines import DCM_GUARD
-from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate
+from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, evaluate_numbers
+
+if TYPE_CHECKING:
+    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
 
 
-def _length_excess(f, scalar, x, y, z):
+def _length_excess(f: NumberFunctions[Number], scalar: Number, x: Number, y: Number, z: Number) -> Number:
     # The rows of the matrix are |q|^2 long: what passes here makes a matrix that passes as well.
     square = scalar * scalar + x * x + y * y + z * z
     return abs(square * square - 1)
 
 
-def _explain_length(components, where, name="quaternion"):
+def _explain_length(components: Sequence[float], where: str, name: str = "quaternion") -> None:
     length = sum(entry * entry for entry in components) ** 0.5
     if length == 0:
         cause = "the zero quaternion is no orientation"
@@ -32,21 +37,23 @@ def _explain_length(components, where, name="quaternion"):
     raise ValueError(f"{name}{where} has length {length:.12g}, not 1: {cause}")
 
 
-def demand_unit_length(entries, name="quaternion", tolerance=TOLERANCE):
+def demand_unit_length(entries: Sequence[complex], name: str = "quaternion", tolerance: float = TOLERANCE) -> None:
     """Raise the error of a quaternion that is not of unit length, for four numbers."""
-    entries = [entry.real for entry in entries]
-    if not _length_excess(NUMBERS, *entries) <= tolerance:
-        _explain_length(entries, "", name)
+    real = [entry.real for entry in entries]
+    if not _length_excess(NUMBERS, *real) <= tolerance:
+        _explain_length(real, "", name)
 
 
 QUATERNION_GUARD = Guard(4, _length_excess, _explain_length)
 
 
 @overload
+def dcm_from_quaternion(quaternion: Symbols) -> Matrix: ...
+@overload
 def dcm_from_quaternion(quaternion: Numbers) -> Array: ...
 @overload
-def dcm_from_quaternion(quaternion: Symbols) -> Matrix: ...
-def dcm_from_quaternion(quaternion: Values) -> Result:
+def dcm_from_quaternion(quaternion: Values) -> Matrix: ...
+def dcm_from_quaternion(quaternion: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a unit quaternion.
 
     .. math::
@@ -87,7 +94,9 @@ def dcm_from_quaternion(quaternion: Values) -> Result:
     return evaluate(dcm_components_from_quaternion, (3, 3), ("quaternion", quaternion, (4,)), guard=QUATERNION_GUARD)
 
 
-def dcm_components_from_quaternion(f, scalar, x, y, z):
+def dcm_components_from_quaternion(
+    f: Functions[Component], scalar: Component, x: Component, y: Component, z: Component
+) -> Sequence[Component]:
     """Formula of :func:`dcm_from_quaternion`, shared with the Rodrigues parameters."""
     ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
     first, second = ss + xx, ss - xx
@@ -107,7 +116,18 @@ def dcm_components_from_quaternion(f, scalar, x, y, z):
     )
 
 
-def quaternion_components_from_dcm(f, xx, xy, xz, yx, yy, yz, zx, zy, zz):
+def quaternion_components_from_dcm(
+    f: NumberFunctions[Number],
+    xx: Number,
+    xy: Number,
+    xz: Number,
+    yx: Number,
+    yy: Number,
+    yz: Number,
+    zx: Number,
+    zy: Number,
+    zz: Number,
+) -> tuple[Number, Number, Number, Number]:
     """Formula of :func:`quaternion_from_dcm`, shared with the axis and angle."""
     # Each row is the quaternion times four of its own components; the longest loses no digits.
     scores = [1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz]
@@ -154,14 +174,16 @@ def quaternion_from_dcm(dcm: Values) -> Array:
     Source: Shepperd (1978), Markley (2008).
     In the book: :eq:`equation-back-quaternion`.
     """
-    return evaluate(quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    return evaluate_numbers(quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
 
 
+@overload
+def multiply_quaternions(first: Symbols, second: Symbols) -> Matrix: ...
 @overload
 def multiply_quaternions(first: Numbers, second: Numbers) -> Array: ...
 @overload
 def multiply_quaternions(first: Values, second: Values) -> Matrix: ...
-def multiply_quaternions(first: Values, second: Values) -> Result:
+def multiply_quaternions(first: Values, second: Values) -> Array | Matrix:
     r"""Hamilton product of two quaternions.
 
     With :math:`i^2 = j^2 = k^2 = ijk = -1`. If ``first`` turns :math:`N` to :math:`A` and ``second``
@@ -192,7 +214,17 @@ def multiply_quaternions(first: Values, second: Values) -> Result:
     return evaluate(product_components, (4,), ("first", first, (4,)), ("second", second, (4,)))
 
 
-def product_components(f, a, b, c, d, e, g, h, k):
+def product_components(
+    f: Functions[Component],
+    a: Component,
+    b: Component,
+    c: Component,
+    d: Component,
+    e: Component,
+    g: Component,
+    h: Component,
+    k: Component,
+) -> Sequence[Component]:
     """Formula of :func:`multiply_quaternions`."""
     return (
         a * e - b * g - c * h - d * k,
@@ -243,23 +275,34 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
     In the book: :eq:`equation-slerp`.
     """
 
-    def excess(f, *components):
+    def excess(f: NumberFunctions[Number], *components: Number) -> Number:
         return f.largest(
             _length_excess(f, *components[:4]),
             _length_excess(f, *components[4:8]),
             f.where(abs(_dot(components[:4], components[4:8])) > 1e-12, 0, 1),
         )
 
-    def explain(components, where):
+    def explain(components: Sequence[float], where: str) -> None:
         for name, part in (("first", components[:4]), ("second", components[4:8])):
-            if _length_excess(None, *part) > TOLERANCE:
+            if _length_excess(NUMBERS, *part) > TOLERANCE:
                 _explain_length(part, where, name)
         raise ValueError(
             f"the orientations{where} are half a turn apart: both ways round are equally "
             f"long, so there is no shorter one to follow. Go by way of a third orientation"
         )
 
-    def formula(f, a, b, c, d, e, g, h, k, share):
+    def formula(
+        f: NumberFunctions[Number],
+        a: Number,
+        b: Number,
+        c: Number,
+        d: Number,
+        e: Number,
+        g: Number,
+        h: Number,
+        k: Number,
+        share: Number,
+    ) -> Sequence[Number]:
         dot = _dot((a, b, c, d), (e, g, h, k))
         sign = f.where(dot < 0, -1.0, 1.0)
         e, g, h, k = sign * e, sign * g, sign * h, sign * k
@@ -272,16 +315,16 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
         far = f.where(small, share, f.sin(share * angle) / safe)
         return near * a + far * e, near * b + far * g, near * c + far * h, near * d + far * k
 
-    return evaluate(
+    return evaluate_numbers(
         formula,
         (4,),
         ("first", first, (4,)),
         ("second", second, (4,)),
         ("share", share, ()),
         guard=Guard(8, excess, explain),
-        symbols=False,
     )
 
 
-def _dot(first, second):
-    return sum(one * other for one, other in zip(first, second))
+def _dot(first: Sequence[Number], second: Sequence[Number]) -> Number:
+    (a, b, c, d), (e, g, h, k) = first, second
+    return a * e + b * g + c * h + d * k

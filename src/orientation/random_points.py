@@ -1,9 +1,23 @@
 """Expressions tried at random values of their symbols: numbers decide what algebra decides slowly, or not at all."""
 
+from __future__ import annotations
+
 import math
 import random
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, TypeAlias, overload
 
 from .numbers_and_symbols import is_symbolic
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
+
+    from ._types import Array, Column, Entry, Expression
+
+#: The symbols that go by each name, as theta and theta(t).
+Names: TypeAlias = "dict[str, set[Expression]]"
+#: A value for each name.
+Point: TypeAlias = dict[str, float]
 
 #: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and two
 #: values beyond half a turn: the root of a square is then not taken for the cosine of the angle, nor
@@ -11,10 +25,14 @@ from .numbers_and_symbols import is_symbolic
 QUARTERS = (-3, -1, 0, 2)
 
 
-def unknowns(components):
+def _is_expression(entry: Column) -> TypeIs[Expression]:
+    return is_symbolic(entry)
+
+
+def unknowns(components: Iterable[Column]) -> Names:
     """Symbols and functions of time in the components, grouped by name."""
-    names = {}
-    for expression in filter(is_symbolic, components):
+    names: Names = {}
+    for expression in filter(_is_expression, components):
         import sympy
         from sympy.core.function import AppliedUndef
 
@@ -26,29 +44,37 @@ def unknowns(components):
     return dict(sorted(names.items()))
 
 
-def points_for(names):
+def points_for(names: Iterable[str]) -> list[Point]:
     """Values for every name: a dictionary for each point, the same ones on every call."""
     if not names:
         return [{}]
     source = random.Random(20)
-    points = [{} for _ in QUARTERS]
+    points: list[Point] = [{} for _ in QUARTERS]
     for name in names:
         for point, quarter in zip(points, source.sample(QUARTERS, len(QUARTERS))):
             point[name] = (quarter + source.uniform(0.1, 0.9)) * math.pi / 2
     return points
 
 
-def put_in(components, names, point):
+@overload
+def put_in(components: Sequence[Entry], names: Names, point: Point) -> list[complex]: ...
+@overload
+def put_in(components: Sequence[Column], names: Names, point: Point) -> Sequence[complex | Array]: ...
+def put_in(components: Sequence[Column], names: Names, point: Point) -> Sequence[complex | Array]:
     """Numbers for the components, with the values of one point for their symbols."""
-    if not any(map(is_symbolic, components)):
-        return components
-    import sympy
+    values: dict[Expression, Expression] = {}
+    if names:
+        import sympy
 
-    values = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
-    return [complex(entry.xreplace(values).evalf()) if is_symbolic(entry) else entry for entry in components]
+        values = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
+    return [complex(entry.xreplace(values).evalf()) if _is_expression(entry) else entry for entry in components]
 
 
-def at_random_points(*components):
+@overload
+def at_random_points(*components: Sequence[Entry]) -> Iterator[tuple[list[complex], ...]]: ...
+@overload
+def at_random_points(*components: Sequence[Column]) -> Iterator[tuple[Sequence[complex | Array], ...]]: ...
+def at_random_points(*components: Sequence[Column]) -> Iterator[tuple[Sequence[complex | Array], ...]]:
     """For each random choice of the symbols' values, a tuple of the lists of components as numbers."""
     names = unknowns([entry for entries in components for entry in entries])
     for point in points_for(names):

@@ -4,19 +4,26 @@ Both are a stereographic picture of the unit quaternions: a line from the middle
 quaternion -1, through the quaternion meets a flat space of three dimensions in the parameters.
 """
 
-from typing import overload
+from __future__ import annotations
 
-from ._types import Array, Matrix, Numbers, Result, Symbols, Values
-from .direction_cosines import DCM_GUARD
-from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, overload
+
+from .direction_cosines import DCM_GUARD, dcm_excess, explain_dcm
+from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, evaluate_numbers
 from .quaternions import dcm_components_from_quaternion, quaternion_components_from_dcm
 
+if TYPE_CHECKING:
+    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
 
+
+@overload
+def dcm_from_rodrigues(vector: Symbols) -> Matrix: ...
 @overload
 def dcm_from_rodrigues(vector: Numbers) -> Array: ...
 @overload
-def dcm_from_rodrigues(vector: Symbols) -> Matrix: ...
-def dcm_from_rodrigues(vector: Values) -> Result:
+def dcm_from_rodrigues(vector: Values) -> Matrix: ...
+def dcm_from_rodrigues(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of Rodrigues parameters, also called the Gibbs vector.
 
     :math:`\mathbf{g} = \tan\frac{\theta}{2}\,\hat{e}`, and the matrix is Cayley's transform of its cross product:
@@ -47,7 +54,7 @@ def dcm_from_rodrigues(vector: Values) -> Result:
     Source: Rodrigues (1840), Shuster (1993).
     """
 
-    def formula(f, x, y, z):
+    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
         length = f.norm(1, x, y, z)
         return dcm_components_from_quaternion(f, 1 / length, x / length, y / length, z / length)
 
@@ -81,32 +88,33 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
     >>> rodrigues_from_dcm(simple_dcm('x', math.pi/3)).round(12).tolist()
     [0.57735026919, 0.0, 0.0]
     """
-    _, valid, explain_invalid = DCM_GUARD
 
-    def excess(f, *entries):
+    def excess(f: NumberFunctions[Number], *entries: Number) -> Number:
         scalar, *_ = quaternion_components_from_dcm(f, *entries)
-        return f.largest(valid(f, *entries), f.where(scalar > 1e-12, 0, 1))
+        return f.largest(dcm_excess(f, *entries), f.where(scalar > 1e-12, 0, 1))
 
-    def explain(entries, where):
-        if valid(NUMBERS, *entries) > TOLERANCE:
-            explain_invalid(entries, where)
+    def explain(entries: Sequence[float], where: str) -> None:
+        if dcm_excess(NUMBERS, *entries) > TOLERANCE:
+            explain_dcm(entries, where)
         raise ValueError(
             f"dcm{where} is half a turn: its Rodrigues parameters, the tangent of half the angle, are infinite. "
             f"Modified Rodrigues parameters, a quaternion or a rotation vector can hold it"
         )
 
-    def formula(f, *entries):
+    def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         return x / scalar, y / scalar, z / scalar
 
-    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=Guard(9, excess, explain), symbols=False)
+    return evaluate_numbers(formula, (3,), ("dcm", dcm, (3, 3)), guard=Guard(9, excess, explain))
 
 
+@overload
+def dcm_from_modified_rodrigues(vector: Symbols) -> Matrix: ...
 @overload
 def dcm_from_modified_rodrigues(vector: Numbers) -> Array: ...
 @overload
-def dcm_from_modified_rodrigues(vector: Symbols) -> Matrix: ...
-def dcm_from_modified_rodrigues(vector: Values) -> Result:
+def dcm_from_modified_rodrigues(vector: Values) -> Matrix: ...
+def dcm_from_modified_rodrigues(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of modified Rodrigues parameters.
 
     With :math:`\boldsymbol{\sigma} = \tan\frac{\theta}{4}\,\hat{e}`,
@@ -137,7 +145,7 @@ def dcm_from_modified_rodrigues(vector: Values) -> Result:
     Source: Schaub and Junkins (1996).
     """
 
-    def formula(f, x, y, z):
+    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
         square = x**2 + y**2 + z**2
         whole = 1 + square
         return dcm_components_from_quaternion(f, (1 - square) / whole, 2 * x / whole, 2 * y / whole, 2 * z / whole)
@@ -173,18 +181,20 @@ def modified_rodrigues_from_dcm(dcm: Values) -> Array:
     [0.0, 0.0, 1.0]
     """
 
-    def formula(f, *entries):
+    def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         return x / (1 + scalar), y / (1 + scalar), z / (1 + scalar)
 
-    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    return evaluate_numbers(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
 
 
+@overload
+def shadow_of_modified_rodrigues(vector: Symbols) -> Matrix: ...
 @overload
 def shadow_of_modified_rodrigues(vector: Numbers) -> Array: ...
 @overload
-def shadow_of_modified_rodrigues(vector: Symbols) -> Matrix: ...
-def shadow_of_modified_rodrigues(vector: Values) -> Result:
+def shadow_of_modified_rodrigues(vector: Values) -> Matrix: ...
+def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
     r"""The other modified Rodrigues parameters of the same orientation: the shadow.
 
     .. math::
@@ -215,13 +225,13 @@ def shadow_of_modified_rodrigues(vector: Values) -> Result:
     [0.0, 0.0, -2.0]
     """
 
-    def excess(f, x, y, z):
+    def excess(f: NumberFunctions[Number], x: Number, y: Number, z: Number) -> Number:
         return f.where(x * x + y * y + z * z > 1e-300, 0, 1)
 
-    def explain(components, where):
+    def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(f"vector{where} is {components}, no turn at all: its shadow would be infinitely long")
 
-    def formula(f, x, y, z):
+    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
         square = x * x + y * y + z * z
         return -x / square, -y / square, -z / square
 

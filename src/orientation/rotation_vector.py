@@ -1,18 +1,25 @@
 """Rotation vectors: the exponential and the logarithm of rotations."""
 
-from typing import overload
+from __future__ import annotations
 
-from ._types import Array, Matrix, Numbers, Result, Symbols, Values
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, overload
+
 from .direction_cosines import DCM_GUARD
-from .numbers_and_symbols import evaluate
+from .numbers_and_symbols import evaluate, evaluate_numbers
 from .quaternions import quaternion_components_from_dcm
 
+if TYPE_CHECKING:
+    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
 
+
+@overload
+def dcm_from_rotation_vector(vector: Symbols) -> Matrix: ...
 @overload
 def dcm_from_rotation_vector(vector: Numbers) -> Array: ...
 @overload
-def dcm_from_rotation_vector(vector: Symbols) -> Matrix: ...
-def dcm_from_rotation_vector(vector: Values) -> Result:
+def dcm_from_rotation_vector(vector: Values) -> Matrix: ...
+def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a rotation vector: the exponential.
 
     The rotation vector :math:`\mathbf{r} = \theta\,\hat{e}` points along the axis and is as long as the
@@ -50,7 +57,7 @@ def dcm_from_rotation_vector(vector: Values) -> Result:
     In the book: :eq:`equation-exponential-closed`.
     """
 
-    def formula(f, x, y, z):
+    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
         angle = f.norm(x, y, z)
         turning = angle > 0
         length = f.where(turning, angle, 1.0)
@@ -103,11 +110,11 @@ def rotation_vector_from_dcm(dcm: Values) -> Array:
     [0.0, 0.0, -0.3]
     """
 
-    def formula(f, *entries):
+    def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         sine = f.norm(x, y, z)
         # Both limits are right at rest: twice the vector part.
         share = f.where(sine > 0, 2 * f.atan2(sine, scalar) / f.where(sine > 0, sine, 1.0), 2.0)
         return share * x, share * y, share * z
 
-    return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False)
+    return evaluate_numbers(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)

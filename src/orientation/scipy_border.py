@@ -5,14 +5,21 @@ components along :math:`N`, so its matrix is :math:`{}^N\mathbf{C}^A`. The trans
 nowhere else.
 """
 
-from typing import Any
+from __future__ import annotations
 
-from ._types import Array, Values
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from .direction_cosines import DCM_GUARD
-from .numbers_and_symbols import evaluate
+from .numbers_and_symbols import evaluate_numbers
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+    from ._types import Array, Component, Functions, Values
 
 
-def scipy_rotation_from_dcm(dcm: Values) -> Any:
+def scipy_rotation_from_dcm(dcm: Values) -> Rotation:
     r"""SciPy ``Rotation`` of a direction cosine matrix.
 
     Parameters
@@ -39,13 +46,13 @@ def scipy_rotation_from_dcm(dcm: Values) -> Any:
     """
     from scipy.spatial.transform import Rotation
 
-    def transposed(f, *entries):
+    def transposed(f: Functions[Component], *entries: Component) -> Sequence[Component]:
         return [entries[3 * column + row] for row in range(3) for column in range(3)]
 
-    return Rotation.from_matrix(evaluate(transposed, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD, symbols=False))
+    return Rotation.from_matrix(evaluate_numbers(transposed, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD))
 
 
-def dcm_from_scipy_rotation(rotation: Any) -> Array:
+def dcm_from_scipy_rotation(rotation: Rotation) -> Array:
     r"""Direction cosine matrix :math:`{}^A\mathbf{C}^N` of a SciPy ``Rotation``.
 
     Parameters
@@ -72,4 +79,5 @@ def dcm_from_scipy_rotation(rotation: Any) -> Array:
     """
     if not hasattr(rotation, "as_matrix"):
         raise TypeError(f"rotation must be a SciPy Rotation, not {type(rotation).__name__}")
-    return rotation.as_matrix().swapaxes(-1, -2)
+    matrices: Array = rotation.as_matrix()
+    return matrices.swapaxes(-1, -2)

@@ -211,14 +211,19 @@ def applied(formula, *components):
 def recorded(function, *arguments):
     """The results of a public function of ``orientation``, in a flat list."""
 
-    def record(formula, shape, *given, guard=None, symbols=True):
+    def record(formula, shape, *given, guard=None):
         components = [entry for _, value, _ in given for entry in _flat(value)]
         results = np.empty(math.prod(shape), object)
         results[:] = applied(formula, *components)
         return results.reshape(shape)
 
     # The function looks its helpers up among the names of its module: there it finds these, and goes on.
-    helpers = {"evaluate": record, "is_symbolic": lambda value: True, "symbol_components": lambda value, *what: value}
+    helpers = {
+        "evaluate": record,
+        "evaluate_numbers": record,
+        "is_symbolic": lambda value: True,
+        "symbol_components": lambda value, *what: value,
+    }
     with mock.patch.dict(function.__globals__, helpers):
         return list(np.ravel(function(*arguments)))
 

@@ -539,8 +539,156 @@ def ros2_table():
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
 
 
+def witmotion():
+    """Tabs, a clock of its own whose parts have no zeros before them, angles called AngleX, a field without a unit."""
+    found, time, gyr, acc, mag, quaternion = _parts()
+    angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
+    names = ["Time(s)", "ChipTime", "ax(g)", "ay(g)", "az(g)", "wx(deg/s)", "wy(deg/s)", "wz(deg/s)", "AngleX(deg)",
+             "AngleY(deg)", "AngleZ(deg)", "T(°)", "hx", "hy", "hz", "q0", "q1", "q2", "q3"]  # fmt: skip
+    columns = [acc / GRAVITY, DEG * gyr, angles, np.full(len(time), 25), mag, quaternion]
+    body = _table(None, columns, "\t", "{:.4f}").decode().splitlines()
+    rows = [
+        f"10:11:{t % 60:06.3f}\t2020-1-1 0:{int(t) // 60}:{int(t) % 60}.{round(1000 * t) % 1000:03}\t{row}"
+        for t, row in zip(time, body, strict=True)
+    ]
+    scales = {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 1, "angles": DEG, "quaternion": 1}
+    return Form("\r\n".join(["StartTime：2020-12-21 10:11:00.000", "\t".join(names), *rows]).encode(), scales)
+
+
+def polar():
+    """A table for each sensor with the same three headings; [G] is gauss, as only the name of its table says."""
+    _, time, gyr, acc, mag, _ = _parts()
+
+    def one(unit, values):
+        head = f"Phone timestamp;sensor timestamp [ns];X [{unit}];Y [{unit}];Z [{unit}] "
+        rows = (
+            f"2024-03-05T09:{int(t) // 60:02}:{t % 60:06.3f};{599_628_000_000_000_000 + round(1e9 * t)};"
+            + ";".join(f"{part:.5f}" for part in row)
+            for t, row in zip(time, values, strict=True)
+        )
+        return "\n".join([head, *rows])
+
+    files = {"ACC": one("mg", 1000 * acc / GRAVITY), "GYRO": one("dps", DEG * gyr), "MAGN": one("G", mag / 100)}
+    return Form(
+        _zipped({f"Polar_Sense_B36B5B28_20240305_{name}.txt": text for name, text in files.items()}),
+        {"gyroscope": DEG, "accelerometer": 1000 / GRAVITY, "magnetometer": 0.01},
+    )
+
+
+def dat_con():
+    """A drone's log: a clock that counts ticks before the one in seconds, and a word at the end of each row."""
+    found, time, gyr, acc, mag, quaternion = _parts()
+    names = ["Clock:Tick#", "Clock:offsetTime", *(f"IMU_ATTI(0):accel{axis}" for axis in "XYZ")]
+    names += ["IMU_ATTI(0):accelComposite:C", *(f"IMU_ATTI(0):gyro{axis}" for axis in "XYZ")]
+    names += [*(f"IMU_ATTI(0):mag{axis}" for axis in "XYZ"), *(f"IMU_ATTI(0):quat{axis}:D" for axis in "WXYZ")]
+    lengths = np.linalg.norm(acc, axis=1) / GRAVITY
+    columns = [3e9 + 4.5e6 * time, time - 3, acc / GRAVITY, lengths, DEG * gyr, 10 * mag, quaternion]
+    rows = _table(None, columns, number="{:.10g}").decode().splitlines()
+    text = "\n".join([",".join([*names, "flyCState"]), *(f"{row},Manual" for row in rows)])
+    return Form(text.encode(), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 10, "quaternion": 1})
+
+
+def kalibr():
+    """Its acceleration is called alpha."""
+    _, time, gyr, acc, _, _ = _parts()
+    names = ["timestamp", *(f"omega_{axis}" for axis in "xyz"), *(f"alpha_{axis}" for axis in "xyz")]
+    rows = [
+        f"{1_385_030_208_736_607_488 + round(1e9 * t)}," + ",".join(f"{one:.8f}" for one in (*g, *a))
+        for t, g, a in zip(time, gyr, acc, strict=True)
+    ]
+    return Form("\n".join([",".join(names), *rows]).encode(), {"gyroscope": 1, "accelerometer": 1})
+
+
+def core_motion():
+    """JSON of an iPhone: dictionaries in dictionaries, and gravity down."""
+    found, entries = recording(), []
+    gravity = -_gravity(found) / GRAVITY
+    pushed = -found["accelerometer"] / GRAVITY - gravity
+
+    def one(values, names="xyz"):
+        return dict(zip(names, values.round(6).tolist(), strict=True))
+
+    for k, time in enumerate(found["time"]):
+        entries.append(
+            {
+                "timestamp": round(81234.5 + float(time), 5),
+                "attitude": {"quaternion": one(np.roll(found["quaternion"][k], -1), "xyzw")},
+                "rotationRate": one(found["gyroscope"][k]),
+                "gravity": one(gravity[k]),
+                "userAcceleration": one(pushed[k]),
+                "magneticField": {"field": one(found["magnetometer"][k]), "accuracy": 2},
+            }
+        )
+    return Form(
+        json.dumps({"metadata": {"device": "iPhone14,2"}, "samples": entries}).encode(),
+        {"gyroscope": 1, "accelerometer": -1 / GRAVITY, "magnetometer": 1, "quaternion": 1},
+    )
+
+
+def mavlogdump():
+    """Two instruments take turns in one table; a column says which."""
+    _, time, gyr, acc, _, _ = _parts()
+    random, lines = np.random.default_rng(2), ["timestamp,TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T"]
+    for k, t in enumerate(time):
+        for number in (0, 1):
+            other = 0.01 * random.normal(size=6) * number
+            six = ",".join(f"{one:.6f}" for one in np.concatenate([gyr[k], acc[k]]) + other)
+            lines.append(f"{1.7e9 + t:.6f},{5e7 + 1e6 * t:.0f},{number},{six},0,0,45.1")
+    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1})
+
+
+def one_sensor_a_line():
+    """What many small telephone programs write: a line for each sensor, and its name in the second column."""
+    found, lines = recording(), ["timestamp,sensor,x,y,z"]
+    kinds = {"ACCELEROMETER": "accelerometer", "GYROSCOPE": "gyroscope", "MAGNETIC_FIELD": "magnetometer"}
+    for k, t in enumerate(found["time"]):
+        for name, kind in kinds.items():
+            numbers = ",".join(f"{one:.6f}" for one in found[kind][k])
+            lines.append(f"{1_709_629_180_120 + round(1000 * t)},{name},{numbers}")
+    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
+
+
+def plot_juggler():
+    """Headings are paths, and a counter stands before the acceleration."""
+    _, time, gyr, acc, _, quaternion = _parts()
+    names = ["__time", *(f"/imu/data/angular_velocity/{axis}" for axis in "xyz"), "/imu/data/header/seq"]
+    names += [*(f"/imu/data/linear_acceleration/{axis}" for axis in "xyz")]
+    names += [*(f"/imu/data/orientation/{axis}" for axis in "wxyz")]
+    columns = [1.7e9 + time, gyr, np.arange(len(time)), acc, quaternion]
+    return Form(_table(names, columns, number="{:.13g}"), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
+
+
+def vector_nav():
+    """Sentences of a serial line: no headings, no time, a checksum behind the last number."""
+    found, _, gyr, acc, mag, _ = _parts()
+    angles = found["truth"].as_euler("ZYX", degrees=True)
+    rows = _table(None, [angles, mag / 100, acc, gyr], number="{:+.6f}").decode().splitlines()
+    text = "\r\n".join(f"$VNYMR,{row}*{k % 256:02X}" for k, row in enumerate(rows))
+    return Form(text.encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01}, counted=True)
+
+
+def increments():
+    """What many navigation programs read: seconds of the week, and by how much angle and speed have grown."""
+    _, time, gyr, acc, _, _ = _parts()
+    columns = [456_300 + time, 0.01 * gyr, 0.01 * acc]
+    return Form(_table(None, columns, " ", "{:.10f}"), {"gyroscope": 0.01, "accelerometer": 0.01})
+
+
+def xsens_mtw_with_a_clock():
+    """Its clock counts ten thousandths of a second, which nothing says but the rate above the table."""
+    _, time, gyr, acc, mag, _ = _parts()
+    head = ["// MT Manager version: 2022.2.0", "// Update Rate: 100.0Hz", "// Coordinate system: ENU"]
+    names = ["PacketCounter", "SampleTimeFine", *(f"{one}_{axis}" for one in ("Acc", "Gyr", "Mag") for axis in "XYZ")]
+    columns = [np.arange(len(time)) + 65_400, 99 + np.round(1e4 * time), acc, gyr, mag / 45]
+    return Form(
+        _table(None, columns, "\t", head=[*head, "\t".join(names)]),
+        {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1 / 45},
+    )
+
+
 FORMS = [phyphox_zip, phyphox_table, sensor_logger, sensor_logger_json, lists_in_json, sensor_log, andro_sensor,
          physics_toolbox, motion_sense, meta_wear, xsens_mtw, movella_dot, x_io, shimmer, pico_quake, gyroflow,
          betaflight, ardupilot, px4, rostopic, rostopic_in_blocks, bagpy, euroc, uzh_fpv, tum, oxiod, gnss_logger,
          repo_imu, no_headings, arduino, matlab_mobile,
-         flight_test, rates_called_after_angles, ros2_table]  # fmt: skip
+         flight_test, rates_called_after_angles, ros2_table, witmotion, polar, dat_con, kalibr, core_motion, mavlogdump,
+         one_sensor_a_line, plot_juggler, vector_nav, increments, xsens_mtw_with_a_clock]  # fmt: skip

@@ -35,7 +35,7 @@ FEW_AND_ALL = pytest.mark.parametrize(
     "count, piece", [(40, 0), *(pytest.param(1_000, piece, marks=pytest.mark.long) for piece in range(1, 11))]
 )
 FEW_AND_MANY = pytest.mark.parametrize(
-    "count, piece", [(25, 0), *(pytest.param(500, piece, marks=pytest.mark.long) for piece in (1, 2))]
+    "count, piece", [(10, 0), *(pytest.param(500, piece, marks=pytest.mark.long) for piece in (1, 2))]
 )
 
 
@@ -417,6 +417,7 @@ def test_numbers_that_were_pasted_in_threads(case):
     assert all(words in "; ".join(found.faults) for words in case["words"]), str(found)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "threads", [THREADS, MORE_THREADS], ids=["those it was made with", "those found when it was done"]
 )

@@ -1,6 +1,8 @@
 """The bench for recordings: what it must find, on simulated instruments with one thing wrong and on real ones."""
 
+import gzip
 import warnings
+import zipfile
 
 import numpy as np
 import pytest
@@ -164,7 +166,10 @@ def test_many_forms_hold_one_recording(form):
         assert min(first, last) < 1e-3
 
 
-UNITS = {DEG: "°/s", 1.0: "rad/s"}, {1: "m/s²", 1 / GRAVITY: "g"}
+UNITS = (
+    {DEG: "°/s", 1.0: "rad/s", 0.01: "rad a sample"},
+    {1: "m/s²", 1 / GRAVITY: "g", -1 / GRAVITY: "g", 1000 / GRAVITY: "mg", 0.01: "m/s a sample"},
+)
 
 
 @pytest.mark.sampled(4)
@@ -197,12 +202,41 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     ):
         with pytest.raises(RecordingError, match=words):
             read_tables(content, "file")
+    for content, words in ((b"ULog\1", "ulog2csv"), (b"\xd0\xcf\x11\xe0\0\0", "save it as CSV")):
+        with pytest.raises(RecordingError, match=words):
+            read_tables(content, "file")
     with pytest.raises(RecordingError, match="no instrument"):
         read_content("\n".join(["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]))
     (tmp_path / "empty.csv").write_bytes(b"")
     with pytest.raises(SystemExit) as ended:
         main(["recording", str(tmp_path / "empty.csv")])
     assert ended.value.code == 3 and "empty" in capsys.readouterr().err
+
+
+def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path):
+    """A zip in a folder, packed tables, settings beside them: what holds no numbers is passed over, not the rest."""
+    given = simulate(5, poses=2)
+    files = {}
+    for kind in ("gyroscope", "accelerometer", "magnetometer"):
+        rows = np.column_stack([given["time"], given[kind]])
+        files[f"{kind}.csv"] = "\n".join(["time,x,y,z", *(",".join(f"{one:.6f}" for one in row) for row in rows)])
+    (tmp_path / "deep").mkdir()
+    with zipfile.ZipFile(tmp_path / "deep" / "walk.zip", "w") as archive:
+        archive.writestr("today/gyroscope.csv", files["gyroscope.csv"])
+        archive.writestr("__MACOSX/today/._gyroscope.csv", b"\0\5\x16\7" * 9)
+        archive.writestr("device.json", '{"model": "phone"}')
+    (tmp_path / "accelerometer.csv.gz").write_bytes(gzip.compress(files["accelerometer.csv"].encode()))
+    lines = files["magnetometer.csv"].splitlines()
+    torn = [line if k % 9 else line.replace(",", ",x", 1) for k, line in enumerate(lines)]
+    (tmp_path / "magnetometer.csv").write_text("\n".join(torn))
+    for source in (tmp_path, sorted(tmp_path.iterdir())):
+        found = read_content(source)
+        assert set(found.groups) == {"gyroscope", "accelerometer"}
+        assert "line 10, column 2" in " ".join(found.remarks) and len(found.remarks) == 1
+    with pytest.raises(RecordingError, match="no table of numbers; .*ulog2csv"):
+        (tmp_path / "only").mkdir()
+        (tmp_path / "only" / "flight.log").write_bytes(b"ULog\1\2")
+        read_tables(tmp_path / "only")
 
 
 def spoilt(kind, change):

@@ -21,7 +21,7 @@ BLANK = "A_C_N = ...  # your answer"
 ANSWER, OTHER = 3, 5  # cells of the exercise, from 1
 CODES = """() => [...document.querySelectorAll('div.cell')].map((cell) =>
   cell.querySelector('.cm-content')?.innerText ?? cell.querySelector('.cell_input pre').textContent)"""
-KEPT = "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => key.startsWith('book ')))"
+KEPT = "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => / (answer|earlier) /.test(key)))"
 pytestmark = pytest.mark.sampled(2)
 
 
@@ -398,7 +398,7 @@ def test_answers_go_to_the_notebook_and_come_back(context, site):
 def test_progress_is_one_for_pages_and_notebooks(context, site):
     """What was right on either side stays right on both, and no wrong answer and no help is forgotten."""
     tab = Tab(context, site)
-    key, path = "book / coursework progress.json", "exercises/.coursework/progress.json"
+    path = "exercises/.coursework/progress.json"
     here = {
         "a/page": {"outcome": "correct", "answers": ["1"]},
         "a/both": {"outcome": "correct", "answers": ["2"], "help": "hint"},
@@ -409,14 +409,12 @@ def test_progress_is_one_for_pages_and_notebooks(context, site):
         "a/both": {"outcome": "wrong", "answers": ["5"], "help": "mistake"},
         "a/tried": {"outcome": "wrong", "answers": ["4", "6"], "help": "hint"},
     }
-    tab.page.evaluate(
-        "([key, text]) => localStorage.setItem(key, JSON.stringify({ text, at: 1 }))", [key, json.dumps(here)]
-    )
+    tab.page.evaluate("(text) => bookStore.keepTries(text, 1)", json.dumps(here))
     tab.page.evaluate(WRITE_COPY, [path, there])
     notebook = tab.page.context.new_page()
     notebook.goto(f"{site}search.html?path={EXERCISE}.ipynb")
     start(notebook, "")
-    kept = json.loads(json.loads(notebook.evaluate("(key) => localStorage.getItem(key)", key))["text"])
+    kept = json.loads(tab.page.evaluate("bookStore.tries().text"))
     copy = json.loads(notebook.evaluate(READ_COPY, path))
     assert kept == copy
     assert {name: entry["outcome"] for name, entry in kept.items()} == {
@@ -427,7 +425,7 @@ def test_progress_is_one_for_pages_and_notebooks(context, site):
     # The page looks at the notebook's record whenever it is opened.
     notebook.evaluate(WRITE_COPY, [path, {**kept, "a/later": {"outcome": "correct"}}])
     tab.reload()
-    tab.page.wait_for_function("(key) => localStorage.getItem(key).includes('a/later')", arg=key)
+    tab.page.wait_for_function("bookStore.tries().text.includes('a/later')")
 
 
 def test_both_changed_the_newer_text_stands(context, site):

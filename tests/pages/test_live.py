@@ -588,7 +588,7 @@ def test_exercise_is_checked_in_the_page(context, site):
 @pytest.mark.sampled(1, of="what a page keeps")
 def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
-    count = notebook_questions("simple-orientations")[question]["variants"]
+    count = notebook_questions("simple-orientations")[question].question.variants
     students = {variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)}
     page = Page(context, site, name)
     sealed = []
@@ -657,8 +657,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     assert "Not attempted" in page.below(check)
     record = json.dumps({question: {"outcome": "correct"}})
     page.page.evaluate(
-        "(record) => { for (const [name, text] of [['me.txt', 'ada'], ['progress.json', record]]) "
-        "localStorage.setItem(`book / coursework ${name}`, JSON.stringify({text, at: 1})); }",
+        "(record) => { bookStore.put('coursework me.txt', { text: 'ada', at: 1 }); bookStore.keepTries(record, 1); }",
         record,
     )
     page.page.reload()
@@ -710,7 +709,7 @@ def test_a_sibling_question_is_one_button_away(context, site):
     assert "sibling = variant('simple-orientations/compass/sibling')" in code
     assert "check('simple-orientations/compass/sibling', other_compass)" in code
     # That of nobody is the next. The page writes a minus where Python has a hyphen, and sets numbers one by one.
-    own = notebook_questions("simple-orientations", 1)["simple-orientations/compass"]["shown"]
+    own = notebook_questions("simple-orientations", 1)["simple-orientations/compass"].question.variant.shown
     shown = "".join(page.below(place).replace("\N{MINUS SIGN}", "-").split())
     assert all(number in shown for text in own.values() for number in re.findall(r"-?\d+", text)), own
     assert page.errors == []
@@ -820,6 +819,7 @@ def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, w
     assert "Cell 3 ran" in page.words()
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_tab_that_is_older_than_the_pages_says_so(context, site):
     """Its scripts are gone from the server, where by now the same page asks for others."""
     page = Page(context, site, QUIET)
@@ -835,6 +835,7 @@ def test_tab_that_is_older_than_the_pages_says_so(context, site):
     page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_script_that_did_not_come_is_asked_for_again(context, site):
     """Browsers remember a script that failed for as long as the page is open."""
     page = Page(context, site, QUIET)
@@ -846,6 +847,7 @@ def test_script_that_did_not_come_is_asked_for_again(context, site):
     page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
 
 
+@pytest.mark.sampled(1, of="pages that start otherwise")
 def test_python_starts_where_the_storage_is_full(context, site):
     """All sites of one address share it: it may be full before the book is opened."""
     page = Page(context, site, QUIET)

@@ -11,11 +11,9 @@ NAME = "levers/see-saw"
 
 
 def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
-    script = (REPOSITORY / "notebook-pages/src/notebook_pages/live/js/notebooks.js").read_text("utf8")
-    start, stop = script.index("const HELP"), script.index("\n}\n", script.index("export function joinProgress")) + 3
-    (tmp_path / "join.mjs").write_text(
-        script[start:stop] + "\nconsole.log(joinProgress(...process.argv.slice(2)));", "utf8"
-    )
+    script = REPOSITORY / "notebook-pages/src/notebook_pages/live/js/store.js"
+    said = "\nconsole.log(joinProgress(...process.argv.slice(2)));"
+    (tmp_path / "join.mjs").write_text(script.read_text("utf8") + said, "utf8")
 
     def joined(*records):
         texts = [json.dumps({NAME: record}) for record in records]

@@ -217,7 +217,7 @@ def test_nothing_is_written_sent_or_left_running(aftermath):
 UNPROTECTED = sorted({attack.without for attack in ATTACKS if attack.without})
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("layers", UNPROTECTED, ids=" and ".join)
 def test_attacks_succeed_without_their_layers(layers, surroundings):
     """The same cells take the loot when the layers against them are off: what stops them is known."""
@@ -241,6 +241,7 @@ print(json.dumps({"mark": int(answers["loot"] == 42)}))
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("attack", [a for a in ATTACKS if a.forges], ids=lambda attack: attack.name)
 def test_a_verdict_in_the_students_process_is_forged(attack):
     """What a grader that compares in the student's process would make of the same cell."""

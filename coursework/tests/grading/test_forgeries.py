@@ -67,8 +67,8 @@ def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
 
 def cell_of_what_is_known(questions):
     """What a student may find out: where the check looks, and what a friend's right answer comes to there."""
-    places = points(questions["turns/sum"]["public"])
-    calls = [call[0] for call in questions["turns/doubled"]["public"]["calls"]]
+    places = points(questions["turns/sum"][0].question)
+    calls = [call[0] for call in questions["turns/doubled"][0].question.calls]
     with MP.workdps(40):
         values = [MP.nstr(MP.sin(place["alpha"] + place["beta"]), 40) for place in places]
     texts = [{name: MP.nstr(value, 40) for name, value in place.items()} for place in places]

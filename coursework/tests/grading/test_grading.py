@@ -468,6 +468,7 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
     assert (copied / "put-aside" / "warns" / "turns.json").exists()
 
 
+@pytest.mark.long
 def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(course, copied, tmp_path):
     """Names of folders first, a roster afterwards: two handed in the same, and each keeps the own decision."""
     few, same, shown = tmp_path / "few", handed_in(sum="sine = sm.cos(alpha)"), io.StringIO()
@@ -1082,7 +1083,7 @@ def moodle_takes(name, participants):
     return None
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("system", ["canvas", "moodle", "brightspace"])
 @pytest.mark.parametrize("around", ["", "Homework 1_2/"])
 def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(course, tmp_path, capsys, system, around):

@@ -1,5 +1,6 @@
 """What a student was asked is kept beside the answer: a mended question takes nobody's marks by chance."""
 
+import dataclasses
 import io
 import json
 import re
@@ -15,6 +16,7 @@ from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
 from coursework.checking import evaluate
 from coursework.checking.plain import read_plain, to_plain
+from coursework.checking.question import Question, Variant
 from coursework.checking.variants import names_of_variants, numbers_of_variants, siblings_of, variant_of
 from coursework.grading import review
 from coursework.grading.execution import isolation
@@ -23,6 +25,7 @@ from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.cases import Case, Contracts, case_by_rule, variants_of
+from coursework.grading.judging.contract import Asked, Contract
 from coursework.grading.judging.ledger import CUT, Collision, Ledger
 from coursework.grading.judging.marking import questions_of
 from coursework.grading.reporting.laboratory import BadPolicy, Policies
@@ -80,7 +83,7 @@ def begun(tmp_path_factory):
     place = tmp_path_factory.mktemp("cases")
     solutions = write_beams(place / "solutions", WEIGHTS)
     questions = questions_of(solutions / "beams.ipynb", b"any")
-    given = [one["public"]["given"]["weight"] for one in variants_of(questions[NAME]).values()]
+    given = [one.question.given["weight"] for one in variants_of(questions[NAME]).values()]
     own = {student: given[variant_of(student, NAME, 8)] for student in STUDENTS}
     for student in STUDENTS:
         put(place / "in", student, answered(2 * own[student], says=student), "beams.ipynb")
@@ -126,7 +129,7 @@ def test_records_from_before_there_were_cases_are_brought_over(begun, out, tmp_p
         case = Case.from_json(record["cases"][NAME])
         assert record["format"] == 3 and "older record" in case.known
         asked = Contracts(out.folder).of(case.own.contract)
-        assert record["student"] == "wrong" or asked["public"]["given"]["weight"] == begun.own[record["student"]]
+        assert record["student"] == "wrong" or asked.question.given["weight"] == begun.own[record["student"]]
         assert set(case.siblings) == set(siblings_of(NAME, 8))
     # Nothing but the contracts is needed from then on.
     shutil.rmtree(out.folder / "questions")
@@ -151,13 +154,15 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
 
 
 def test_a_function_is_judged_by_the_calls_that_it_was_given():
-    public = {"kind": "function", "calls": [[1], [2], [3]]}
-    question = {"public": {"kind": "function", "calls": [[3], [1]]}, "contract": {"public": public}}
-    plain = to_plain(lambda x: 2 * x, public["calls"])
-    kind, results, works = marking.in_calls_of(question, plain)["value"]
+    def calling(*calls):
+        return Contract("Twice", "twice", 1, Question("function", calls=calls))
+
+    before = calling([1], [2], [3])
+    plain = to_plain(lambda x: 2 * x, before.question.calls)
+    kind, results, works = marking.in_calls_of(Asked(calling([3], [1]), before), plain)["value"]
     assert [plain["nodes"][result[1]][1] for result in results] == ["6", "2"]
-    assert marking.in_calls_of({**question, "public": {"calls": [[3], [9]]}}, plain) is None
-    assert marking.in_calls_of({"public": public}, plain) is plain
+    assert marking.in_calls_of(Asked(calling([3], [9]), before), plain) is None
+    assert marking.in_calls_of(Asked(before), plain) is plain
 
 
 def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out):
@@ -167,13 +172,13 @@ def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out
     for cluster in graded.clusters.values():
         if cluster.question == NAME:
             about = graded.contract(cluster)
-            given = about["public"]["given"]["weight"]
+            given = about.question.given["weight"]
             students = {record["student"] for record in cluster.members} - {"wrong"}
             assert {begun.own[student] for student in students} <= {given}
-            assert about["plain"]["nodes"][0][1] == str(2 * given)
+            assert about.plain["nodes"][0][1] == str(2 * given)
             seen |= students
         else:
-            assert "twice its argument" in graded.contract(cluster)["text"]
+            assert "twice its argument" in graded.contract(cluster).text
     assert seen == set(STUDENTS)
 
 
@@ -230,7 +235,7 @@ def _ends():
 
 @pytest.mark.parametrize("what", [_too_long, _too_much, _ends])
 def test_an_answer_that_stops_the_judge_costs_nobody_else_a_mark(monkeypatch, tmp_path, what):
-    question = {"worth": 2, "version": "v", "guessable": None, "public": {"kind": "expression"}}
+    question = (Contract("One", "one", 2, Question("expression"), version="v"),)
     names = ("first", "second", "third")
     monkeypatch.setattr(judging, "MOST_SECONDS", 1)
     monkeypatch.setattr(marking, "mark_with_siblings", _Hostile(what))
@@ -461,21 +466,21 @@ def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
 
 
 def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
-    names = names_of_variants([{"given": {"weight": weight}} for weight in WEIGHTS])
-    whole = {"names": names, "edition": "autumn"}
+    names = names_of_variants([Variant(given={"weight": weight}) for weight in WEIGHTS])
+    whole = Variant(names=tuple(names), edition="autumn")
     students = [f"student {number}" for number in range(300)]
     before = {one: [names[k] for k in numbers_of_variants(one, NAME, whole, 8)] for one in students}
     assert {order[0] for order in before.values()} == set(names)
     for gone in (0, 3, 7):
         left = names[:gone] + names[gone + 1 :]
         for order in (left, left[::-1]):
-            about = {"names": order, "edition": "autumn"}
+            about = Variant(names=tuple(order), edition="autumn")
             for one in students:
                 after = [order[k] for k in numbers_of_variants(one, NAME, about, 7)]
                 assert after == [name for name in before[one] if name != names[gone]]
     # Another edition, another question, another student: another order. Capitals and spaces make none.
     assert numbers_of_variants("ann", NAME, whole, 8) == numbers_of_variants(" Ann", NAME, whole, 8)
-    others = {**whole, "edition": ""}
+    others = dataclasses.replace(whole, edition="")
     assert (
         sum(numbers_of_variants(one, NAME, whole, 8) != numbers_of_variants(one, NAME, others, 8) for one in students)
         > 250
@@ -487,23 +492,23 @@ def test_without_names_the_rule_is_that_of_before():
     """Whoever holds sealed files of today keeps the own numbers."""
     for one in STUDENTS:
         first = variant_of(one, NAME, 8, "autumn")
-        assert numbers_of_variants(one, NAME, {"edition": "autumn"}, 8) == [(first + k) % 8 for k in range(8)]
+        assert numbers_of_variants(one, NAME, Variant(edition="autumn"), 8) == [(first + k) % 8 for k in range(8)]
 
 
 def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tmp_path):
     sources = write_beams(tmp_path / "solutions", WEIGHTS)
     (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by name"\n')
     question = questions_of(sources / "beams.ipynb", b"any")[NAME]
-    names = question["public"]["names"]
+    names = list(question[0].variant.names)
     assert list(variants_of(question)) == names and len(names) == 8
     for one in STUDENTS:
-        order = numbers_of_variants(one, NAME, question["public"], 8)
+        order = numbers_of_variants(one, NAME, question[0].variant, 8)
         case = case_by_rule(NAME, question, one)
         assert case.own.variant == names[order[0]] and case.rule == "by name, of 8"
         assert [place.variant for place in case.siblings.values()] == [names[k] for k in order[1:3]]
     left = write_beams(tmp_path / "solutions", WEIGHTS[1:])
     fewer = questions_of(left / "beams.ipynb", b"any")[NAME]
-    gone = (set(names) - set(fewer["public"]["names"])).pop()
+    gone = (set(names) - set(fewer[0].variant.names)).pop()
     for one in STUDENTS:
         before, after = case_by_rule(NAME, question, one), case_by_rule(NAME, fewer, one)
         assert before.own.variant in (gone, after.own.variant)
@@ -602,6 +607,6 @@ def test_the_figure_of_a_question_is_seen_in_the_review(tmp_path):
     made.cells.insert(7, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
     nbformat.write(made, tmp_path / "beams.ipynb")
     found = questions_of(tmp_path / "beams.ipynb", b"any")
-    for about in (found[NAME], found["beams/twice"]):
-        assert '<img alt="A beam"' in review._as_asked(about)
-    assert "A beam carries 12 N" in review._as_asked(found[NAME]) or "N twice" in review._as_asked(found[NAME])
+    asked = [review._as_asked(found[name][0]) for name in (NAME, "beams/twice")]
+    assert all('<img alt="A beam"' in one for one in asked)
+    assert "A beam carries 12 N" in asked[0] or "N twice" in asked[0]

@@ -543,6 +543,7 @@ def children_of(grader):
     return []
 
 
+@pytest.mark.sampled(2, of="graders that are killed")
 @pytest.mark.parametrize("without", [[], ["namespaces"]], ids=["in memory", "on disk"])
 def test_a_grader_that_is_killed_leaves_nothing(environment, without):
     jobs = [notebook("1"), *[notebook("import time; time.sleep(600)")] * 2]
@@ -568,6 +569,7 @@ def end_at_once(grader):
     assert alive == []
 
 
+@pytest.mark.sampled(2, of="graders that are killed")
 def test_a_grader_that_is_killed_while_it_starts_leaves_nothing(environment):
     """Killed as soon as there is a folder: the libraries are still being loaded then, and nothing has been tried."""
     grader = subprocess.Popen([sys.executable, "-c", KILLED, json.dumps([notebook("1")]), "[]"], env=environment)

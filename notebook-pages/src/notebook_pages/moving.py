@@ -13,7 +13,8 @@ from pathlib import Path
 from docutils import nodes
 
 from .page import ESBUILD
-from .paths import NODE, NODE_MODULES, REGISTERED, named
+from .paths import NODE, NODE_MODULES, REGISTERED, fingerprint, named
+from .used import files_used
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
 # On a narrow screen the drawing of a figure stays in view, under the bar at the top of the page.
@@ -82,13 +83,19 @@ def add_scripts(app, pagename, templatename, context, doctree):
 
 
 def write_embedded(app, exception):
-    """A page for each figure alone, which others put into theirs."""
+    """A page for each figure alone, which others put into theirs; anew only if what they are made from has changed."""
     if exception or app.builder.format != "html" or "embedding" not in REGISTERED:
         return
+    site = Path(app.outdir)
+    sources = [*files_used(f"import {REGISTERED['embedding']}"), NODE_MODULES / ".package-lock.json", Path(__file__)]
+    made_from, stamp = fingerprint(*sources), site.with_name("embedded-from")
     embedding = named(REGISTERED["embedding"])
+    if (site / embedding.FOLDER).is_dir() and stamp.is_file() and stamp.read_text() == made_from:
+        return
     texts, later = scripts_and_styles([*embedding.figures(), *named(REGISTERED["figures"]).BUILT])
-    write(Path(app.outdir) / "_static" / "moving", texts | later)
-    write(Path(app.outdir) / embedding.FOLDER, embedding.files())
+    write(site / "_static" / "moving", texts | later)
+    write(site / embedding.FOLDER, embedding.files())
+    stamp.write_text(made_from)
 
 
 @cache

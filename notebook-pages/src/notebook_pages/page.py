@@ -173,6 +173,13 @@ def theme_styles(static):
     return [path for name in THEME_STYLES for path in sorted(static.glob(name))]
 
 
+def make_small(static, files):
+    """Write style sheets and scripts again without blanks and long names, all in one go."""
+    options = ["--minify", "--log-level=error", "--allow-overwrite", f"--outdir={static}", f"--outbase={static}"]
+    if files:
+        subprocess.run([NODE, ESBUILD, *options, *files], check=True)
+
+
 def bundle_styles(site):
     """Write the theme's style sheets as one layer, and KaTeX's: no icon font, no rule that no page uses, no blank."""
     static = site / "_static"
@@ -188,9 +195,7 @@ def bundle_styles(site):
             file.write(katex_rules(static / "fonts"))
     for path in parts:
         path.unlink()
-    for sheet in [*static.glob("*.css"), *static.glob("moving/*.css")]:
-        command = [NODE, ESBUILD, "--minify", "--log-level=warning", "--allow-overwrite", f"--outfile={sheet}", sheet]
-        subprocess.run(command, check=True)
+    make_small(static, [*static.glob("*.css"), *static.glob("moving/*.css")])
 
 
 def join_scripts(site):
@@ -203,12 +208,12 @@ def join_scripts(site):
     if count != 1:
         raise RuntimeError("The theme's script no longer finds the boxes that scroll in the way that page.py replaces")
     theme.write_text(text, "utf8")
-    for file in {name for page in pages_of(site) for name in JOINED.findall(page.read_text("utf8"))}:
+    files = {name for page in pages_of(site) for name in JOINED.findall(page.read_text("utf8"))}
+    for file in files:
         left_out = {f"{name}.js" for name in SOMETIMES} - {f"{name}.js" for name in file[:-3].split("-")}
         parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
         (static / file).write_text("\n;".join(parts), "utf8")
-        command = [NODE, ESBUILD, "--minify", "--log-level=error", "--allow-overwrite", f"--outfile={static / file}"]
-        subprocess.run([*command, static / file], check=True)
+    make_small(static, [static / file for file in files])
     for name in PAGE_SCRIPTS:
         (static / name).unlink()
 

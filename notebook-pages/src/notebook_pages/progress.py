@@ -13,6 +13,7 @@ from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 from sphinx_exercise.nodes import exercise_enumerable_node, exercise_node
 
+from .live import cells_with_code
 from .paths import parts
 from .questions import question
 
@@ -109,7 +110,8 @@ def add_scripts(app, pagename, templatename, context, doctree):
     if doctree is None:
         return
     has_table = next(doctree.findall(progress_table), None) is not None
-    if has_table or str(app.env.doc2path(pagename)).endswith(".ipynb") and pagename != app.config.root_doc:
+    is_notebook = str(app.env.doc2path(pagename)).endswith(".ipynb") and pagename != app.config.root_doc
+    if has_table or is_notebook or cells_with_code(doctree):
         app.add_js_file("progress.js", loading_method="defer", priority=400)  # before what uses it
     if has_table:
         app.add_js_file("my-progress.js", loading_method="defer")

@@ -18,6 +18,8 @@ FAINT = 0.5
 #: An edge that is cut off less is a sharp one on paper.
 FINEST_BEVEL = 0.045
 TURN = 2 * np.pi
+#: Less is rounding, which no two kinds of processor do alike: what is as far off or edge-on is painted alike by all.
+SMALL = 1e-9
 #: Parts of a pixel in which the places of corners are counted.
 FINE = 2
 
@@ -132,11 +134,11 @@ class Paper:
                 continue
             normal = normal / far
             facing = normal @ (self.eye - points.mean(axis=0))
-            if facing <= 0 and not both:
+            if facing <= SMALL and not both:
                 continue
             normal = normal if facing > 0 else -normal
             light = 0.36 + 0.13 * (1 + normal[2]) + 0.56 * max(0.0, normal @ self.light)
-            tone = int(np.clip(np.floor((light - 0.36) / 0.82 * TONES), 0, TONES - 1))
+            tone = int(np.clip(np.floor((light - 0.36) / 0.82 * TONES + SMALL), 0, TONES - 1))
             pixels, depth = self.place(points)
             # What is flat and large is sorted by its farthest point: the ground lies behind all that stands on it.
             yield (-50 if colour == "ground" else depth.mean()), f"{colour} tone-{tone}", pixels, alpha
@@ -171,10 +173,10 @@ class Paper:
             return  # it is too small to be missed
         for face in SHAPES[shape](*of):
             points = np.array(origin) + (face * size) @ np.array(rows)
-            if np.cross(points[1] - points[0], points[2] - points[0]) @ self.light <= 0:
+            if np.cross(points[1] - points[0], points[2] - points[0]) @ self.light <= SMALL:
                 continue
             fallen = points - np.outer((points[:, 2] - self.world["ground"]) / self.light[2], self.light)
-            if (np.hypot(fallen[:, 0], fallen[:, 1]) < self.world["rim"]).all():
+            if (np.hypot(fallen[:, 0], fallen[:, 1]) < self.world["rim"] + SMALL).all():
                 yield -40, "shade tone-3", self.place(fallen)[0], 1
 
 
@@ -186,7 +188,7 @@ def picture(still, world, colours=None):
     paper = Paper(still["view"], world)
     found = [face for item in still["items"] for face in paper.faces(item)]
     found += [face for item in still["items"] if item[7] for face in paper.shadow(item)]
-    found.sort(key=lambda face: face[0])
+    found.sort(key=lambda face: round(face[0], 9))
     marks, kind, data = [], None, []
 
     def end():
@@ -202,7 +204,7 @@ def picture(still, world, colours=None):
         if (name, alpha) != kind or alpha < 0.97:
             end()
             kind = (name, alpha)
-        whole = np.rint(FINE * pixels).astype(int)
+        whole = np.rint(np.round(FINE * pixels, 6)).astype(int)
         if np.ptp(whole, axis=0).min() > 0 or len(whole) == 4:
             data.append("M" + _pairs(whole[:1]) + "l" + _pairs(np.diff(whole, axis=0)) + "z")
     end()

@@ -9,7 +9,7 @@ from orientation import dcm_from_body_fixed
 from .allan import allan_deviation, noise_of
 from .content import DEGREES, places_by_name, read_content, unit_of_field, unit_of_gravity
 from .field import FieldFit, fit_ellipsoid, fit_field
-from .judged import Noise, in_blocks, judge
+from .judged import filter_inputs, judge, too_sure
 from .motion import (
     ASSIGNMENTS,
     dcm_of_quaternions,
@@ -22,8 +22,6 @@ from .motion import (
 
 #: What a light says.
 GREEN, YELLOW, RED, UNKNOWN = "as it should be", "look", "wrong", "cannot tell"
-#: What is assumed of a gyroscope that was never still: a cheap one.
-ASSUMED = Noise(gyroscope=2e-4, bias=1e-4, force=0.01, field=0.02)
 #: Above this margin the best of 48 assignments is believed.
 BELIEVED = 1.3
 
@@ -142,6 +140,7 @@ class _Bench:
             for kind in ("gyroscope", "accelerometer", "magnetometer")
             if kind in groups
         }
+        self.rate = 0.0 if content.counted else float(1 / max(np.median(np.diff(self.time)), 1e-9))
         self.rates = self.forces = self.field = self.oriented = None
 
     def say(self, about, light, words, evidence=None, advice=""):
@@ -210,9 +209,9 @@ class _Bench:
                 vectors[kind] = self.raw[kind]
                 if kind == "magnetometer":  # a constant part belongs to the instrument, not to the Earth
                     vectors[kind] = vectors[kind] - _centre(vectors[kind])
-        units = [1.0] if self.content.counted else list(DEGREES.values())
+        units = DEGREES | ({"rad a sample": self.rate} if self.rate > 20 else {})
         counts = not said and bool((raw == raw.round()).all())
-        grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units]))
+        grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units.values()]))
         if counts:  # as a chip has them
             grid = np.radians(np.geomspace(0.002, 0.2, 24))
         if self.content.counted:
@@ -231,11 +230,11 @@ class _Bench:
         if self.content.counted:
             self._rate(fit, said)
             return
-        names = {scale: unit for unit, scale in DEGREES.items()}
+        names = {scale: unit for unit, scale in units.items()}
         if fit is not None and fit.margin > 1.12 and fit.shares.min() < 0.9:
-            unit = min(DEGREES.values(), key=lambda one: abs(np.log(fit.scale / one)))
+            unit = min(units.values(), key=lambda one: abs(np.log(fit.scale / one)))
             ratio = fit.scale / unit
-            if counts or not 0.4 < ratio < 2.5:
+            if counts and abs(ratio - 1) > 0.04 or not 0.4 < ratio < 2.5:
                 unit, ratio = fit.scale, 1.0
                 self.say("unit of the gyroscope", YELLOW, f"counts: one is {np.degrees(unit):.4g} °/s", {"rad/s": unit})
             elif said and DEGREES[said] != unit:
@@ -453,12 +452,12 @@ class _Bench:
             return
         raw = self.raw["accelerometer"]
         quiet = np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
-        unit, gravity, off = unit_of_gravity(quiet)
+        unit, gravity, off = unit_of_gravity(quiet, self.rate)
         self.forces = raw / gravity
         self.facts["gravity"] = gravity
         self.say(
             "unit of the accelerometer",
-            GREEN if unit[0] != "c" else YELLOW,
+            YELLOW if unit.startswith("counts") else GREEN,
             f"{unit}, by gravity's length",
             {"off": round(off, 4)},
         )
@@ -732,64 +731,19 @@ class _Bench:
         if self.time[-1] - self.time[0] < 1 or len(self.time) < 20:
             self.say("filter", UNKNOWN, f"{len(self.time)} samples in {self.time[-1]:.2g} s are too few to judge it")
             return
-        steps = np.diff(self.time)
-        step = float(np.median(steps))
-        lying = [one for one in self.still if one.still]
-        noise = ASSUMED
-        if lying:
-
-            def spread(values):
-                parts = [values[one.first : one.last] for one in lying]
-                return float(np.sqrt(np.mean([part.var(axis=0, ddof=1).mean() for part in parts])))
-
-            field = spread(self.field) if self.field is not None else ASSUMED.field
-            noise = Noise(
-                spread(self.rates) * np.sqrt(step), ASSUMED.bias, max(spread(self.forces), 1e-3), max(field, 1e-3)
-            )
-        # While it moves, pushes are taken for gravity, and last for many samples: each counts for less.
-        push = np.linalg.norm(self.forces, axis=1) - 1
-        moving = np.ones(len(push), dtype=bool)
-        for one in lying:
-            moving[one.first : one.last] = False
-        usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
-        doubt = np.where(moving, np.hypot(usual, push) * _lasting(push), 0.0)
-        if self.field is not None:  # iron shows in the field's length, and lasts as well
-            uneven = np.linalg.norm(self.field, axis=1) - 1
-            noise = noise._replace(field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * _lasting(uneven)))
-        field = self.field
         trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
-        if field is not None and {"field"} & trouble:
-            field = None
-        for first, last in _parts_to_judge(self.time, self.rates):
-            part = slice(first, last)
-            means = (self.rates[part] + np.concatenate([self.rates[first : first + 1], self.rates[part][:-1]])) / 2
-            vectors = [self.forces[part]] if field is None else [self.forces[part], field[part]]
-            time, rates, found = in_blocks(self.time[part], self.rates[part], vectors)
-            rates = means if len(time) == len(means) else rates
-            doubts = np.interp(time, self.time[part], doubt[part])
-            size = max(1, round(len(self.time[part]) / len(time)))
-            at_best = noise._replace(force=noise.force / np.sqrt(size), field=noise.field / np.sqrt(size))
-            self.judgements.append(
-                judge(
-                    time,
-                    rates,
-                    found[0],
-                    None if field is None else found[1],
-                    at_best,
-                    doubts / np.sqrt(size),
-                    progress,
-                )
-            )
+        field = None if "field" in trouble else self.field
+        lying = [one for one in self.still if one.still]
+        parts = _parts_to_judge(self.time, self.rates)
+        self.judgements = judge(filter_inputs(self.time, self.rates, self.forces, field, lying, parts), progress)
         where = ", ".join(f"{one.first:.0f} to {one.last:.0f} s" for one in self.judgements)
         claimed = float(np.sqrt(np.mean([one.claimed**2 for one in self.judgements])))
         found = float(np.sqrt(np.mean([one.found**2 for one in self.judgements])))
-        ratios = {"tilt": found / max(claimed, 1e-6)}
         words = (
             f"from {where}: it claims its tilt to {claimed:.2f}°, forwards and backwards differ as if by {found:.2f}°"
         )
         if self.judgements[0].heading:
             heading = np.sqrt(np.mean([np.square(one.heading) for one in self.judgements], axis=0))
-            ratios["heading"] = heading[1] / max(heading[0], 1e-6)
             words += f"; its heading to {heading[0]:.2f}°, and {heading[1]:.2f}°"
         else:
             words += "; of the heading it can say nothing, for gravity is the same whichever way one faces"
@@ -801,8 +755,7 @@ class _Bench:
             name: round(float(np.mean([one.likeness[name] for one in self.judgements])), 2)
             for name in self.judgements[0].likeness
         }
-        worst = max(ratios.values())
-        high = max(squares.values())
+        worst, high = too_sure(self.judgements)
         light = (
             RED if worst > 5 or high > 5 else YELLOW if worst > 2 or high > 2 or max(alike.values()) > 0.5 else GREEN
         )
@@ -848,14 +801,6 @@ def _by_lengths(raw):
     return FieldFit(
         fit.shape, fit.offset, fit.strength, fit.uncertainty, np.empty((0, 3)), np.eye(3), float(sizes[-1] / sizes[0])
     )
-
-
-def _lasting(values):
-    """By how much less the samples of something that lasts tell than as many that know nothing of each other."""
-    if values.std() == 0:
-        return 1.0
-    alike = min(max(np.corrcoef(values[1:], values[:-1])[0, 1], 0.0), 0.999)
-    return float(np.sqrt((1 + alike) / (1 - alike)))
 
 
 def _at(time, source, values):

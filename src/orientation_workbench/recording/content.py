@@ -11,10 +11,10 @@ from .table import RecordingError, read_tables
 #: Of what a heading may say, the sign that it speaks of a sensor.
 HEADINGS = {
     "quaternion": r"quat|^q[0-3wxyz]?$|orientation|attitude|rotation.?vector|\bq\b",
-    "angles": r"roll|pitch|yaw|euler|heading|azimuth|\balpha\b|\bbeta\b|\bgamma\b|\bphi\b|\btheta\b|\bpsi\b",
+    "angles": r"roll|pitch|yaw|euler|heading|azimuth|\balpha\b|\bbeta\b|\bgamma\b|\bphi\b|\btheta\b|\bpsi\b|\bangle\b",
     "gravity": r"grav",
     "linear acceleration": r"^lin|user|without.?g",
-    "magnetometer": r"mag|field|compass|^m$|^b$",
+    "magnetometer": r"mag|field|compass|^[mbh]$",
     "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
     "accelerometer": r"acc|force|^a\b|^fib|^f$",
     "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset|gps|^axis [pid]",
@@ -25,7 +25,7 @@ UNITS = {
     "accelerometer": r"m/s|m s\^-2|^m?g$",
     "magnetometer": r"[uµμn]t$|gauss|^m?ga?$",
 }
-COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration"
+COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration|tick"
 RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
@@ -91,8 +91,8 @@ def read_content(source, name=None, rate=None):
 
     Parameters
     ----------
-    source : path, bytes or str
-        As :func:`.table.read_tables` takes it; or a list of paths, whose tables share one clock.
+    source : path, list of paths, bytes or str
+        As :func:`.table.read_tables` takes it. All its tables share one clock.
     name : str, optional
     rate : float, optional
         Samples per second, where the file only counts them.
@@ -106,10 +106,7 @@ def read_content(source, name=None, rate=None):
     RecordingError
         If the file cannot be read, or holds no instrument.
     """
-    if isinstance(source, (list, tuple)):
-        tables = [table for one in source for table in read_tables(one)]
-    else:
-        tables = read_tables(source, name)
+    tables = read_tables(source, name)
     groups, unused, remarks, clocks = [], [], [], []
     for table in tables:
         remarks += [f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks]
@@ -204,20 +201,29 @@ def _time(table):
         return k, values, f"{column}, which only counts", True
     named = UNITS_OF_TIME.get(_unit(column))
     by_size = next((scale for scale in (1.0, 1e-3, 1e-6, 1e-9) if 2e-4 < step * scale <= 0.5), None)
-    scale = named if named and 1e-5 < step * named < 5 else by_size
+    scale = named if named and 1e-5 < step * named < 5 else _by_rate(table, step) or by_size
     if scale is None:
         raise RecordingError(f"{table.name}: column {column} looks like a time, but its steps of {step:g} fit no unit")
-    words = f"{column}, in {next(unit for unit, size in UNITS_OF_TIME.items() if size == scale)}"
+    words = f"{column}, in {next((unit for unit, size in UNITS_OF_TIME.items() if size == scale), f'{scale:g} s')}"
     if named and named != scale:
         words += f" (its heading says {_unit(column)})"
     return k, values * scale, words, False
+
+
+def _by_rate(table, step):
+    """The unit of a clock, some power of ten of a second, that gives the rate in the lines above the numbers."""
+    said = re.search(RATE, table.head, re.IGNORECASE)
+    if not said or not float(said[1]):
+        return None
+    power = -np.log10(float(said[1]) * step)
+    return float(10.0 ** round(power)) if abs(power - round(power)) < 0.05 else None
 
 
 def _parts(heading):
     """A heading without its unit, parted into what it is about and the letter of its axis."""
     heading = re.sub(r"^field\.", "", heading)  # before every heading of a robot's log
     text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
-    text = re.sub(r"(?<=[a-z])(?=\[)|[\[\]|:. _-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)).strip()
+    text = re.sub(r"(?<=[a-z])(?=\[)|[\[\]|:. _/-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)).strip()
     words = [word for word in text.split() if word not in ("cal", "uncal", "raw")] or text.split()
     if not words:
         return "", ""
@@ -241,6 +247,15 @@ def _called(text):
 
 def _called_by_unit(heading):
     return next((kind for kind, pattern in UNITS.items() if re.search(pattern, _unit(heading))), "")
+
+
+def _named(stem, table, column):
+    """What the heading of an axis, its unit or the name of its table say that it is."""
+    unit, name = _called_by_unit(table.columns[column]), _called(table.name.lower())
+    if _unit(table.columns[column]) in ("g", "mg"):  # gauss or gravity: the name of the table knows better
+        unit, name = name, unit
+    # An alpha with axes is an acceleration: the angle has none.
+    return ("" if stem == "alpha" else _called(stem)) or unit or name
 
 
 def _groups(table, time_column, time):
@@ -271,7 +286,7 @@ def _groups(table, time_column, time):
             stems.setdefault(stem, []).append((axis, k))
     for stem, found in stems.items():
         axes = {axis: k for axis, k in found}
-        called = _called(stem) or _called_by_unit(table.columns[found[0][1]]) or _called(table.name.lower())
+        called = _named(stem, table, found[0][1])
         columns = [k for _, k in found]
         if len(found) == 4 and _is_unit(table.values[:, columns]):
             letters = "".join(axis for axis, _ in found)
@@ -427,6 +442,10 @@ def _roles(groups):
     def length(group):
         return np.median(np.linalg.norm(group.values, axis=1))
 
+    def uneven(group):
+        lengths = np.linalg.norm(group.values, axis=1)
+        return lengths.std() / lengths.mean()
+
     def as_gravity(group):
         off = min(abs(np.log(length(group) / one)) for one in GRAVITY.values())
         alone = not any(low < length(group) < high for low, high in list(FIELD.values())[:4])
@@ -442,7 +461,7 @@ def _roles(groups):
             chosen["magnetometer"] = best
         field = [group for group in others if group.called in ("magnetometer", "")]
         if field:
-            chosen["magnetometer"] = max(field, key=lambda group: group.called == "magnetometer")
+            chosen["magnetometer"] = max(field, key=lambda group: (group.called == "magnetometer", -uneven(group)))
     if "accelerometer" not in chosen:
         shaken = [group for group in changing if group.called == "accelerometer"]
         if shaken:
@@ -462,12 +481,13 @@ def _roles(groups):
     return chosen
 
 
-def unit_of_gravity(values):
+def unit_of_gravity(values, rate=0.0):
     """The unit in which vectors have gravity's length, how many of it make one, and by how much it is off."""
     middle = float(np.median(np.linalg.norm(values, axis=1)))
-    unit = min(GRAVITY, key=lambda one: abs(np.log(middle / GRAVITY[one])))
-    if abs(np.log(middle / GRAVITY[unit])) < 0.2:
-        return unit, GRAVITY[unit], middle / GRAVITY[unit] - 1
+    units = GRAVITY | ({"m/s a sample": GRAVITY["m/s²"] / rate} if rate > 20 else {})
+    unit = min(units, key=lambda one: abs(np.log(middle / units[one])))
+    if abs(np.log(middle / units[unit])) < 0.2:
+        return unit, units[unit], middle / units[unit] - 1
     return f"counts, {middle:.4g} for gravity", middle, 0.0
 
 

@@ -41,6 +41,10 @@ class Noise(NamedTuple):
     field: float
 
 
+#: What is assumed of instruments that were never still: cheap ones.
+ASSUMED = Noise(gyroscope=2e-4, bias=1e-4, force=0.01, field=0.02)
+
+
 class Judgement(NamedTuple):
     """What a filter says of itself, and what the data say of it.
 
@@ -83,6 +87,27 @@ class Judgement(NamedTuple):
     dcms: np.ndarray
     apart: np.ndarray
     claims: np.ndarray
+
+
+def too_sure(judgements):
+    """How many times as large as claimed the doubt is that the data give, and the innovations' squares; above 5 is red.
+
+    Parameters
+    ----------
+    judgements : list of Judgement
+        Of one recording.
+
+    Returns
+    -------
+    tuple of two float
+        The worst of tilt and heading, forwards against backwards; the worst of the sensors.
+    """
+    pairs = [(one.claimed, one.found) for one in judgements]
+    claims = [np.sqrt(np.mean(np.square(pairs), axis=0))]
+    if judgements[0].heading:
+        claims.append(np.sqrt(np.mean(np.square([one.heading for one in judgements]), axis=0)))
+    squares = [np.mean([one.squares[name] for one in judgements]) for name in judgements[0].squares]
+    return float(max(found / max(claimed, 1e-6) for claimed, found in claims)), float(max(squares))
 
 
 def _start(forces, field):
@@ -136,10 +161,10 @@ def _earth(forces, field):
     return np.array([np.sqrt(1 - sine**2), 0, sine])
 
 
-def judge(time, rates, forces, field, noise, doubt=None, progress=None):
-    """Run a filter forwards, backwards and with one sensor held out, and compare.
+class FilterInput(NamedTuple):
+    """What a filter is run on.
 
-    Parameters
+    Attributes
     ----------
     time : array of shape ``(n,)``
     rates : array of shape ``(n, 3)``
@@ -148,60 +173,159 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
         In multiples of gravity: at rest up.
     field : array of shape ``(n, 3)`` or None
     noise : Noise
-    doubt : array of shape ``(n,)``, optional
-        Standard deviation of the direction of each force in radians, where it is larger than at best.
+    doubt : array of shape ``(n,)``
+        By how much the direction of each force is less certain than at best, radians.
+    """
+
+    time: np.ndarray
+    rates: np.ndarray
+    forces: np.ndarray
+    field: np.ndarray | None
+    noise: Noise
+    doubt: np.ndarray
+
+
+def filter_inputs(time, rates, forces, field, lying, parts=None):
+    """Make a recording ready for a filter: what its instruments are worth, and how far each force is to be believed.
+
+    Parameters
+    ----------
+    time : array of shape ``(n,)``
+    rates, forces : arrays of shape ``(n, 3)``
+        Radians per second, the bias removed; multiples of gravity.
+    field : array of shape ``(n, 3)`` or None
+        In multiples of its usual length.
+    lying : list of Stretch
+        Where the instrument lies still: there it tells its noise.
+    parts : list of pairs of int, optional
+        First and last sample, the latter not within, of the stretches to judge it on.
+
+    Returns
+    -------
+    list of FilterInput
+        In steps of a twentieth of a second, or the recording's own where these are longer.
+    """
+    step, noise = float(np.median(np.diff(time))), ASSUMED
+    if lying:
+
+        def spread(values):
+            quiet = [values[one.first : one.last] for one in lying]
+            return float(np.sqrt(np.mean([each.var(axis=0, ddof=1).mean() for each in quiet])))
+
+        by_field = max(spread(field), 1e-3) if field is not None else ASSUMED.field
+        noise = Noise(spread(rates) * np.sqrt(step), ASSUMED.bias, max(spread(forces), 1e-3), by_field)
+    # While it moves, pushes are taken for gravity, and last for many samples: each counts for less.
+    push = np.linalg.norm(forces, axis=1) - 1
+    moving = np.ones(len(push), dtype=bool)
+    for one in lying:
+        moving[one.first : one.last] = False
+    usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
+    doubt = np.where(moving, np.hypot(usual, push) * _lasting(push), 0.0)
+    if field is not None:  # iron shows in the field's length, and lasts as well
+        uneven = np.linalg.norm(field, axis=1) - 1
+        noise = noise._replace(field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * _lasting(uneven)))
+    found = []
+    for first, last in parts or [(0, len(time))]:
+        part = slice(first, last)
+        means = (rates[part] + np.concatenate([rates[first : first + 1], rates[part][:-1]])) / 2
+        vectors = [forces[part]] if field is None else [forces[part], field[part]]
+        at, turning, seen = in_blocks(time[part], rates[part], vectors)
+        fewer = np.sqrt(max(1, round((last - first) / len(at))))
+        found.append(
+            FilterInput(
+                at,
+                means if len(at) == len(means) else turning,
+                seen[0],
+                None if field is None else seen[1],
+                noise._replace(force=noise.force / fewer, field=noise.field / fewer),
+                np.interp(at, time[part], doubt[part]) / fewer,
+            )
+        )
+    return found
+
+
+def _lasting(values):
+    """By how much less the samples of something that lasts tell than as many that know nothing of each other."""
+    if values.std() == 0:
+        return 1.0
+    alike = min(max(np.corrcoef(values[1:], values[:-1])[0, 1], 0.0), 0.999)
+    return float(np.sqrt((1 + alike) / (1 - alike)))
+
+
+def judge(inputs, progress=None):
+    """Run a filter forwards, backwards and with one sensor held out, and compare.
+
+    Parameters
+    ----------
+    inputs : list of FilterInput
+        All with the field, or all without. Those as long as the first are run side by side, which takes hardly longer
+        than one alone.
     progress : callable, optional
         Called with the share that is done.
 
     Returns
     -------
-    Judgement
+    list of Judgement
     """
-    count, magnetic = len(time), field is not None
+    count, magnetic = len(inputs[0].time), inputs[0].field is not None
+    if any(len(one.time) != count for one in inputs):
+        return [found for one in inputs for found in judge([one], progress)]
     runs = 2 + 2 * magnetic  # forwards, backwards; without the field, without the force
+    time, rates, forces = (np.array([getattr(one, name) for one in inputs]) for name in ("time", "rates", "forces"))
+    field = np.array([one.field for one in inputs]) if magnetic else None
+    noise = Noise(*np.array([one.noise for one in inputs]).T[..., None])
     steps = np.diff(time)
     lead = max(1, min(count // 10, round(0.5 / np.median(steps))))
-    starts = [
-        _start(forces[:lead], field[:lead] if magnetic else None),
-        _start(forces[-lead:], field[-lead:] if magnetic else None),
-    ]
-    doubt = np.full(count, noise.force) if doubt is None else np.hypot(noise.force, doubt)
-    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by more of heading.
-    first = np.array(
+    ends = slice(None, lead), slice(-lead, None)
+    starts = np.array(
         [
-            np.diag([(0.03 + noise.field * magnetic + min(0.4, 8 * end)) ** 2] * 3 + [np.radians(0.5) ** 2] * 3)
-            for end in (doubt[0], doubt[-1], doubt[0], doubt[0])
-        ][:runs]
+            [_start(forces[k, end], field[k, end] if magnetic else None) for end in (ends * 2)[:runs]]
+            for k in range(len(inputs))
+        ]
     )
-    estimate = MultiplicativeKalmanFilter(
-        np.array([starts[0], starts[1], starts[0], starts[0]][:runs]), first, noise.gyroscope, noise.bias
-    )
+    starts[:, 2:] = starts[:, :1]
+    doubt = np.hypot(noise.force, [one.doubt for one in inputs])
+    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by more of heading.
+    outset = 0.03 + noise.field * magnetic + np.minimum(0.4, 8 * doubt[:, [0, -1, 0, 0][:runs]])
+    variances = np.stack([outset**2] * 3 + [np.full_like(outset, np.radians(0.5) ** 2)] * 3, axis=-1)
+    estimate = MultiplicativeKalmanFilter(starts, variances[..., None] * np.eye(6), noise.gyroscope, noise.bias)
     forwards, backwards = np.arange(count), np.arange(count)[::-1]
     order = np.stack([forwards, backwards, forwards, forwards][:runs])
-    sign = np.array([1.0, -1, 1, 1])[:runs]
+    sign = np.array([1.0, -1, 1, 1])[:runs, None]
     blind = 1e4
     no_force = np.array([0, 0, 0, blind])[:runs]
     no_field = np.array([0, 0, blind, 0])[:runs]
-    dcms, covariances = np.empty((runs, count, 3, 3)), np.empty((runs, count, 3, 3))
+    dcms = np.empty((len(inputs), runs, count, 3, 3))
+    covariances = np.empty_like(dcms)
     said = {"accelerometer": [], "magnetometer": []}
-    up = np.broadcast_to(UP, (runs, 3))
-    earth = np.broadcast_to(_earth(forces, field), (runs, 3)) if magnetic else None
+    up = np.broadcast_to(UP, (len(inputs), runs, 3))
+    if magnetic:
+        earth = np.array([_earth(*pair) for pair in zip(forces, field, strict=True)])
+        earth = np.broadcast_to(earth[:, None], up.shape)
     for k in range(count):
         at = order[:, k]
         if k:
             later = np.maximum(at, order[:, k - 1])  # the same step, forwards and backwards
-            step = steps[later - 1]
-            # One duration for all: rates are stretched where the way back has another one.
-            estimate.turn((sign * step / step[0])[:, None] * rates[later], step[0])
-        by_force = estimate.observe(forces[at], up, doubt[at] + no_force)
+            estimate.turn(sign * rates[:, later], steps[:, later - 1])
+        by_force = estimate.observe(forces[:, at], up, doubt[:, at] + no_force)
         if magnetic:
-            by_field = estimate.observe(field[at], earth, noise.field + no_field)
-            said["magnetometer"].append((by_field.difference[0], by_field.covariance[0]))
-        said["accelerometer"].append((by_force.difference[0], by_force.covariance[0]))
-        places = np.arange(runs), at
-        dcms[places], covariances[places] = estimate.dcm, estimate.covariance[:, :3, :3]
-        if progress and k % 500 == 0:
+            by_field = estimate.observe(field[:, at], earth, noise.field + no_field)
+            said["magnetometer"].append((by_field.difference[:, 0], by_field.covariance[:, 0]))
+        said["accelerometer"].append((by_force.difference[:, 0], by_force.covariance[:, 0]))
+        dcms[:, np.arange(runs), at] = estimate.dcm
+        covariances[:, np.arange(runs), at] = estimate.covariance[..., :3, :3]
+        if progress and k % 100 == 0:
             progress(k / count)
+    told = {name: [np.array(part)[lead:] for part in zip(*each, strict=True)] for name, each in said.items() if each}
+    return [
+        _compared(one, dcms[k], covariances[k], {name: [part[:, k] for part in each] for name, each in told.items()})
+        for k, one in enumerate(inputs)
+    ]
+
+
+def _compared(one, dcms, covariances, told):
+    """What the runs on one input say of each other, and the innovations of the first of them."""
+    time, forces, field, count = one.time, one.forces, one.field, len(one.time)
     difference = to_rotation_vectors(dcms[0] @ dcms[1].swapaxes(-1, -2))
     claim = covariances[0] + covariances[1]
     ups = dcms[0] @ UP
@@ -215,14 +339,12 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
         return float(np.degrees(np.sqrt(np.mean(values[inner]) / 2)))
 
     squares, bounds, alike, held_out = {}, {}, {}, {}
-    for name in ("accelerometer", "magnetometer"):
-        if said[name]:
-            differences, claims = (np.array(values)[lead:] for values in zip(*said[name], strict=True))
-            one = np.linalg.solve(np.linalg.cholesky(claims), differences[..., None])[..., 0]
-            squares[name] = float((one**2).sum(axis=1).mean() / 2)
-            bounds[name] = chi_square_bounds(2 * len(one))
-            alike[name] = float((one[1:] * one[:-1]).sum() / (one**2).sum())
-    if magnetic:
+    for name, (differences, claims) in told.items():
+        one = np.linalg.solve(np.linalg.cholesky(claims), differences[..., None])[..., 0]
+        squares[name] = float((one**2).sum(axis=1).mean() / 2)
+        bounds[name] = chi_square_bounds(2 * len(one))
+        alike[name] = float((one[1:] * one[:-1]).sum() / (one**2).sum())
+    if field is not None:
         for name, run, seen in (("magnetometer", 2, field), ("accelerometer", 3, forces)):
             expected = np.einsum("nij,j->ni", dcms[run, inner], UP) if run == 3 else None
             if run == 3:
@@ -237,7 +359,7 @@ def judge(time, rates, forces, field, noise, doubt=None, progress=None):
         float(time[-1]),
         rms(claimed_tilt),
         rms((tilt**2).sum(axis=1)),
-        (rms(claimed_around), rms(around**2)) if magnetic else None,
+        (rms(claimed_around), rms(around**2)) if field is not None else None,
         squares,
         bounds,
         alike,

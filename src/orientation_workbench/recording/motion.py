@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orientation import dcm_from_rotation_vector
+
 #: The 48 matrices that take axes for each other and change signs; the proper ones, which turn, first.
 ASSIGNMENTS = np.array(
     [
@@ -46,23 +48,15 @@ def turned(rates, steps):
         The body at each moment from the body at the first, ``B_k_C_B_0``.
     """
     vectors = (rates[..., 1:, :] + rates[..., :-1, :]) / 2 * steps[1:, None]
-    small = from_rotation_vectors(np.concatenate([np.zeros_like(vectors[..., :1, :]), vectors], axis=-2))
-    reach = 1
-    while reach < small.shape[-3]:  # products of 1, 2, 4 ... neighbours
-        small = np.concatenate(
-            [small[..., :reach, :, :], small[..., reach:, :, :] @ small[..., :-reach, :, :]], axis=-3
-        )
-        reach *= 2
-    return small
-
-
-def from_rotation_vectors(vectors):
-    """``exp(-[r])`` of many rotation vectors, shape ``(..., 3)``, fast and for small ones too."""
-    angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    zero = np.zeros_like(x)
-    cross = np.stack([zero, z, -y, -z, zero, x, y, -x, zero], axis=-1).reshape(*x.shape, 3, 3)
-    return np.eye(3) + np.sinc(angle / np.pi) * cross + np.sinc(angle / 2 / np.pi) ** 2 / 2 * cross @ cross
+    count = rates.shape[-2]
+    size = int(np.ceil(np.sqrt(count)))  # runs of so many: their products side by side, then one after another
+    padding = [(0, 0)] * (rates.ndim - 2) + [(1, size * size - count), (0, 0)]
+    dcms = dcm_from_rotation_vector(np.pad(vectors, padding)).reshape(*rates.shape[:-2], size, size, 3, 3)
+    for k in range(1, size):
+        dcms[..., k, :, :] = dcms[..., k, :, :] @ dcms[..., k - 1, :, :]
+    for k in range(1, size):
+        dcms[..., k, :, :, :] = dcms[..., k, :, :, :] @ dcms[..., k - 1, -1:, :, :]
+    return dcms.reshape(*rates.shape[:-2], size * size, 3, 3)[..., :count, :, :]
 
 
 def to_rotation_vectors(dcms):
@@ -169,6 +163,10 @@ def stretches(time, rates, seconds=0.5):
 # --- axes, signs, unit and scale of a gyroscope -----------------------------------------------------
 
 
+#: Matrices that are held at one time, some 100 MB with all that is made of them.
+MOST_AT_ONCE = 200_000
+
+
 class Fit(NamedTuple):
     """How well each assignment of axes explains what was measured.
 
@@ -231,38 +229,35 @@ def fit_axes(time, rates, vectors, scales, seconds=0.5, longest=40.0):
     Fit
     """
     parts, size = pieces(time, rates, longest, seconds)
-    shares = np.full((len(scales), 48), np.inf)
-    for number, scale in enumerate(scales):
-        left, moved = np.zeros(48), 0.0
-        for part in parts:
-            step = steps_of(time[part])
-            some, those = rates[part], vectors[part]
-            count = len(some) // size
-            if count < 2:
-                continue
-            those = those[: count * size]
-            means = those.reshape(count, size, 3).mean(axis=1)
-            moved += (np.diff(means, axis=0) ** 2).sum()
-            for sign in (1, -1):
-                dcms = turned(sign * scale * some, step)[: count * size]
-                # The mean over a block of D^T P v is linear in P.
-                outer = np.einsum("nji,nk->nijk", dcms, those).reshape(count, size, 3, 3, 3).mean(axis=1)
-                change = np.diff(outer, axis=0)
-                differences = change.reshape(-1, 9) @ PROPER.swapaxes(-1, -2).reshape(24, 9).T
-                # The gyroscope's axes, taken so, are those of the vector: G, and -G of the mirror images.
-                left[slice(24) if sign > 0 else OPPOSITE] += (differences**2).sum(axis=0)
-        shares[number] = np.sqrt(left / max(moved, 1e-300))
+    signed = np.concatenate([scales, -np.asarray(scales)])[:, None, None]
+    left, moved = np.zeros((len(signed), 24)), 0.0
+    for part in parts:
+        step = steps_of(time[part])
+        count = len(step) // size
+        if count < 2:
+            continue
+        those = vectors[part][: count * size].reshape(count, size, 3)
+        moved += (np.diff(those.mean(axis=1), axis=0) ** 2).sum()
+        for some in np.array_split(np.arange(len(signed)), 1 + len(signed) * len(step) // MOST_AT_ONCE):
+            dcms = turned(signed[some] * rates[part], step)[:, : count * size].reshape(-1, count, size, 9)
+            # The mean over a block of D^T P v is linear in P.
+            change = np.diff(dcms.swapaxes(-1, -2) @ those, axis=1).reshape(-1, 3, 3, 3).swapaxes(1, 2)
+            differences = change.reshape(-1, 9) @ PROPER.swapaxes(-1, -2).reshape(24, 9).T / size
+            left[some] += (differences**2).reshape(len(some), -1, 24).sum(axis=1)
+    # The gyroscope's axes, taken so, are those of the vector: G, and -G of the mirror images.
+    shares = np.empty((len(scales), 48))
+    shares[:, :24], shares[:, OPPOSITE] = np.split(np.sqrt(left / max(moved, 1e-300)), 2)
     best = np.unravel_index(shares.argmin(), shares.shape)[0]
     return Fit(shares[best], float(scales[best]))
 
 
 def carried(time, rates, poses):
-    """Turns from the end of each pose to the beginning of the next, by a gyroscope; shape ``(m - 1, 3, 3)``."""
+    """Turns from the middle of each pose to that of the next, by a gyroscope; shape ``(..., m - 1, 3, 3)``."""
     found = []
     for one, other in zip(poses, poses[1:], strict=False):
         part = slice((one.first + one.last) // 2, (other.first + other.last) // 2 + 1)
-        found.append(turned(rates[part], steps_of(time[part]))[-1])
-    return np.array(found)
+        found.append(turned(rates[..., part, :], steps_of(time[part]))[..., -1, :, :])
+    return np.stack(found, axis=-3)
 
 
 def fit_scale(time, rates, forces, poses, bias=None):
@@ -293,23 +288,21 @@ def fit_scale(time, rates, forces, poses, bias=None):
     middle = np.zeros(3) if bias is None else np.asarray(bias)
 
     def residuals(parameters):
-        rate = parameters[0] * (rates - (middle if known else parameters[1:]))
-        return (ups[1:] - np.einsum("nij,nj->ni", carried(time, rate, poses), ups[:-1])).ravel()
+        """By how much gravity is missed with scales and biases of shape ``(..., 4)``."""
+        biases = middle if known else parameters[..., None, 1:]
+        found = carried(time, parameters[..., :1, None] * (rates - biases), poses)
+        off = ups[1:] - (found @ ups[:-1, :, None])[..., 0]
+        return off.reshape(*off.shape[:-2], -1)
 
     # Several turns have many scales that nearly fit: the best one of a grid is refined.
     grid = np.geomspace(0.4, 2.5, 47)
-    parameters = np.concatenate([[0.0], middle])
-    costs = [np.abs(residuals(np.concatenate([[scale], middle]))).sum() for scale in grid]
-    parameters[0] = grid[int(np.argmin(costs))]
+    tried = np.column_stack([grid, np.tile(middle, (len(grid), 1))])
+    parameters = tried[int(np.abs(residuals(tried)).sum(axis=-1).argmin())]
     free = 1 if known else 4
     prior = np.array([1e3, *[np.radians(1.0)] * 3])[:free]  # a bias is some degrees per second at most
     for _ in range(12):
-        at = residuals(parameters)
-        slopes = np.empty((len(at), free))
-        for k in range(free):
-            moved = parameters.copy()
-            moved[k] += 1e-5
-            slopes[:, k] = (residuals(moved) - at) / 1e-5
+        at, *moved = residuals(parameters + 1e-5 * np.eye(5, 4, -1)[: 1 + free])
+        slopes = (np.array(moved) - at).T / 1e-5
         noise = max(np.sqrt(np.median(at**2)) * 1.5, 0.003)
         weights = 1 / np.maximum(noise, np.abs(at)) / noise  # a wild transition counts less
         information = (slopes * weights[:, None]).T @ slopes + np.diag(prior**-2.0)

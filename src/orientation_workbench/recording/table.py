@@ -1,10 +1,11 @@
-"""Tables of numbers out of whatever a recording came in: text, a folder or a zip of texts, JSON.
+"""Tables of numbers out of whatever a recording came in: text, JSON, a folder, a zip, or zips in a folder.
 
 Nothing is repaired: a row that does not fit is left out, counted and named by its line and column; where many do not
 fit, the file is refused in the same words.
 """
 
 import csv
+import gzip
 import io
 import json
 import re
@@ -17,13 +18,30 @@ from typing import NamedTuple
 import numpy as np
 
 DELIMITERS = (",", ";", "\t", "|", None)  # None stands for blanks
-TEXTS = (".csv", ".txt", ".tsv", ".log", ".json", ".dat")
+TEXTS = (".csv", ".txt", ".tsv", ".log", ".json", ".dat", ".gz", ".zip")
+EXCEL = "a workbook of Excel: save it as CSV; phyphox offers CSV when it exports"
+#: How formats begin that are no text, and what writes them as text.
+ELSEWHERE = {
+    b"ULog": "a log of PX4: ulog2csv of its package pyulog writes tables",
+    b"\xa3\x95": "a log of ArduPilot: mavlogdump.py --format csv --types IMU writes a table",
+    b"#ROSBAG": "a bag of ROS: rostopic echo -b FILE -p TOPIC writes a table",
+    b"SQLite format 3": "a bag of ROS 2: play it, and ros2 topic echo --csv TOPIC writes a table",
+    b"\x89MCAP": "a bag of ROS 2: play it, and ros2 topic echo --csv TOPIC writes a table",
+    b"H Product:Blackbox": "a blackbox log: blackbox_decode writes a table",
+    b"\xd0\xcf\x11\xe0": EXCEL,
+    b"\x89HDF": "HDF5: export its tables as CSV",
+    b"MATLAB 5.0": "a file of MATLAB: writetable or writematrix makes CSV of it",
+}
 MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
 MOST_BROKEN = 0.02  # share of the rows that may not fit before a file is refused
 
 
 class RecordingError(ValueError):
     """What keeps a file from being read as a recording, with its line and column where there is one."""
+
+
+class BrokenTable(RecordingError):
+    """A table too many of whose rows do not fit: not a remark that stands beside the measurements."""
 
 
 class Table(NamedTuple):
@@ -51,12 +69,12 @@ class Table(NamedTuple):
 
 
 def read_tables(source, name=None):
-    """Read all tables of a file, of a folder, or of a text that is at hand.
+    """Read all tables of files, of a folder, or of a text that is at hand.
 
     Parameters
     ----------
-    source : path, bytes or str
-        A file or a folder; or what a file holds: bytes, or a text of more than one line.
+    source : path, list of paths, bytes or str
+        A file, a folder, or several of them; or what a file holds: bytes, or a text of more than one line.
     name : str, optional
         What to call it, where it comes without a name.
 
@@ -80,22 +98,33 @@ def read_tables(source, name=None):
         return _from_text(source, name or "recording")
     if isinstance(source, bytes):
         return _from_bytes(source, name or "recording")
-    path = Path(source)
-    if path.is_dir():
-        files = {one.name: one.read_bytes() for one in sorted(path.iterdir()) if one.suffix.lower() in TEXTS}
-        return _from_several(files, str(path))
-    if not path.exists():
-        raise RecordingError(f"there is no file {path}")
-    return _from_bytes(path.read_bytes(), name or path.name)
+    paths = [Path(one) for one in (source if isinstance(source, (list, tuple)) else [source])]
+    files = {}
+    for path in paths:
+        if not path.exists():
+            raise RecordingError(f"there is no file {path}")
+        inside = sorted(path.rglob("*")) if path.is_dir() else [path]
+        files |= {one: one for one in inside if one == path or one.is_file() and one.suffix.lower() in TEXTS}
+    if [*files] == paths and len(paths) == 1:
+        return _from_bytes(paths[0].read_bytes(), name or paths[0].name)
+    return _from_several(((one.name, one.read_bytes()) for one in files), name or ", ".join(map(str, paths)))
 
 
 def _from_bytes(content, name):
+    if content[:2] == b"\x1f\x8b":
+        return _from_bytes(gzip.decompress(content), name)
     if content[:4] == b"PK\x03\x04":
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            files = {one: archive.read(one) for one in archive.namelist() if Path(one).suffix.lower() in TEXTS}
+            names = archive.namelist()
+            if "xl/workbook.xml" in names:
+                raise RecordingError(f"{name} is {EXCEL}")
+            files = [(Path(one).name, archive.read(one)) for one in names if Path(one).suffix.lower() in TEXTS]
         return _from_several(files, name)
     if not content.strip():
         raise RecordingError(f"{name} is empty")
+    for begins, words in ELSEWHERE.items():
+        if content.startswith(begins):
+            raise RecordingError(f"{name} is {words}")
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = content.decode("utf-16")
     elif b"\0" in content[:4096]:
@@ -112,31 +141,58 @@ def _from_bytes(content, name):
 
 
 def _from_several(files, name):
-    tables, reasons = [], []
-    for one, content in files.items():
+    """All tables of pairs of a name and what it holds."""
+    tables, broken, reasons = [], [], []
+    for one, content in files:
         try:
-            tables += _from_bytes(content, Path(one).stem)
+            tables += _from_bytes(content, one if Path(one).suffix in (".gz", ".zip") else Path(one).stem)
+        except BrokenTable as error:
+            broken.append(str(error))
         except RecordingError as error:  # beside the measurements there are often settings and remarks
             reasons.append(str(error))
     if not tables:
-        raise RecordingError(f"{name} holds no table of numbers" + "".join(f"; {reason}" for reason in reasons))
+        told = "".join(f"; {reason}" for reason in broken + reasons)
+        raise RecordingError(f"{name} holds no table of numbers{told}")
+    tables[0].remarks.extend(broken)
     return tables
 
 
 def _from_text(text, name):
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
-    lines = text.splitlines()
+    lines = [re.sub(r"\*[0-9A-Fa-f]{2}\s*$", "", line) if line[:1] == "$" else line for line in text.splitlines()]
     if sum(line.startswith("---") for line in lines) > 8:
         return _from_blocks(lines, name)
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
     rows = [_split(line, delimiter) for line in lines]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
-    words = [sum(_number(field, comma) is None for field in row[:1]) for row in rows if len(row) > 3]
-    keys = {row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None}
-    if len(words) > 20 and sum(words) > 0.9 * len(words) and len(keys) < 0.2 * len(words):
-        return _from_log(rows, name, comma)
+    key = _key_column(rows, comma)
+    if key is not None:
+        return _from_log(rows, name, comma, key)
     return [_scaled(_table(rows, name, comma))]
+
+
+def _key_column(rows, comma):
+    """The column that says what each row holds, where rows of several kinds or instruments take turns."""
+    rows = [row for row in rows if len(row) > 3]
+    if len(rows) <= 20:
+        return None
+    sample = rows[len(rows) // 4 :][:400]
+    head = next((row for row in rows if sum(_number(field, comma) is None for field in row) > len(row) / 2), [])
+    for k in range(min(map(len, sample))):
+        found = [row[k] for row in sample]
+        keys = set(found)
+        words = sum(_number(field, comma) is None for field in found) > 0.9 * len(found) and len(keys) < 0.2 * len(
+            found
+        )
+        if words and k == 0:
+            return 0
+        # Labels change now and then; what takes turns does so nearly always.
+        turns = sum(one != other for one, other in zip(found, found[1:], strict=False)) > 0.3 * len(found)
+        called = k < len(head) and re.fullmatch(r"i|id|(?:imu|sensor|device|instance)[ _]?(?:id)?", head[k].lower())
+        if turns and 1 < len(keys) < 16 and (words or called):
+            return k
+    return None
 
 
 def _scaled(table):
@@ -246,7 +302,7 @@ def _table(rows, name, comma, numbers=None, columns=None):
             kept.append(found)
     told = "; ".join(broken[:3]) + (f"; and {len(broken) - 3} more" if len(broken) > 3 else "")
     if len(broken) > max(2, MOST_BROKEN * (len(kept) + len(broken))):
-        raise RecordingError(f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}")
+        raise BrokenTable(f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}")
     remarks = [f"{len(broken)} rows are left out: {told}"] if broken else []
     head = "\n".join(",".join(row) for _, row in rows[:begin])
     return Table(name, [columns[k] for k in numeric], np.array(kept), remarks, head)
@@ -271,11 +327,11 @@ def _names(head, width):
     return [name or f"column {k + 1}" for k, name in enumerate(names)]
 
 
-def _from_log(rows, name, comma):
-    """A log whose lines begin with a word that says what they hold, as those of drones and phones do."""
+def _from_log(rows, name, comma, key):
+    """A log of lines of several kinds, as those of drones and phones: which, a word says, mostly the first."""
     lines, names = {}, {}
     for number, row in enumerate(rows, 1):
-        if len(row) < 3:
+        if len(row) < max(3, key + 1):
             continue
         if row[0] == "FMT" and len(row) > 5:  # of ArduPilot: type, length, name, formats, names of the columns
             names[row[3]] = row[5:]
@@ -283,19 +339,22 @@ def _from_log(rows, name, comma):
             # Of several instruments of one kind each is a table of its own.
             columns = names.get(row[0], [])
             which = columns.index("I") + 1 if "I" in columns else len(row)
-            key = row[0] if which >= len(row) or row[which] == "0" else f"{row[0]} {row[which]}"
-            lines.setdefault(key, []).append((number, row[1:]))
+            kind = row[key] if which >= len(row) or row[which] == "0" else f"{row[0]} {row[which]}"
+            lines.setdefault(kind, []).append((number, row[:key] + row[key + 1 :]))
+    if key:  # one line of headings for all
+        heads = [found[0][1] for found in lines.values() if len(found) < 8]
+        names = {kind: head for kind in lines for head in heads[:1]}
     tables = []
-    for key, found in lines.items():
+    for kind, found in lines.items():
         if len(found) < 8:
             continue
-        columns = names.get(key.partition(" ")[0])
+        columns = names.get(kind.partition(" ")[0])
         width = Counter(len(row) for _, row in found).most_common(1)[0][0]
         try:
             tables.append(
                 _table(
                     [row for _, row in found],
-                    key,
+                    kind if _number(kind) is None else f"{name} {kind}",
                     comma,
                     [number for number, _ in found],
                     columns if columns and len(columns) == width else None,

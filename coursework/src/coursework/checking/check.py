@@ -10,6 +10,7 @@ from pathlib import Path
 from .identity import forgotten
 from .kinds import calls_for
 from .plain import NotPlain, to_plain
+from .question import Locker, Place
 from .questions import (
     OTHER_NUMBERS,
     code_text,
@@ -67,21 +68,21 @@ def check(name: str, answer: object) -> Reply:
     NoSuchQuestion
         If the name is misspelt.
     """
-    question = find_question(name)
+    sealed = find_question(name)
     try:
-        reply, content = judge(name, question, to_plain(answer, calls_for(question), raise_missing=True))
+        reply = judge(name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True))
     except NotPlain as error:
-        reply, content = Reply(name, "invalid", "unreadable", [str(error)]), {}
-    if reply.outcome == "correct" and "solution" in content:
-        reply.solution = solution_on(question, open_page(question, *content["solution"]))
-    entry = _remember(name, reply, content)
+        reply = Reply(name, "invalid", "unreadable", [str(error)])
+    if reply.outcome == "correct" and reply.opened and reply.opened.solution:
+        reply.solution = solution_on(sealed, reply.opened.solution)
+    entry = _remember(name, reply)
     if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS and entry:
-        _show_next_hint(question, reply, entry)
+        _show_next_hint(sealed, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
-        _offer_sibling(reply, question, reply.help)
-    if reply.outcome != "not attempted" and forgotten(question):
-        reply.messages.append(forgotten(question))
+        _offer_sibling(reply, sealed.question, reply.help)
+    if reply.outcome != "not attempted" and forgotten(sealed.question):
+        reply.messages.append(forgotten(sealed.question))
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
     if isinstance(entry.get("answers"), list):
         reply.tried = [str(answer)[:DIGITS] for answer in entry["answers"][-MOST_TOLD:]]
@@ -95,15 +96,15 @@ def check(name: str, answer: object) -> Reply:
 
 def hint(name: str) -> Reply:
     """Show the hints that you have earned for a question: each different answer that is wrong earns one more."""
-    question = find_question(name)
     entry = _entry(_read_progress(), name)
-    steps, earned = _steps(question, entry), _earned(entry)
+    steps, earned = _steps(find_question(name), entry), _earned(entry)
     if steps[:earned]:
         _note_help(name, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
     for other, page, key in entry.get("after", []):
         with suppress(ValueError, LookupError, TypeError):  # of an earlier release of that question
-            lines += [f"Hint: {step}" for step in open_page(find_question(other), page, key)["after"].get(name, [])]
+            locker = Locker.from_json(open_page(find_question(other), Place(page, key)), other)
+            lines += [f"Hint: {step}" for step in locker.after.get(name, ())]
     left = len(steps) - min(earned, len(steps))
     if not lines:
         lines = ["There is no hint yet."]
@@ -117,17 +118,17 @@ def hint(name: str) -> Reply:
 
 def worked_solution(name: str, code: str) -> Reply:
     """Show the worked solution of a question to one who gives up, with the code that the instructor gave out."""
-    question = find_question(name)
-    content = opened(question, code_text(str(code)))
-    if content is None or "solution" not in content:
+    sealed = find_question(name)
+    locker = opened(sealed, code_text(str(code)))
+    if locker is None or locker.solution is None:
         return Reply(
             name, "hints", "", ["This code opens no solution. Your instructor gives the code out when it is time."]
         )
     _note_help(name, "solution")
     entry = _entry(_read_progress(), name)
     said = ["Read it, close it, and write it out for yourself."]
-    reply = Reply(name, "hints", "", said, solution_on(question, content))
-    _offer_sibling(reply, question, entry.get("help", ""))
+    reply = Reply(name, "hints", "", said, solution_on(sealed, locker.solution))
+    _offer_sibling(reply, sealed.question, entry.get("help", ""))
     return reply
 
 
@@ -144,7 +145,7 @@ def _note_help(name, kind):
 def _offer_sibling(reply, question, help_had):
     """Say of the siblings of a question what concerns one who had help, or who has solved one without."""
     asked, order = without_sibling(reply.question)
-    siblings = siblings_of(asked, question.get("variants", 1))
+    siblings = siblings_of(asked, question.variants)
     if not help_had:
         reply.messages += (
             [f"Solved without help: with a right answer to `{asked}` itself, it counts in full."] if order else []
@@ -161,16 +162,14 @@ def _offer_sibling(reply, question, help_had):
         )
 
 
-def _steps(question, entry):
+def _steps(sealed, entry):
     """All hints of a question: those of the last mistake, and then the ladder."""
     steps = []
     if entry.get("page"):
-        try:
-            cases = open_page(question, *entry["page"])["cases"]
-        except (ValueError, LookupError, TypeError):
-            cases = []  # the page is of an earlier release of the question
-        steps = next((case["hints"] for case in cases if "hints" in case), [])
-    return steps + [unseal(step, rung_key(question, number)) for number, step in enumerate(question.get("ladder", ()))]
+        with suppress(ValueError, LookupError, TypeError):  # the page is of an earlier release of the question
+            locker = Locker.from_json(open_page(sealed, Place(*entry["page"])), "A page")
+            steps = next((list(known.hints) for known in locker.answers if known.hints), [])
+    return steps + [unseal(step, rung_key(sealed.question, number)) for number, step in enumerate(sealed.ladder)]
 
 
 def _earned(entry):
@@ -178,8 +177,8 @@ def _earned(entry):
     return max(0, len(entry.get("answers", [])) - 1)
 
 
-def _show_next_hint(question, reply, entry):
-    steps, earned = _steps(question, entry), _earned(entry)
+def _show_next_hint(sealed, reply, entry):
+    steps, earned = _steps(sealed, entry), _earned(entry)
     if steps[:earned]:
         _note_help(reply.question, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
@@ -215,9 +214,10 @@ def _of_notebook(notebook, record, right):
         questions = notebook_questions(notebook)
     except RuntimeError:
         questions = {}
-    questions = questions or {name: {} for name in record if name.startswith(f"{notebook}/")}
-    points = sum(about.get("worth", 1) for about in questions.values())
-    earned = sum(about.get("worth", 1) for name, about in questions.items() if name in right)
+    worths = {name: sealed.worth for name, sealed in questions.items()}
+    questions = worths or {name: 1 for name in record if name.startswith(f"{notebook}/")}
+    points = sum(questions.values())
+    earned = sum(worth for name, worth in questions.items() if name in right)
     taken_down = {name for name in questions if record.get(name, {}).get("outcome") == "recorded"}
     open_ = [name for name in questions if name not in right and name not in taken_down]
     # What was begun comes before what is new.
@@ -234,7 +234,7 @@ def _right_with_help(known, right):
     found = []
     for name in sorted(right - alone):
         try:
-            count = find_question(name).get("variants", 1)
+            count = find_question(name).question.variants
         except (LookupError, RuntimeError):
             continue  # a question of another release
         if known[name].get("help") and count > 1:
@@ -296,7 +296,7 @@ def _write_progress(record):
         pass
 
 
-def _remember(name, reply, content):
+def _remember(name, reply):
     """Write down the outcome, and where hints can be read again: never the hints themselves."""
     record = _read_progress()
     entry = _entry(record, name)
@@ -312,14 +312,20 @@ def _remember(name, reply, content):
         answers = entry.setdefault("answers", [])
         if isinstance(answers, list) and reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers.append(reply.answer)
-        entry["page"] = content.get("page") if content.get("hints") else None
+        has_hints = reply.known is not None and reply.known.hints
+        entry["page"] = _page_of(reply.opened) if has_hints else None
         entry["mistake"], entry["mistake at"] = reply.note or "another value", int(time.time())
     elif reply.outcome == "correct" and entry.get("mistake at", 0) < time.time() - REVIEW_AFTER * DAY:
         entry.pop("mistake", None)  # looked at again, and right
     record[name] = entry
-    for other in content.get("after", {}) if reply.outcome == "correct" else ():
+    for other in reply.opened.after if reply.opened and reply.outcome == "correct" else ():
         known = record.setdefault(other, {}).setdefault("after", [])
-        if [name, *content["page"]] not in known:
-            known.append([name, *content["page"]])
+        if [name, *_page_of(reply.opened)] not in known:
+            known.append([name, *_page_of(reply.opened)])
     _write_progress(record)
     return entry
+
+
+def _page_of(locker):
+    """Where it is read again what an answer opened."""
+    return list(locker.place[:2])

@@ -17,13 +17,17 @@ import functools
 import hashlib
 import itertools
 import json
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from types import SimpleNamespace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from . import mistakes
 from .evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol, real, values
+from .plain import Plain
 from .plugins import Kind, kind_of_values, kinds
 from .points import points
+from .question import Question
 from .units import UnknownUnit, unit
 
 #: What an exact answer may be off by, absolutely and relatively: above all rounding of doubles.
@@ -39,6 +43,10 @@ PARTS = {"words": " | ", "order": " < ", "truth values": ""}
 FUNCTIONS = SimpleNamespace(sin=MP.sin, cos=MP.cos, norm=lambda *parts: MP.sqrt(sum(x * x for x in parts)))
 
 
+#: One of mpmath.
+Number = Any
+
+
 class Blank(Exception):
     """Nothing has been answered yet."""
 
@@ -46,7 +54,7 @@ class Blank(Exception):
 class Fault(Exception):
     """An answer is not of the form that is asked for: a short note for statistics, and a message."""
 
-    def __init__(self, note, message):
+    def __init__(self, note: str, message: str) -> None:
         super().__init__(message)
         self.note = note
         self.message = message
@@ -59,31 +67,30 @@ class Undecidable(Exception):
 class Reading(NamedTuple):
     """An answer as numbers: ``numbers`` is a list for each point; ``text`` is set for words instead."""
 
-    numbers: list
+    numbers: list[list[Number]]
     text: str | None = None
 
 
-def calls_for(question):
+def calls_for(question: Question) -> list[list[Any]] | None:
     """The arguments of each call to a function that is asked for, made anew: it may change them."""
-    if question["kind"] != "function":
+    if question.kind != "function":
         return None
-    if question["takes"] == "arrays":
+    if question.takes == "arrays":
         import numpy
 
         return [
             [numpy.array(part) if isinstance(part, list) else part for part in arguments]
-            for arguments in question["calls"]
+            for arguments in question.calls
         ]
-    return [json.loads(json.dumps(arguments)) for arguments in question["calls"]]
+    return [json.loads(json.dumps(arguments)) for arguments in question.calls]
 
 
-def read(question, plain):
+def read(question: Question, plain: Plain) -> Reading:
     """Read an answer.
 
     Parameters
     ----------
-    question : dict
-        The public part of a question: its kind, shape, symbols, frames, salt and so on.
+    question : Question
     plain : dict
         The answer as :func:`coursework.checking.plain.to_plain` gives it.
 
@@ -94,9 +101,9 @@ def read(question, plain):
     value = plain["value"]
     if _blank(value):
         raise Blank
-    if question["kind"] == "function":
+    if question.kind == "function":
         return _read_function(question, plain)
-    kind = kinds()[question["kind"]]
+    kind = kinds()[question.kind]
     if kind.text:
         return Reading([], kind.text(question, plain))
     leaves = kind.entries(question, value)
@@ -104,10 +111,10 @@ def read(question, plain):
     for point in points(question):
         results = values(plain["nodes"], point)
         numbers.append([_number(question, results[leaf]) for leaf in leaves])
-    return Reading(_with_units(question, value, numbers) if question["kind"] == "measurement" else numbers)
+    return Reading(_with_units(question, value, numbers) if question.kind == "measurement" else numbers)
 
 
-def fingerprint(question, reading, near=False):
+def fingerprint(question: Question, reading: Reading, near: bool = False) -> str:
     """Give the text that is the same for all forms of one answer, and for no other answer.
 
     With ``near``, the text that answers share which agree to about three digits.
@@ -118,7 +125,9 @@ def fingerprint(question, reading, near=False):
     return _text_of([int(MP.floor(place)) for place in places], near)
 
 
-def fingerprints(question, reading, reach=1, near=False, most=6):
+def fingerprints(
+    question: Question, reading: Reading, reach: float = 1, near: bool = False, most: int = 6
+) -> list[str]:
     """The fingerprints of all answers that are within ``reach`` tolerances of one: its cell and those beside it.
 
     Of more than ``most`` edges that are as near as that, the nearest are taken.
@@ -132,7 +141,9 @@ def fingerprints(question, reading, reach=1, near=False, most=6):
     return [_text_of(chosen, near) for chosen in itertools.product(*choices)]
 
 
-def edges_near(question, numbers, reach=1, near=False):
+def edges_near(
+    question: Question, numbers: Sequence[Number], reach: float = 1, near: bool = False
+) -> list[tuple[Number, int, int]]:
     """The edges within ``reach`` tolerances, nearest first: how far, of which number, and the cell beyond."""
     margin = MP.mpf(reach) / _width(question, len(numbers), near)
     edges = []
@@ -144,24 +155,24 @@ def edges_near(question, numbers, reach=1, near=False):
     return sorted(edges)
 
 
-def _text_of(cells, near):
+def _text_of(cells: Iterable[int], near: bool) -> str:
     return ("near " if near else "") + " ".join(map(str, cells))
 
 
-def tolerances(question):
+def tolerances(question: Question) -> tuple[Number, Number]:
     """What each number of an answer may be off by: an absolute part, and a share of the right number."""
-    if question.get("tolerance") is None:
+    if question.tolerance is None:
         return EXACT, EXACT
-    return kind_of_values(question).parts * MP.mpf(str(question["tolerance"])), MP.mpf(str(question.get("relative", 0)))
+    return kind_of_values(question).parts * MP.mpf(str(question.tolerance)), MP.mpf(str(question.relative or 0))
 
 
-def distance(question, numbers, right):
+def distance(question: Question, numbers: Sequence[Number], right: Sequence[Number]) -> Number:
     """How far an answer is from the right one, in tolerances: up to 1 it is right."""
     absolute, relative = tolerances(question)
     return max(abs(number - other) / (absolute + relative * abs(other)) for number, other in zip(numbers, right))
 
 
-def within(question, numbers, right, share=1):
+def within(question: Question, numbers: Sequence[Number], right: Sequence[Number], share: float = 1) -> bool:
     """Whether an answer is within some share of the tolerance; quicker than :func:`distance` where it is not."""
     absolute, relative = tolerances(question)
     return all(
@@ -169,23 +180,23 @@ def within(question, numbers, right, share=1):
     )
 
 
-def _width(question, count, near):
+def _width(question: Question, count: int, near: bool) -> int:
     """Width of a cell in tolerances. The more numbers, the wider: so the cells that an answer is near stay few."""
     if near:
         return 4 * count
-    return EXACT_WIDTH if question.get("tolerance") is None else 3 * count
+    return EXACT_WIDTH if question.tolerance is None else 3 * count
 
 
-def _places(question, numbers, near):
+def _places(question: Question, numbers: Sequence[Number], near: bool) -> list[Number]:
     absolute, relative = (NEAR, NEAR) if near else tolerances(question)
     width = _width(question, len(numbers), near)
     return [
         _in_tolerances(number, absolute, relative) / width + offset
-        for number, offset in zip(numbers, offsets(question["salt"], len(numbers)))
+        for number, offset in zip(numbers, offsets(question.salt, len(numbers)))
     ]
 
 
-def _in_tolerances(number, absolute, relative):
+def _in_tolerances(number: Number, absolute: Number, relative: Number) -> Number:
     """A number on a scale on which each step of 1 is one tolerance, however large the number."""
     if not relative:
         return number / absolute
@@ -194,12 +205,12 @@ def _in_tolerances(number, absolute, relative):
 
 
 @functools.lru_cache(256)
-def offsets(salt, count):
+def offsets(salt: str, count: int) -> list[Number]:
     data = hashlib.shake_256(f"{salt} edges of the cells".encode()).digest(8 * count)
     return [int.from_bytes(data[8 * k : 8 * k + 8], "big") / MP.mpf(2) ** 64 for k in range(count)]
 
 
-def canonical(question, reading):
+def canonical(question: Question, reading: Reading) -> list[Number]:
     """The numbers of a reading with what is a matter of taste removed, all points one after another."""
     unique = kind_of_values(question).unique
     if not unique:
@@ -207,7 +218,7 @@ def canonical(question, reading):
     return [number for numbers in reading.numbers for number in unique(question, numbers)]
 
 
-def fault(question, reading):
+def fault(question: Question, reading: Reading) -> Fault | None:
     """Say what is wrong with the form of an answer that was read, or give ``None``."""
     find = kind_of_values(question).fault
     if find and reading.text is None:
@@ -232,7 +243,7 @@ def _number(question, result):
         return real(result, _imaginary_rest(question, result))
     except UnknownSymbol as error:
         name = error.args[0][:40]
-        given = list(question.get("symbols", ()))
+        given = list(question.symbols)
         wanted = f"this question has the symbols {listed(given)}" if given else "this question has no symbols"
         raise Fault("stray symbol", f"The answer holds `{name}`; {wanted}.") from None
     except Undefined as error:
@@ -352,7 +363,7 @@ def _with_units(question, value, numbers):
         ) from None
     absolute, _ = tolerances(question)
     far = [exponent * FAR * max(absolute, NEAR) for exponent in found.exponents]
-    scale = MP.mpf(str(question.get("scale", 1)))  # in an exam it is not told
+    scale = MP.mpf(question.scale or 1)  # in an exam it is not told
     return [[number * found.size / scale, *far] for [number] in numbers]
 
 
@@ -362,8 +373,8 @@ def scale_of(answer):
 
 
 def _vector(question, value):
-    length = question.get("length", 3)
-    frame = question.get("frames", (None,))[0]
+    length = question.length or 3
+    frame = question.frames[0] if question.frames else None
     if value[0] == "vector":
         # The zero vector belongs to every frame.
         if frame is None:
@@ -393,7 +404,7 @@ def _row(whole, row, columns, wanted):
 
 
 def _matrix(question, value):
-    rows, columns = question.get("shape", (3, 3))
+    rows, columns = question.shape or (3, 3)
     return row_entries(value, rows, columns, f"A matrix of {rows} × {columns}")
 
 
@@ -401,7 +412,7 @@ def _read_function(question, plain):
     value = plain["value"]
     if value[0] != "function":
         raise Fault("shape", "The question asks for a function: give its name, without calling it.")
-    inner = {**question, "kind": question["result"], "symbols": {}}
+    inner = replace(question, kind=question.kind_of_values, symbols={})
     if all(map(_blank, value[1])):
         if not value[2]:
             raise Blank  # the body of the function is still empty
@@ -424,10 +435,10 @@ def _read_function(question, plain):
         if _blank(result):
             raise Fault("returned nothing", f"{which} returned nothing. Is there a `return`?")
         try:
-            numbers.append([_number(inner, results[leaf]) for leaf in kinds()[inner["kind"]].entries(inner, result)])
+            numbers.append([_number(inner, results[leaf]) for leaf in kinds()[inner.kind].entries(inner, result)])
         except Fault as found:
             raise Fault(found.note, f"{which} returned something else than was asked for. {found.message}") from None
-    if len(numbers) != len(question["calls"]):
+    if len(numbers) != len(question.calls):
         raise Fault("raised an error", "The function did not answer all calls.")
     return Reading(numbers)
 
@@ -460,20 +471,20 @@ def _spelled(plain):
 
 
 def _choice(question, plain):
-    given = _spelled(plain) or word(plain, f"One of {listed(question['options'])}, in quotation marks,")
+    given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks,")
     given = " ".join(given.split())
     # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left out.
     text = given.lower().translate(MINUS)
-    options = {option.lower(): option for option in question["options"]}
+    options = {option.lower(): option for option in question.options}
     bare = text.replace("- ", "-").replace("+ ", "+")
     found = [one for one in (text, bare, bare.removeprefix("+"), f"+{bare}") if one in options]
     if not found:
-        raise Fault("shape", f"The answer is one of {listed(question['options'])}; this is `{given[:40]}`.")
+        raise Fault("shape", f"The answer is one of {listed(question.options)}; this is `{given[:40]}`.")
     return found[0]
 
 
 def _truths(question, plain):
-    value, length = plain["value"], question["length"]
+    value, length = plain["value"], question.length
     wanted = f"A list of {length} truth values, `True` or `False`,"
     if value[0] != "list" or len(value[1]) != length:
         raise shape_fault(wanted, value)
@@ -491,7 +502,7 @@ def _truths(question, plain):
 
 
 def _words(question, plain):
-    value, length, options = plain["value"], question["length"], question["options"]
+    value, length, options = plain["value"], question.length, question.options
     wanted = f"A list of {length} words, each one of {listed(options)},"
     if value[0] != "list" or len(value[1]) != length:
         raise shape_fault(wanted, value)
@@ -502,7 +513,7 @@ def _words(question, plain):
 
 
 def _order(question, plain):
-    value, options = plain["value"], question["options"]
+    value, options = plain["value"], question.options
     wanted = f"A list with each of {listed(options)} once"
     if value[0] != "list" or len(value[1]) != len(options):
         raise shape_fault(wanted, value)
@@ -527,24 +538,23 @@ MINUS = str.maketrans("\u2212\u2010\u2011\u2013", "----")
 # --- one value for what can be written in several ways ------------------------------------------
 
 
-def one_sign(question, numbers):
+def one_sign(question: Question, numbers: list[Number]) -> list[Number]:
     # Of two opposites the one whose first component that is not zero is positive.
     limit = sign_limit(question)
     leading = next((number for number in numbers if abs(number) > limit), MP.one)
-    return numbers if leading > 0 or not question.get("either sign") else [-number for number in numbers]
+    return numbers if leading > 0 or not question.either_sign else [-number for number in numbers]
 
 
-def sign_limit(question):
+def sign_limit(question: Question) -> Number:
     """Below this a component counts as zero, so that rounding does not decide which sign is taken."""
-    return MP.mpf("2e-9") if question.get("tolerance") is None else 8 * tolerances(question)[0]
+    return MP.mpf("2e-9") if question.tolerance is None else 8 * tolerances(question)[0]
 
 
 # --- what is wrong with the form ----------------------------------------------------------------
 
 
-def slack(question):
-    tolerance = question.get("tolerance")
-    return MP.mpf("1e-9") if tolerance is None else 6 * MP.mpf(str(tolerance))
+def slack(question: Question) -> Number:
+    return MP.mpf("1e-9") if question.tolerance is None else 6 * MP.mpf(str(question.tolerance))
 
 
 def short(number):
@@ -561,7 +571,7 @@ def length_in_words(length):
 
 
 def _unit_vector_fault(question, numbers):
-    if question.get("unit vector"):
+    if question.unit_vector:
         length = FUNCTIONS.norm(*numbers)
         if abs(length - 1) > slack(question):
             return Fault(
@@ -573,7 +583,7 @@ def _unit_vector_fault(question, numbers):
 
 def transposed(question, numbers):
     """The entries of the transpose; ``None`` where it is of another shape."""
-    rows, columns = question.get("shape", (3, 3))
+    rows, columns = question.shape or (3, 3)
     if rows != columns:
         return None
     return [numbers[row * columns + column] for column in range(columns) for row in range(rows)]

@@ -12,9 +12,12 @@ import hashlib
 import inspect
 import itertools
 import json
+from collections.abc import Mapping
 from typing import NamedTuple
 
+from .fields import Json
 from .plugins import kind_of_values, kinds
+from .question import Note, Question
 from .sealing import MISTAKE
 
 #: Factors that are forgotten or put in twice, as they are said.
@@ -35,7 +38,7 @@ class Mistake(NamedTuple):
     answer: object
 
 
-def message(question, note, details):
+def message(question: Question, note: str, details: Mapping[str, Json]) -> str:
     """What a student is told of a mistake."""
     said = kind_of_values(question).messages.get(note) or MESSAGES[note]
     return said(question, **details)
@@ -80,7 +83,7 @@ OF_ORDERS = {
 }
 
 
-def short_name(note, details):
+def short_name(note: str, details: Mapping[str, Json]) -> bytes:
     """The name that a mistake has in a locker: it follows from its note and details, and from nothing else.
 
     So files that were sealed before keep their meaning, whatever is added to the catalogue.
@@ -92,7 +95,7 @@ def short_name(note, details):
     return hashlib.sha256(text.encode("utf8")).digest()[:MISTAKE]
 
 
-def by_short_name(question):
+def by_short_name(question: Question) -> dict[bytes, Note]:
     """Every mistake that the messages can name for a question, with its details, by its short name.
 
     It is the same for all questions of a kind, and so tells nothing.
@@ -102,8 +105,7 @@ def by_short_name(question):
     RuntimeError
         Two mistakes have the same short name: one of them needs another note.
     """
-    values = question["result"] if question["kind"] == "function" else question["kind"]
-    return _by_short_name(values, tuple(sorted(question.get("symbols", ()))))
+    return _by_short_name(question.kind_of_values, tuple(sorted(question.symbols)))
 
 
 @functools.lru_cache(64)
@@ -123,7 +125,7 @@ def _by_short_name(kind, symbols):
             if note != "authored":
                 choices = ((own or details).get(name, ()) for name in needed)
                 for values in itertools.product(*choices):
-                    one = [note, dict(zip(needed, values, strict=True))]
+                    one = Note(note, dict(zip(needed, values, strict=True)))
                     if found.setdefault(short_name(*one), one) != one:
                         raise RuntimeError(f"{one} and {found[short_name(*one)]} have one short name: rename a note.")
     return found
@@ -137,8 +139,7 @@ def mistakes(question, answer, turns=(), turned=None):
 
     Parameters
     ----------
-    question : dict
-        The public part of the question.
+    question : Question
     answer : SymPy object, nested list or number
         The right answer, as its author wrote it.
     turns : list of tuples (axis, angle)
@@ -147,7 +148,7 @@ def mistakes(question, answer, turns=(), turned=None):
     turned : tuple (matrix, components)
         For components that a matrix turned: the matrix and what it was applied to.
     """
-    find = kinds()[question["kind"]].mistakes
+    find = kinds()[question.kind].mistakes
     return list(find(question, answer, list(turns), turned)) if find else []
 
 
@@ -211,7 +212,7 @@ def of_parts(question, answer, turns, turned):
     if not 3 <= len(answer) < len(NUMBERS):
         return
     for place, right in enumerate(answer):
-        for option in question.get("options") or [True, False]:
+        for option in question.options or [True, False]:
             if option != right:
                 yield Mistake("one wrong", {"number": len(answer)}, answer[:place] + [option] + answer[place + 1 :])
 
@@ -257,7 +258,7 @@ def of_vector(question, answer, turns, turned):
         matrix, components = (sympy.Matrix(part) for part in turned)
         yield Mistake("turned the wrong way", {}, matrix.T * components)
         yield Mistake("not turned", {}, components)
-    if not question.get("unit vector"):
+    if not question.unit_vector:
         yield from of_factors(answer)
     yield from of_symbols(question, answer)
 
@@ -267,11 +268,11 @@ def of_expression(question, answer, turns, turned):
 
     answer = sympy.sympify(answer)
     yield Mistake("opposite", {}, -answer)
-    if question.get("quantity") == "angle":
+    if question.quantity == "angle":
         yield Mistake("in degrees", {}, answer * 180 / sympy.pi)
         yield Mistake("supplement", {}, sympy.pi - answer)
         yield Mistake("complement", {}, sympy.pi / 2 - answer)
-    elif question.get("quantity") == "angle in degrees":
+    elif question.quantity == "angle in degrees":
         yield Mistake("in radians", {}, answer * sympy.pi / 180)
         yield Mistake("supplement", {}, 180 - answer)
         yield Mistake("complement", {}, 90 - answer)
@@ -279,6 +280,6 @@ def of_expression(question, answer, turns, turned):
         yield Mistake("reciprocal", {}, 1 / answer)
     yield Mistake("half", {}, answer / 2)
     yield Mistake("double", {}, 2 * answer)
-    if "quantity" not in question:
+    if question.quantity is None:
         yield from of_factors(answer)
     yield from of_symbols(question, answer)

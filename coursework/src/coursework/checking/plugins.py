@@ -24,15 +24,19 @@ Its folder ``sealed``, if it has one, holds sealed questions. These names in it 
 import functools
 import importlib.util
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import metadata, resources
-from typing import NamedTuple
+from importlib.resources.abc import Traversable
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from .question import Question
 
 GROUP = "coursework.plugins"
 
 
 class Kind(NamedTuple):
-    """What is particular to one kind of question.
+    """What is particular to one kind of question; each function is given a :class:`Question`.
 
     Attributes
     ----------
@@ -53,7 +57,7 @@ class Kind(NamedTuple):
     needs : tuple of str
         Arguments that an author must give.
     arguments : tuple of str
-        Arguments that only this kind has; they become public.
+        Arguments that only this kind has; they become public, as ``question.arguments``.
     either_sign : bool
         Whether an answer and its opposite are both right.
     mistakes : function (question, answer, turns, turned) -> iterable of Mistake
@@ -77,29 +81,29 @@ class Kind(NamedTuple):
         An answer of the right form that is another one.
     """
 
-    entries: Callable | None = None
-    text: Callable | None = None
-    unique: Callable | None = None
-    fault: Callable | None = None
+    entries: Callable[..., Any] | None = None
+    text: Callable[..., Any] | None = None
+    unique: Callable[..., Any] | None = None
+    fault: Callable[..., Any] | None = None
     parts: int = 1
     wrong: str = "The form is right; the value is not."
     begin: str = ""
-    needs: tuple = ()
-    arguments: tuple = ()
+    needs: tuple[str, ...] = ()
+    arguments: tuple[str, ...] = ()
     either_sign: bool = False
-    mistakes: Callable | None = None
-    messages: dict = {}
-    details: dict = {}
-    slips: dict = {}
-    build: Callable | None = None
-    forms: Callable | None = None
-    another: Callable | None = None
-    public: Callable | None = None
+    mistakes: Callable[..., Any] | None = None
+    messages: dict[str, Callable[..., str]] = {}
+    details: dict[str, Any] = {}
+    slips: dict[str, tuple[str, Callable[..., Any]]] = {}
+    build: Callable[..., Any] | None = None
+    forms: Callable[..., Any] | None = None
+    another: Callable[..., Any] | None = None
+    public: Callable[..., Any] | None = None
     by_a_person: bool = False
 
 
 @functools.cache
-def plugins():
+def plugins() -> list[ModuleType]:
     """The plug-ins of all installed distributions.
 
     Raises
@@ -112,15 +116,15 @@ def plugins():
         try:
             found.append(entry.load())
         except Exception as error:
+            brought = f", which {entry.dist.name} {entry.dist.version} brings for coursework," if entry.dist else ""
             raise RuntimeError(
-                f"The plug-in {entry.name!r} ({entry.value}), which {entry.dist.name} {entry.dist.version} brings for "
-                f"coursework, cannot be loaded: {type(error).__name__}: {error}"
+                f"The plug-in {entry.name!r} ({entry.value}){brought} cannot be loaded: {type(error).__name__}: {error}"
             ) from error
     return found
 
 
 @functools.cache
-def kinds():
+def kinds() -> dict[str, Kind]:
     """All kinds of questions, by name."""
     from .kinds import KINDS
 
@@ -133,11 +137,12 @@ def kinds():
     return found
 
 
-def catalogue_of_format_3(kind):
+def catalogue_of_format_3(kind: str) -> Sequence[tuple[str, Mapping[str, Any]]]:
     """The mistakes that a plug-in's kind had in sealed files of format 3, in their order, with their details."""
     for plugin in plugins():
         if kind in getattr(plugin, "FORMAT_3", {}):
-            return plugin.FORMAT_3[kind]
+            frozen: Sequence[tuple[str, Mapping[str, Any]]] = plugin.FORMAT_3[kind]
+            return frozen
     messages, details = kinds()[kind].messages, kinds()[kind].details
     return [
         (note, {name: details.get(name, ()) for name in list(inspect.signature(words).parameters)[1:]})
@@ -145,12 +150,12 @@ def catalogue_of_format_3(kind):
     ]
 
 
-def kind_of_values(question):
+def kind_of_values(question: Question) -> Kind:
     """The kind of what is compared: for a function, of its results."""
-    return kinds()[question["result"] if question["kind"] == "function" else question["kind"]]
+    return kinds()[question.kind_of_values]
 
 
-def packages():
+def packages() -> list[str]:
     """Names of the packages that the notebooks of the installed courses import, and of the plug-ins."""
     found = []
     for plugin in plugins():
@@ -158,13 +163,13 @@ def packages():
     return list(dict.fromkeys(found))
 
 
-def folders_of(names):
+def folders_of(names: Iterable[str]) -> list[str]:
     """The folders of those packages that are installed."""
     specs = [importlib.util.find_spec(name) for name in names]
     return [folder for spec in specs if spec for folder in spec.submodule_search_locations or ()]
 
 
-def sealed_folders():
+def sealed_folders() -> list[Traversable]:
     """The folders of sealed questions that plug-ins bring."""
     folders = [resources.files(plugin) / "sealed" for plugin in plugins()]
     return [folder for folder in folders if folder.is_dir()]

@@ -22,7 +22,6 @@ from ..checking.identity import plain_identity
 from ..checking.plugins import kinds
 from .execution.cluster_keys import demand_keys
 from .judging import marking
-from .judging import secret as in_secret
 from .judging.cases import Contracts, changed_since, variants_of
 from .judging.judge import Judge
 from .judging.ledger import APPEALS, DECISIONS, Ledger, Standing, appeals_open, with_decisions
@@ -371,7 +370,7 @@ FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
 
 def _demand_own_numbers(work, questions, foreign, roster):
     """Numbers follow from who one is: where many say to be somebody else, all would be judged by wrong numbers."""
-    varied = {name for name, asked in questions.items() if any("others" in one for one in asked.values())}
+    varied = {name for name, asked in questions.items() if any(len(variants) > 1 for variants in asked.values())}
     saying = sum(bool(notebook.says) for one in work if one.assignment in varied for notebook in one.notebooks)
     wrong = [(one, notebook) for one, notebook in foreign if one.assignment in varied]
     if len(wrong) <= max(FEW_FOREIGN, SHARE_FOREIGN * saying):
@@ -398,7 +397,7 @@ MANY_OTHER_NUMBERS = 0.1
 def _say_other_numbers(store, work, questions, show):
     """Say it where many answers are right for other numbers than those that their authors are believed to have had."""
     for assignment, asked in questions.items():
-        varied = {name for name, question in asked.items() if "others" in question}
+        varied = {name for name, variants in asked.items() if len(variants) > 1}
         given = other = 0
         for one in work:
             record = store.read(one.student, assignment) if varied and one.assignment == assignment else None
@@ -500,12 +499,12 @@ def said_of_people(store, standing):
 def _say_guessable(questions, show):
     """Say which points a script could have guessed: whoever tries answers in the check earns them."""
     for assignment, asked in questions.items():
-        worth = sum(question["worth"] for question in asked.values())
-        cheap = {name: question for name, question in asked.items() if question["guessable"] is not None}
+        worth = sum(first.worth for first, *_ in asked.values())
+        cheap = {name: first for name, (first, *_) in asked.items() if first.guessable is not None}
         if cheap:
-            tries = ", ".join(f"{name} after {question['guessable']} tries" for name, question in sorted(cheap.items()))
+            tries = ", ".join(f"{name} after {contract.guessable} tries" for name, contract in sorted(cheap.items()))
             print(
-                f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} "
+                f"{assignment}: {number(sum(contract.worth for contract in cheap.values()))} of {number(worth)} "
                 f"points were guessed by a script that tries answers ({tries}).",
                 file=show,
             )
@@ -580,7 +579,7 @@ class _Jobs:
         named = {name for notebook in one.notebooks for name in notebook.named}
         own, _ = marking.of_student(self.questions[one.assignment], one.student, self.before(one), self.contracts)
         asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
-        for_a_person = any(kinds()[question["public"]["kind"]].by_a_person for question in own.values())
+        for_a_person = any(kinds()[asked.contract.question.kind].by_a_person for asked in own.values())
         for part, notebook in enumerate(one.notebooks):
             cells = notebook.cells
             self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
@@ -691,7 +690,7 @@ def record_of(work, results, key, questions, limits):
         # Of several notebooks the one that says something; they have no question in common.
         answers[name] = min(given, key=_says_little)
         if "secret" in answers[name]:
-            answers[name]["secret"]["calls"] = in_secret.digest(known[name]["secret"])
+            answers[name]["secret"]["calls"] = known[name].secret.digest
     return {
         "format": FORMAT,
         "key": key,
@@ -723,20 +722,20 @@ def marked(record, judge, standing=None, policies=None):
     """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
     questions = judge.questions[record["assignment"]]
     own, cases = marking.of_student(judge.questions[record["assignment"]], record["student"], record, judge.contracts)
-    for question in own.values():
-        for one in (question, question.get("contract"), *question.get("second chances", {}).values()):
+    for asked in own.values():
+        for one in (asked.contract, asked.before, *asked.second_chances.values()):
             if one is not None:
                 judge.contracts.keep(one)
     found = judge.marks(record)
     marks = {}
-    for name, question in own.items():
+    for name, asked in own.items():
         old = record.get("marks", {}).get(name)
         old = old and {**old, **old.get("before", {})}
         taken_out = cases[name].own.variant not in variants_of(questions[name])
         mark = (policies or Policies()).applied(name, found[name], old, cases[name], taken_out)
         # What the lines of a rubric are worth, where its author said so.
-        rubric = {"rubric": question["rubric"]} if isinstance(question.get("rubric"), dict) else {}
-        marks[name] = {**mark, "title": question["title"], **rubric}
+        rubric = {"rubric": asked.contract.rubric} if isinstance(asked.contract.rubric, dict) else {}
+        marks[name] = {**mark, "title": asked.contract.title, **rubric}
     cases = {name: case.as_json() for name, case in cases.items()}
     return with_decisions({**record, "format": FORMAT, "cases": cases, "marks": marks}, standing or Standing())
 

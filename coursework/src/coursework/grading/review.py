@@ -21,7 +21,7 @@ from tornado import httpserver, ioloop, netutil, web
 from ..authoring.author import to_page
 from ..checking.identity import plain_identity
 from ..checking.variants import text_of
-from .judging.cases import Contracts, changed_since
+from .judging.cases import Contracts, changed_since, questions_in
 from .judging.ledger import (
     LONGEST_WORDS,
     REJECTED,
@@ -122,7 +122,7 @@ class Class:
             for path in sorted(
                 (self.store.folder / "questions").glob("*.json"), key=lambda path: path.stat().st_mtime_ns
             )
-            for name, about in self.store.json_in(path).items()
+            for name, (about, *_) in questions_in(path).items()
         }
         self.contracts = Contracts(self.store.folder)
         self.records = list(self.store.all())
@@ -148,7 +148,7 @@ class Class:
 
     def contract(self, cluster):
         """The question by which the answers of a cluster were judged: these students' own variant; or nothing."""
-        return self.contracts.of(cluster.mark["version"]) or {}
+        return self.contracts.of(cluster.mark["version"])
 
     def without_names(self, text):
         """A text in which who wrote it, and everybody else in the class, is called by a number."""
@@ -236,7 +236,7 @@ class Class:
     def lines(self, cluster, record):
         """The lines of the rubric of a question: what each is worth now, what the source says, how many used it."""
         source = record["marks"][cluster.question].get("rubric", {})
-        found = dict.fromkeys(self.questions.get(cluster.question, {}).get("rubric", ()))
+        found = dict.fromkeys(self.questions[cluster.question].rubric if cluster.question in self.questions else ())
         found |= dict.fromkeys(source)
         used = Counter()
         for one in self.ledger.decisions:
@@ -424,8 +424,8 @@ class _Overview(_Page):
         graded.read()
         found = graded.chosen(filters, self.settings["hide_names"])
         outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
-        guessable = {name: about for name, about in graded.questions.items() if about["guessable"] is not None}
-        guessed, clusters = sum(about["worth"] for about in guessable.values()), graded.clusters.values()
+        guessable = {name: about for name, about in graded.questions.items() if about.guessable is not None}
+        guessed, clusters = sum(about.worth for about in guessable.values()), graded.clusters.values()
         self.show(
             "overview.html",
             filters=filters,
@@ -437,7 +437,7 @@ class _Overview(_Page):
             titles={one.question: one.mark["title"] for one in graded.clusters.values()},
             text=lambda cluster: pages.answer_as_text(cluster.answer.get("plain"), 120),
             guessable=guessable,
-            beyond=1 - guessed / max(1, sum(about["worth"] for about in graded.questions.values())),
+            beyond=1 - guessed / max(1, sum(about.worth for about in graded.questions.values())),
         )
 
 
@@ -454,7 +454,8 @@ class _Answer(_Page):
         graded.read()
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         place = order.index(name) if name in order else None
-        about = graded.contract(cluster)
+        contract = graded.contract(cluster)
+        right = contract.plain if contract else None
         chosen = self.get_argument("member", "")
         number = int(chosen) if chosen.isdecimal() and int(chosen) < len(cluster.members) else 0
         record = cluster.members[number]
@@ -493,15 +494,15 @@ class _Answer(_Page):
                 for appeal in graded.appeals(cluster, one)
             ],
             history=_history(graded.ledger.events, cluster, students),
-            asked=Markup(_as_asked(about)),
-            given=about.get("public", {}).get("given", {}),
-            calls=about.get("public", {}).get("calls") or [],
+            asked=Markup(_as_asked(contract)),
+            given=contract.variant.given if contract else {},
+            calls=contract.question.calls if contract else (),
             case=record.get("cases", {}).get(cluster.question),
-            right=Markup(answer_as_mathematics(about.get("plain"))),
-            right_text=pages.answer_as_text(about.get("plain"), 2_000),
+            right=Markup(answer_as_mathematics(right)),
+            right_text=pages.answer_as_text(right, 2_000),
             answer=Markup(answer_as_mathematics(cluster.answer.get("plain"))),
             answer_text=pages.answer_as_text(cluster.answer.get("plain"), 2_000),
-            right_prose=_prose(about.get("plain")),
+            right_prose=_prose(right),
             answer_prose=_prose(cluster.answer.get("plain")),
             by_a_person=judged["note"] == "for a person",
             place=place,
@@ -669,11 +670,11 @@ TYPED = ("comment", "why", "words", "new", "new_points", "of")
 NONE = "-"
 
 
-def _as_asked(about):
+def _as_asked(contract):
     """The text of a question as these students saw it, with their numbers; its author is trusted."""
-    if not about:
+    if not contract:
         return ""
-    return to_page("\n\n".join([about.get("text", ""), text_of(about["public"])]), pages.formula)
+    return to_page("\n\n".join([contract.text, text_of(contract.variant)]), pages.formula)
 
 
 def _prose(plain):

@@ -68,7 +68,7 @@ def write_lock(site):
 
 
 def fingerprint_of_code(text):
-    """The short hash that the scripts of the page make of a cell's code (``fingerprint`` in live/js/answers.js)."""
+    """The short hash that the scripts of the page make of a cell's code (``fingerprint`` in live/js/store.js)."""
     a, b, word = 0xDEADBEEF, 0x41C6CE57, 0xFFFFFFFF
     for unit in array("H", text.encode("utf-16-le")):
         a = (a ^ unit) * 2654435761 & word

@@ -189,18 +189,21 @@ def numerical_packages(setting, target, official, address):
 
 def write_variants(wheels, compiled, target):
     """Put beside the wheels what ``compiled`` have not of ``wheels``: the sealed variants, each fetched alone."""
-    for outdated in target.glob("sealed-*/"):
-        shutil.rmtree(outdated)
+    kept = set()
     for before, after in zip(wheels, compiled, strict=True):
         with zipfile.ZipFile(before) as whole, zipfile.ZipFile(after) as rest:
             for place in rest.namelist():
                 if place.endswith("/sealed/elsewhere.txt"):
                     folder, address = place.removesuffix("elsewhere.txt"), rest.read(place).decode()
+                    kept.add((target / address).resolve())
                     for name in whole.namelist():
-                        if name.startswith(f"{folder}variants/"):
-                            file = target / address / name.removeprefix(folder)
+                        file = target / address / name.removeprefix(folder)
+                        if name.startswith(f"{folder}variants/") and not file.is_file():  # named by what is in them
                             file.parent.mkdir(parents=True, exist_ok=True)
                             file.write_bytes(whole.read(name))
+    for outdated in target.glob("sealed-*/"):
+        if outdated.resolve() not in kept:
+            shutil.rmtree(outdated)
 
 
 def wheels_of_widgets():

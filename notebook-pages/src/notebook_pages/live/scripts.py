@@ -50,6 +50,7 @@ def write(site):
     static = site / "_static"
     static.mkdir(exist_ok=True)
     esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
+    esbuild(JS / "progress.js", "--bundle", "--global-name=progress", f"--outfile={static / 'progress.js'}")
     shutil.copyfile(JS / "page.css", static / "live.css")
     # A service worker may act for the pages below it only.
     esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")

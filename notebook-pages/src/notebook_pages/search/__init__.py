@@ -24,7 +24,7 @@ SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.j
 WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
 WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
 FIELDS = ("kind", "page", "anchor", "number", "title", "about", "weight", "asked")
-KINDS = ("page", "section", "term", "function", "exercise", "example", "equation")
+KINDS = ("page", "section", "term", "function", "exercise", "example", "equation", "figure")
 SYNONYMS = Path("synonyms.yml")
 LONGEST_SENTENCE = 76
 LITTLE = 0.5  # what counts no more than this, is found by its title alone
@@ -50,8 +50,12 @@ def first_sentence(element, left_out=()):
     """The first words that stand as text in ``element``: a sentence, or as much of it as a line shows."""
     paragraph = element if element.name in ("dd", "p") else element.find("p", recursive=False)
     words = text_of(paragraph, left_out) if paragraph else ""
-    sentence = re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0]
-    return sentence if len(sentence) <= LONGEST_SENTENCE else sentence[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
+    return first_words(re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0])
+
+
+def first_words(text):
+    """As much of a text as a line shows."""
+    return text if len(text) <= LONGEST_SENTENCE else text[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
 
 
 def title_of(heading):
@@ -100,6 +104,13 @@ def entries_of_page(page, article):
                 number = numbers[box["id"]]
                 # Its title is its section's: the palette puts the two together.
                 yield {"kind": "equation", "title": "", "number": number, "anchor": box["id"], "tex": tex[box["id"]]}
+    for figure in article.select("figure[id]:has(> figcaption)"):
+        caption = figure.find("figcaption", recursive=False)
+        number = caption.select_one(".caption-number")
+        number = text_of(number.extract()) if number else ""
+        title, *rest = re.split(r"(?<=[.?!]) (?=[A-Z])", text_of(caption), maxsplit=1)
+        called = {"kind": "figure", "title": title.rstrip("."), "number": number, "anchor": figure["id"]}
+        yield called | ({"about": first_words(rest[0])} if rest else {})
     for exercise in article.select(".admonition.exercise[id]"):
         number, _, title = text_of(exercise.select_one(".admonition-title")).partition("(")
         body = exercise.select_one("section, div") or exercise
@@ -174,11 +185,18 @@ def index(site):
     for old in site.parent.glob("search-entries-*.json"):
         old.unlink()
     memory.write_text(json.dumps(used), "utf8")
+    # Figures are many, and seldom what is looked for: they come with the words.
+    figures = [one for one in entries if one["kind"] == "figure" and one.get("weight", 1) > LITTLE]
+    entries = [one for one in entries if one["kind"] != "figure"]
     words = [words_of(entry) if entry.get("weight", 1) > LITTLE else "" for entry in entries]
     for entry in entries:
         if entry.get("weight", 1) <= LITTLE:
             entry["about"] = ""
-    later = {"words": words, "tex": [[k, one["tex"]] for k, one in enumerate(entries) if "tex" in one]}
+    later = {
+        "words": words,
+        "figures": [row(one) for one in figures],
+        "tex": [[k, one["tex"]] for k, one in enumerate(entries) if "tex" in one],
+    }
     found = {
         "pages": pages,
         "fields": FIELDS,

@@ -61,5 +61,5 @@
   actions.append(take, bring, file, clear);
   table.parentElement.after(actions, words);
   fill();
-  if (!progress.isKept()) say("This browser does not let the page store anything, so your record lasts only as long as the page is open.");
+  say(progress.whyNotKept());
 }

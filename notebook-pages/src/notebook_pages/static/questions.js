@@ -203,15 +203,10 @@
     };
     choice.addEventListener("change", () => {
       apply(choice.value);
-      try {
-        localStorage.setItem("book predictions", choice.value);
-      } catch {}  // a frame without storage: it holds for this page
+      bookStore.put("setting predictions", choice.value);
     });
     first.before(make("p", { className: "said predictions" }, make("label", {}, "Predictions: ", choice)));
-    let chosen;
-    try {
-      chosen = localStorage.getItem("book predictions");
-    } catch {}
+    const chosen = bookStore.read("setting predictions");
     apply(ways.some(([value]) => value === chosen) ? chosen : "asked");
   }
 

@@ -17,12 +17,13 @@ import sys
 import time
 import traceback
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
 from typing import Any, NoReturn, Self
 
 from . import marking
-from .cases import Contracts, Question
+from .cases import Contracts
+from .contract import Contract
 
 #: Processor time for one question of one student, of which an honest answer takes some thousandths.
 MOST_SECONDS = 10
@@ -48,7 +49,10 @@ class Judge:
     """
 
     def __init__(
-        self, questions: Mapping[str, Mapping[str, Question]], contracts: Contracts, log: Callable[[str], None]
+        self,
+        questions: Mapping[str, Mapping[str, Sequence[Contract]]],
+        contracts: Contracts,
+        log: Callable[[str], None],
     ) -> None:
         self.questions, self.contracts, self.log = questions, contracts, log
         self.process: tuple[int, int, int] | None = None
@@ -102,9 +106,9 @@ class Judge:
         )
         return {
             **marking.UNJUDGED,
-            "worth": own[name]["worth"],
-            "version": own[name]["version"],
-            "guessable": own[name]["guessable"],
+            "worth": own[name].contract.worth,
+            "version": own[name].contract.version,
+            "guessable": own[name].contract.guessable,
         }
 
     # -- the process

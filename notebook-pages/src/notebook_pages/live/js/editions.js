@@ -1,15 +1,18 @@
 // The editions of the book that this browser keeps, whole or not at all: for the service worker, and for the page's menu.
 // A file lies under its path and its content, so that no edition puts anything in the place of another's; an edition is a
 // list of such files, and the one entry that names the newest is written when all of them are there. What the edition
-// before it had stays for the tabs that still show it. Format 1 had one file for each path; its lists name no format.
-const FORMAT = 2;
+// before it had stays for the tabs that still show it. The list names the version of the store since which it has its
+// form; version 1 had one file for each path, and named none.
+import { cacheOf, NEWER, VERSION } from "./store.js";
+
+const SINCE = 2;
 const SILENCE = 20_000; // milliseconds without a byte, after which a file is given up
 const AT_ONCE = 6; // files that are fetched side by side
 
 export class Editions {
   constructor(site) {
     this.site = site;
-    this.name = `book ${site}`;
+    this.name = cacheOf(site);
     this.list = this.address("kept.json"); // in the cache only
   }
 
@@ -18,15 +21,17 @@ export class Editions {
   }
 
   // Where a file lies: also what it is fetched by, which no cache on the way takes for another edition's.
-  key(path, print, format = FORMAT) {
-    return this.address(path) + (format === FORMAT ? `?kept=${print}` : "");
+  key(path, print, format = SINCE) {
+    return this.address(path) + (format >= SINCE ? `?kept=${print}` : "");
   }
 
   // {format, edition, parts, files, before}: the newest whole edition, or null. Files are fingerprints by their paths.
-  async newest() {
+  // What a newer version of the store has kept is an error where it would be changed.
+  async newest(toChange = false) {
     if (!(await caches.has(this.name))) return null;
     const list = await (await (await caches.open(this.name)).match(this.list))?.json();
-    return list?.edition && (list.format ?? 1) <= FORMAT ? list : null;
+    if (toChange && list?.format > VERSION) throw new Error(NEWER);
+    return list?.edition && !(list.format > VERSION) ? list : null;
   }
 
   // The copy of what is asked for by ``url``: of the newest edition, unless it names a version or is of the one before.
@@ -36,7 +41,11 @@ export class Editions {
     const path = decodeURI(url.pathname.slice(this.site.length)).replace(/(^|\/)$/, "$1index.html");
     const version = url.searchParams.get("v") ?? "";
     const print = [list.files[path], list.before?.[path]].find((known) => known?.startsWith(version));
-    return print && (await caches.open(this.name)).match(this.key(path, print, list.format ?? 1));
+    return print && this.file(path, print, list.format ?? 1);
+  }
+
+  async file(path, print, format) {
+    return (await caches.open(this.name)).match(this.key(path, print, format));
   }
 
   // What there is to keep: the server's list, in two parts, of [fingerprint, bytes] by path.
@@ -57,7 +66,7 @@ export class Editions {
   // less is missing the next time. Two at once would do the same work, so the second one waits. Returns the list.
   renew(parts, progress = () => {}) {
     return navigator.locks.request(this.name, async () => {
-      const there = await this.newest(), offer = await this.offered();
+      const there = await this.newest(true), offer = await this.offered();
       const wanted = await this.missing(offer, parts ??= there.parts);
       if (there?.edition === offer.edition && parts.every((part) => there.parts.includes(part))) return there;
       const cache = await caches.open(this.name);
@@ -75,8 +84,8 @@ export class Editions {
       const prints = (of) => Object.fromEntries(Object.entries(of).map(([path, [print]]) => [path, print]));
       const files = prints(Object.assign({}, ...parts.map((part) => offer[part])));
       const same = there?.edition === offer.edition;
-      const before = same ? there.before : there?.format === FORMAT ? there.files : undefined;
-      const list = { format: FORMAT, edition: offer.edition, parts, files, before };
+      const before = same ? there.before : there?.format >= SINCE ? there.files : undefined;
+      const list = { format: SINCE, edition: offer.edition, parts, files, before };
       await cache.put(this.list, new Response(JSON.stringify(list), { headers: { "Content-Type": "application/json" } }));
       const used = new Set([files, before ?? {}].flatMap((of) => Object.entries(of)).map(([path, print]) => this.key(path, print)));
       for (const { url } of await cache.keys()) if (url !== this.list && !used.has(url)) await cache.delete(url);

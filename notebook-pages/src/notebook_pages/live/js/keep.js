@@ -31,8 +31,12 @@ async function take(tools, parts) {
 export async function keep(tools) {
   const reason = hindrance();
   if (reason) return tools.say(reason);
-  const there = await editions.newest();
-  let offer;
+  let there, offer;
+  try {
+    there = await editions.newest(true);
+  } catch (error) {
+    return tools.say(error.message); // a newer edition's: it is left alone
+  }
   try {
     offer = await editions.offered();
   } catch (error) {
@@ -73,8 +77,7 @@ function sections(text) {
 export async function tellOfRenewal(tools) {
   const list = await editions.newest();
   const page = decodeURI(location.pathname.slice(SITE.length)).replace(/(^|\/)$/, "$1index.html");
-  const cache = await caches.open(editions.name);
-  const copy = async (files) => (await cache.match(editions.key(page, files?.[page])))?.text();
+  const copy = async (files) => (await editions.file(page, files?.[page]))?.text();
   const [before, now] = [await copy(list.before), await copy(list.files)];
   if (!before || !now || before === now) return;
   const [old, fresh] = [sections(before), sections(now)];

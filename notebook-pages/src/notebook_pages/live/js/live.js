@@ -1,11 +1,12 @@
 // Loaded when the reader first asks for code to run: the page's cells, the bar below, and the order of runs.
 import { Cell } from "./cell.js";
-import { Answers, coursework, fingerprint, nameCells, PREFIX, unkept } from "./answers.js";
+import { Answers, coursework, nameCells, store } from "./answers.js";
 import { named } from "./names.js";
 import { agreeOnRecords, bringTogether, readCopy } from "./notebooks.js";
 import { Figures } from "./figures.js";
 import { element, preformatted } from "./output.js";
 import { Python } from "./python.js";
+import { fingerprint, NEWER } from "./store.js";
 
 // A cell that shows a question in a variant.
 const SHOWS = /\bvariant\(\s*["']/;
@@ -102,7 +103,8 @@ class Page {
     }
     cell.known = code;
     cell.own = cell.edited ? code : undefined; // until another tab's text takes its place
-    if (!kept || window.keepsNothing) {
+    if (store.isNewer) this.bar.say(`${NEWER} “Take away: with my answers” saves it.`);
+    else if (!kept || window.keepsNothing) {
       this.bar.say(`${window.keepsNothing ? "Your browser forbids this page to keep anything" : "This browser has no room left for your answers"}: what you write lasts until you leave the page. “Take away: with my answers” saves it.`);
     }
     this.show();
@@ -114,10 +116,10 @@ class Page {
     this.showGiven();
     await this.lookAtNotebook();
     if (this.reread()) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
-    addEventListener("storage", ({ key, newValue }) => {
-      if (key !== null && !(key.startsWith(PREFIX) && key.includes(` ${this.answers.page} `))) return;
+    store.listen((key, text) => {
+      if (key !== null && !key.includes(` ${this.answers.page} `)) return;
       const cell = this.cells.find(({ id }) => this.answers.isOf(id, key));
-      if (cell?.own !== undefined) this.answers.overtake(cell.id, newValue, cell.own);
+      if (cell?.own !== undefined) this.answers.overtake(cell.id, text, cell.own);
       this.reread();
     });
     // A tab that slept has missed what others wrote.
@@ -125,14 +127,14 @@ class Page {
     document.addEventListener("visibilitychange", wake);
     // What lasts as long as the page only is not to be closed by a slip.
     addEventListener("beforeunload", (event) => {
-      if (unkept.size || (window.keepsNothing && this.cells.some((cell) => cell.edited))) event.preventDefault();
+      if (store.holdsTexts() || (window.keepsNothing && this.cells.some((cell) => cell.edited))) event.preventDefault();
     });
     addEventListener("pageshow", ({ persisted }) => persisted && wake());
   }
 
   // The page's notebook in JupyterLite, if this browser keeps one, may hold newer answers.
   async lookAtNotebook() {
-    if (!localStorage.getItem(this.answers.agreed)) return;
+    if (!store.read(this.answers.agreed)) return;
     try {
       await agreeOnRecords(this.answers.page);
       const copy = await readCopy(`${this.answers.page}.ipynb`);
@@ -299,8 +301,8 @@ class Page {
   }
 
   // Coursework has written down who works here, or how far they are.
-  keepOf({ name, text }) {
-    coursework.write(name, text);
+  keepOf({ name, text, base }) {
+    coursework.write(name, text, Date.now(), base);
     if (name === "me.txt") this.askWho();
   }
 

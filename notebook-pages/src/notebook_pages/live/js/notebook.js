@@ -1,5 +1,5 @@
 // Runs before JupyterLite opens a notebook: brings the answers of its page into it, and asks where the book has changed.
-import { Answers, SITE } from "./answers.js";
+import { Answers, SITE, store } from "./answers.js";
 import { agreeOnRecords, bookCells, bringTogether, edition, newFile, placeBeside, readCopy, writeCopy } from "./notebooks.js";
 
 const plain = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
@@ -87,7 +87,7 @@ async function choose(path, copy, book) {
 
 export async function prepare() {
   const path = new URLSearchParams(location.search).get("path");
-  if (!path?.endsWith(".ipynb")) return;
+  if (!path?.endsWith(".ipynb") || store.isNewer) return;
   try {
     await open(path);
   } catch (error) {

@@ -1,7 +1,7 @@
 // The notebooks that JupyterLite keeps in this browser, and how one of them and its page come to hold the same.
-import { Answers, coursework, fingerprint, nameCells, SITE } from "./answers.js";
+import { Answers, coursework, nameCells, store } from "./answers.js";
+import { fingerprint, joinProgress } from "./store.js";
 
-const DATABASE = `JupyterLite Storage - ${SITE}lite/`;
 const text = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
 const settled = (request) => new Promise((resolve, reject) => {
   request.onsuccess = () => resolve(request.result);
@@ -10,14 +10,14 @@ const settled = (request) => new Promise((resolve, reject) => {
 
 // Calls ``use`` with the store of files, made as JupyterLite's own library makes it if there is none.
 async function files(mode, use) {
-  const known = (await indexedDB.databases?.() ?? [{ name: DATABASE }]).some(({ name }) => name === DATABASE);
+  const known = (await indexedDB.databases?.() ?? [{ name: store.database }]).some(({ name }) => name === store.database);
   if (!known && mode === "readonly") return undefined;
-  let database = await settled(indexedDB.open(DATABASE));
+  let database = await settled(indexedDB.open(store.database));
   if (!database.objectStoreNames.contains("files")) {
     const version = database.version + 1;
     database.close();
     if (mode === "readonly") return undefined;
-    const opening = indexedDB.open(DATABASE, version);
+    const opening = indexedDB.open(store.database, version);
     opening.onupgradeneeded = () => opening.result.createObjectStore("files");
     database = await settled(opening);
   }
@@ -69,45 +69,6 @@ export async function agreeOnRecords(page, mayWrite = false) {
       await writeCopy(path, about);
     }
   }
-}
-
-const HELP = ["mistake", "hint", "solution"]; // from little to much, as in coursework.checking.reply
-// In the entry of a question: what is known of its other variants, by number.
-const OTHERS = "other variants";
-
-// Two records of progress made one: what was right stays right, and no answer, hint or help is forgotten.
-export function joinProgress(older, newer) {
-  const [a, b] = [older, newer].map((record) => {
-    try {
-      const found = JSON.parse(record);
-      return found && typeof found === "object" && !Array.isArray(found) ? found : {};
-    } catch {
-      return {}; // damaged; coursework reads it as none, too
-    }
-  });
-  const both = { ...a, ...b };
-  for (const name of Object.keys(a)) {
-    if (!(name in b) || [a[name], b[name]].some((entry) => !entry || typeof entry !== "object")) continue;
-    if ((a[name].variant ?? 0) !== (b[name].variant ?? 0)) { // between the two somebody said who they are
-      const { [OTHERS]: others, ...own } = a[name];
-      both[name] = { ...b[name], [OTHERS]: { ...others, [own.variant ?? 0]: own, ...b[name][OTHERS] } };
-      continue;
-    }
-    const joined = { ...a[name], ...b[name] };
-    if (joined[OTHERS]) joined[OTHERS] = { ...a[name][OTHERS], ...b[name][OTHERS] };
-    const right = [a[name], b[name]].find(({ outcome }) => outcome === "correct");
-    const help = right ? right.help : HELP.findLast((kind) => [a[name].help, b[name].help].includes(kind));
-    if (right) joined.outcome = "correct";
-    if (help) joined.help = help;
-    else delete joined.help;
-    for (const list of ["answers", "after"]) {
-      if (!joined[list]) continue;
-      const known = [...(a[name][list] ?? []), ...(b[name][list] ?? [])].map((one) => JSON.stringify(one));
-      joined[list] = [...new Set(known)].map((one) => JSON.parse(one));
-    }
-    both[name] = joined;
-  }
-  return JSON.stringify(both, null, 1);
 }
 
 // The code cells of a notebook that are the book's: their names, texts, and the code that the book had there.

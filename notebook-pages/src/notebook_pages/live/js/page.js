@@ -5,11 +5,11 @@
   const boxes = [...document.querySelectorAll("div.cell")].filter((box) => box.querySelector(".cell_input"));
   const make = (tag, attributes, text = "") => Object.assign(document.createElement(tag), attributes, { textContent: text });
 
-  // What would only be good to know another time is not worth a failure: all sites of an address share one store, and it
-  // may be full. Returns whether the browser has kept it.
-  const note = (store, key, value) => {
+  const store = globalThis.bookStore; // the page's (see progress.js)
+  // What lasts as long as the tab: where the browser has no room, or forbids it, the page is not loaded once more.
+  const note = (key, value) => {
     try {
-      store.setItem(key, value);
+      sessionStorage.setItem(key, value);
       return true;
     } catch {
       return false;
@@ -54,7 +54,7 @@
       if (loaded !== null) Object.assign(progress, { max: all, value: loaded });
     },
     fetched() {
-      note(localStorage, `book ${place} fetched`, data.pyodide);
+      store.put("setting fetched", data.pyodide);
       tellSize();
     },
     buttons: (actions) => Object.entries(actions).map(([text, action]) => {
@@ -77,9 +77,9 @@
   const RUN = `book ${place} run`; // in this tab: "tried", or what to run when the page is there again
   const isolate = async (number) => {
     const able = isSecureContext && "serviceWorker" in navigator && self === top && !window.keepsNothing;
-    // What the browser had no room for would be gone (see answers.js).
-    if (crossOriginIsolated || !able || sessionStorage.getItem(RUN) || globalThis.unkeptAnswers?.size) return false;
-    if (!note(sessionStorage, RUN, "tried")) return false;
+    // What the browser had no room for would be gone.
+    if (crossOriginIsolated || !able || sessionStorage.getItem(RUN) || store.holdsTexts()) return false;
+    if (!note(RUN, "tried")) return false;
     try {
       await navigator.serviceWorker.register(`${place}service-worker.js`);
       const late = new Promise((_, reject) => setTimeout(reject, 5000, new Error("it does not start")));
@@ -89,7 +89,7 @@
       return false;
     }
     const figures = [...document.querySelectorAll("figure.moving")].map(({ model }) => model?.moved);
-    if (!note(sessionStorage, RUN, JSON.stringify({ page: data.page, number, line: scrollY, figures }))) return false;
+    if (!note(RUN, JSON.stringify({ page: data.page, number, line: scrollY, figures }))) return false;
     location.reload();
     return true;
   };
@@ -168,7 +168,7 @@
 
   // What Python weighs is told before it is fetched; once it has come, the browser has it.
   function tellSize() {
-    const told = localStorage.getItem(`book ${place} fetched`) === data.pyodide ? "" : `${Math.round(data.bytes / 1e6)} MB`;
+    const told = store.read("setting fetched") === data.pyodide ? "" : `${Math.round(data.bytes / 1e6)} MB`;
     for (const run of [runPage, ...document.querySelectorAll("button.run-cell")]) {
       if (told && run === runPage) run.dataset.size = told;   // once a page
       else delete run.dataset.size;
@@ -205,13 +205,6 @@
   }
 
   // The outputs that the page was built with are those of nobody: what coursework knows of this reader is said over them.
-  const kept = (name) => {
-    try {
-      return JSON.parse(localStorage.getItem(`book ${place} coursework ${name}`)).text;
-    } catch {
-      return "";
-    }
-  };
   const tellWhatIsKnown = (student, record) => {
     boxes.forEach((box, number) => {
       const output = box.querySelector(".cell_output");
@@ -231,15 +224,13 @@
       output.prepend(make("p", { className: "live-known" }, said));
     });
   };
-  try {
-    tellWhatIsKnown(kept("me.txt"), JSON.parse(kept("progress.json") || "{}"));
-  } catch {} // a damaged record: then nothing is known
+  tellWhatIsKnown(store.read("coursework me.txt")?.text, JSON.parse(store.tries()?.text ?? "{}"));
 
-  // What the reader has written here before comes back, also from another tab; see answers.js for the keys.
-  const own = [`book ${place} answer ${data.page} `, `book ${place} earlier ${data.page} `, `book ${place} agreed ${data.page}`, `book ${place} given ${data.page} `];
-  const isOwn = (key) => key === `code of ${data.page}` || own.some((start) => key?.startsWith(start));
+  // What the reader has written here before comes back, also from another tab; see store.js for the keys.
+  const own = [`answer ${data.page} `, `earlier ${data.page} `, `agreed ${data.page}`, `given ${data.page} `];
+  const isOwn = (key) => own.some((start) => key?.startsWith(start));
   const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
-  if (again.page) note(sessionStorage, RUN, "tried");
+  if (again.page) note(RUN, "tried");
   // The service worker has made a newer edition whole. In a frame that forbids storage to ask for it is an error.
   if (self === top) navigator.serviceWorker?.addEventListener("message", ({ data: { edition } }) =>
     edition && script("keep.js").then(({ tellOfRenewal }) => tellOfRenewal(tools)).catch(() => {}));
@@ -249,6 +240,7 @@
     document.querySelectorAll("figure.moving").forEach(({ model }, place) => model?.move(again.figures?.[place]));
     ask(again.number);
   }
-  else if (Object.keys(localStorage).some(isOwn)) ask();
-  else addEventListener("storage", ({ key }) => page || (isOwn(key) && ask()));
+  else if (store.isNewer) tools.say(globalThis.progress.whyNotKept());
+  else if (store.keys().some(isOwn) || store.waits(`code of ${data.page}`)) ask();
+  else store.listen((key) => page || (isOwn(key) && ask()));
 }

@@ -1,6 +1,7 @@
 // What the reader takes away and brings back: the page's notebook with the answers in it, and all answers in one file.
-import { Answers, fingerprint, nameCells, PREFIX } from "./answers.js";
+import { Answers, coursework, nameCells, store } from "./answers.js";
 import { allCopies, bookCells, placeBeside, readCopy, writeCopy } from "./notebooks.js";
+import { fingerprint, NEWER, VERSION } from "./store.js";
 
 const text = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
 const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
@@ -85,7 +86,7 @@ export async function load(data, originals) {
     const there = found.get(name) ?? (inPlace && !data.cells[k]?.name ? text(codes[k].source) : undefined);
     const entry = answers.read(name);
     if (there === undefined || there === originals[k] || there === entry?.code.trimEnd()) return;
-    kept &&= answers.write(name, { code: there, number: k + 1, original: fingerprint(originals[k]), at: Date.now() });
+    kept = answers.write(name, { code: there, number: k + 1, original: fingerprint(originals[k]), at: Date.now() }) && kept;
     changed += 1;
   });
   if (!kept) return "This browser has no room for what is in the notebook, or keeps nothing: not all of it was loaded.";
@@ -99,16 +100,18 @@ export async function load(data, originals) {
 const KIND = "answers to the exercises of a book";
 
 export async function backUp() {
-  const kept = Object.fromEntries(Answers.entries(PREFIX));
+  if (store.isNewer) return NEWER;
+  const kept = Object.fromEntries(store.entries());
   const notebooks = Object.fromEntries(await allCopies());
   const day = new Date().toISOString().slice(0, 10);
-  save(`answers-${day}.json`, JSON.stringify({ kind: KIND, day, kept, notebooks }));
+  save(`answers-${day}.json`, JSON.stringify({ kind: KIND, version: VERSION, day, kept, notebooks }));
   const answers = Object.keys(kept).filter((key) => key.startsWith("answer ")).length;
   return `Saved: ${count(answers, "answer")} and ${count(Object.keys(notebooks).length, "notebook")}.`;
 }
 
 // Bring back what a backup holds. What is here and newer stays; the other text is set aside, or kept beside it.
 export async function restore() {
+  if (store.isNewer) return NEWER;
   const file = await choose(".json");
   let saved;
   try {
@@ -117,18 +120,22 @@ export async function restore() {
   } catch {
     return `${file.name} is not a backup of this book: nothing was changed.`;
   }
-  let brought = 0;
+  if (saved.version > VERSION) return `${file.name} was saved by a newer edition of this book, in a form that this page does not know: nothing was changed.`;
+  let brought = 0, kept = true;
   for (const [key, value] of Object.entries(saved.kept)) {
     const [, page, name] = key.match(/^answer (\S+) (.*)$/s) ?? [];
-    const here = localStorage.getItem(PREFIX + key);
-    if (page && here) {
+    const question = key.match(/^question (.*)$/s)?.[1];
+    if (page && store.read(key)) {
       const answers = new Answers(page), mine = answers.read(name);
       if (mine.code === value.code) continue;
-      if (mine.at >= value.at) answers.setAside(name, value.code, value.at);
-      else answers.write(name, value);
+      kept = (mine.at >= value.at ? answers.setAside(name, value.code, value.at) : answers.write(name, value)) && kept;
       brought += 1;
-    } else if (!here) {
-      localStorage.setItem(PREFIX + key, JSON.stringify(value));
+    } else if (question) {
+      kept = store.keepTries(JSON.stringify({ [question]: value.tried }), value.at) && kept;
+    } else if (key === "coursework progress.json") { // as version 2 kept it
+      kept = coursework.write("progress.json", value.text, value.at) && kept;
+    } else if (!/^(?:version$|brought )/.test(key) && store.read(key) === null) {
+      kept = store.put(key, value) && kept;
       brought += Boolean(page);
     }
   }
@@ -139,5 +146,6 @@ export async function restore() {
     await writeCopy(place, { ...copy, path: place, name: place.split("/").at(-1) });
     brought += 1;
   }
-  return `${count(brought, "answer or notebook", "answers and notebooks")} brought back; what was here and newer stands.`;
+  const lacking = kept ? "" : " This browser has no room for all of it: what found none is on this page until you leave it, and in the file.";
+  return `${count(brought, "answer or notebook", "answers and notebooks")} brought back; what was here and newer stands.${lacking}`;
 }

@@ -187,8 +187,8 @@ function takeFiles() {
     if (!python.FS.analyzePath(path).exists) continue;
     const text = python.FS.readFile(path, { encoding: "utf8" });
     if (files[name] === text) continue;
+    postMessage({ type: "kept", name, text, base: files[name] });
     files[name] = text;
-    postMessage({ type: "kept", name, text });
   }
 }
 

@@ -36,7 +36,7 @@ function slips(one, other) {
 }
 
 // What a reader looks for is rather one than another of these, where both answer as well.
-const KINDS = { page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6 };
+const KINDS = { page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8 };
 const READ = { page: true, section: true }; // those of the chapters have numbers
 const CHAPTER = 0.45, ABOUT = 0.45, TEXT = 0.3; // what a word counts that stands not in a phrase, but there
 const SAME = 1.12; // for the very words
@@ -45,9 +45,9 @@ const OTHER_WAY = 0.7, NO_WAY = 0.88; // where a conversion is asked for: the on
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 
-// ``more`` holds the words of each entry's text and its TeX, once they are there.
+// ``more`` holds the words of each entry's text, its TeX, and the figures, once they are there.
 export function finder({ pages, fields, kinds: kindsOfPlaces, entries: rows, synonyms = {} }, more = {}) {
-  const entries = rows.map((row) => Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined])));
+  const entries = [...rows, ...more.figures ?? []].map((row) => Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined])));
   for (const entry of entries) entry.kind = kindsOfPlaces[entry.kind ?? 0];
   const kinds = (synonyms.conversions ?? []).map((group) => group.map(words));
   const groups = (synonyms.words ?? []).map((group) => group.map(words).filter((phrase) => phrase.join("").length > 1));
@@ -169,7 +169,7 @@ export function finder({ pages, fields, kinds: kindsOfPlaces, entries: rows, syn
       const sum = within.get(one.entry);
       for (const [k, like] of asked.entries()) sum[k] = Math.max(sum[k], like * one.within);
     }
-    const best = new Map(), there = list.join(" ");
+    const best = new Map(), all = new Map(), there = list.join(" ");
     const ways = new Set(signs.map(({ term }) => term).filter((term) => term.includes(">"))), asksWay = ways.size > 0;
     for (const [one, { asked, own, back }] of states) {
       if (one.within) continue;
@@ -177,9 +177,19 @@ export function finder({ pages, fields, kinds: kindsOfPlaces, entries: rows, syn
       let answered = 0, used = 0;
       for (const [k, like] of asked.entries()) answered += worths[k] * Math.max(like, beside?.[k] ?? 0);
       for (const [j, like] of own.entries()) used += one.worths[j] * like;
+      if (!one.alone) {
+        if (!all.has(one.entry)) all.set(one.entry, { asked: new Float64Array(list.length), used: 0 });
+        const its = all.get(one.entry);
+        for (const [k, like] of asked.entries()) its.asked[k] = Math.max(its.asked[k], like * one.share, beside?.[k] ?? 0);
+        its.used = Math.max(its.used, used / one.worth * answered / whole);
+      }
       const score = (answered / whole) ** 1.5 * (0.5 + 0.5 * used / one.worth) * one.share * (one.list.join(" ") === there ? SAME : 1)
         * (!asksWay ? 1 : back ? OTHER_WAY : one.signs.some(({ term }) => ways.has(term)) ? 1 : NO_WAY);
       best.set(one.entry, Math.max(best.get(one.entry) ?? 0, score));
+    }
+    for (const [id, { asked, used }] of all) { // what no one phrase of a place answers, all of them may
+      const answered = asked.reduce((sum, like, k) => sum + worths[k] * like, 0);
+      best.set(id, Math.max(best.get(id) ?? 0, (answered / whole) ** 1.5 * (0.5 + 0.5 * used)));
     }
     for (const [id, sum] of within) {
       const answered = sum.reduce((all, like, k) => all + worths[k] * like, 0);

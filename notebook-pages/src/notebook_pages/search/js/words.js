@@ -11,14 +11,16 @@ const WEAK_WORDS = "actual actually algorithm approach best better book calculat
   + " definition derive describe description difference different example explain explained explanation express find finding formula formulas function good got"
   + " help implement implementation intuition intuitive know library meaning method obtain perform possible problem program programming proof prove python question"
   + " represent representation result right section show simple simply solve theorem tutorial understand value way well without work wrong write equation given not doesn many several new operator"
-  + " many two three several new first second";
-const IRREGULAR = { matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre" };
+  + " many two three several new first second"
+  // What titles of questions in forums have besides.
+  + " add allow always behave bug case cause change clarify consider create detect determine doc documentation enhancement ensure error exist expect extract fail feature generate give handle happen improve inconsistent incorrect incorrectly interpret invalid issue make may might multiple note obtain offer only output please produce proper properly provide question reach read report request return say seem suggest suggestion support suspicion take tell thing understand unexpected version weird";
+const IRREGULAR = { matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre", ninety: "90" };
 const ENDINGS = /(?:ati(?:ons?|ves?|ng|onal)|at(?:es?|ed|ors?)|i(?:ng|ngs|es|ed)|ed|es|ly|s|e|y)$/;
 const GREEK = { α: "alpha", β: "beta", γ: "gamma", δ: "delta", θ: "theta", λ: "lambda", π: "pi", σ: "sigma", φ: "phi", ϕ: "phi", ψ: "psi", ω: "omega", Ω: "omega" };
 // What words are told apart by: names of the software whole, numbers of sections whole, arrows.
 const TOKEN = /[a-z]+\d*(?:_[a-z0-9]+)+|\d+\.\d+|[a-z0-9]+|->|=>|→/g;
 
-export const plain = (text) => text.replace(/[α-ωϕΩ]/g, (sign) => ` ${GREEK[sign] ?? ""} `).normalize("NFD").replace(/[\u0300-\u036f]/g, "").toLowerCase();
+export const plain = (text) => text.replace(/°/g, " degrees ").replace(/[α-ωϕΩ]/g, (sign) => ` ${GREEK[sign] ?? ""} `).normalize("NFD").replace(/[\u0300-\u036f]/g, "").toLowerCase();
 
 // The stem of a word, about: endings of English, as long as three letters stay.
 export function stem(word) {

@@ -1,0 +1,268 @@
+// The store: all that a browser keeps of a book, its rules and its one version. Nothing else asks the browser to keep
+// anything, but for what belongs to one tab and ends with it. It has three rooms, all named after the site, so that two
+// books at one address keep apart what belongs to them:
+//
+// - entries, short texts as JSON, in localStorage: there they are kept at once, also when the tab ends in the next
+//   moment, and other tabs hear of them. One fact has one entry, so that no tab writes over what another one knows:
+//     version                    of the store, as it was when something was last written
+//     answer PAGE CELL           what the reader has written in a cell; earlier PAGE CELL PRINT: what it took the place of
+//     agreed PAGE                on what the page and its notebook last agreed
+//     record PAGE LIST NAME      one thing that was read, done or checked, or one question that was answered
+//     question NAME              what coursework knows of one question; coursework NAME: its other texts
+//     setting NAME               what the reader has chosen, or what the browser has fetched
+//     brought KEY                the fingerprint of what stood under an older key when it was taken over
+// - editions of the book, whole or not at all: files by their content in one cache, and the list that names the newest
+//   (editions.js); the service worker, which has no entries, finds the version in that list;
+// - notebooks, in the database that JupyterLite makes (notebooks.js).
+//
+// What older versions kept is taken over whenever it has changed, and stays where it is: an older edition may still be
+// open, or come back. What a newer version has kept is left alone, and said. What finds no room lasts as long as the page.
+export const VERSION = 3;
+export const NEWER = "A newer edition of this book has kept things in this browser, in a form that this page does not know. They stay"
+  + " as they are. What you do here lasts until you leave the page; a reload may bring the newer edition.";
+
+export const cacheOf = (site) => `book ${site}`;
+const LISTS = ["read", "done", "checked"];
+const blank = () => ({ read: [], done: [], checked: [], answers: {} });
+
+export function fingerprint(text) {
+  let a = 0xdeadbeef, b = 0x41c6ce57; // cyrb53, a short hash that is good enough to tell texts apart
+  for (let k = 0; k < text.length; k++) {
+    const unit = text.charCodeAt(k);
+    a = Math.imul(a ^ unit, 2654435761);
+    b = Math.imul(b ^ unit, 1597334677);
+  }
+  a = Math.imul(a ^ (a >>> 16), 2246822507) ^ Math.imul(b ^ (b >>> 13), 3266489909);
+  b = Math.imul(b ^ (b >>> 16), 2246822507) ^ Math.imul(a ^ (a >>> 13), 3266489909);
+  return (4294967296 * (2097151 & b) + (a >>> 0)).toString(36);
+}
+
+// What the browser had no room for, by its key: it lasts as long as the page, for all scripts of which this is a part.
+const unkept = (globalThis.unkept ??= new Map());
+
+// What the browser has under a key of any kind; null also where it forbids to ask.
+function found(key) {
+  try {
+    return localStorage.getItem(key);
+  } catch {
+    return null;
+  }
+}
+
+function parsed(text) {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return null;
+  }
+}
+
+const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+
+export class Store {
+  constructor(site) {
+    this.prefix = `book ${site} `;
+    this.database = `JupyterLite Storage - ${site}lite/`;
+    // Versions 1 and 2 kept these; what they kept of a page's cells, only the page can bring (see answers.js).
+    this.bring(`progress of ${site}`, (text) => this.takeRecord(parsed(text)?.pages));
+    this.bring(`${this.prefix}coursework progress.json`, (text) => this.keepTries(parsed(text)?.text, parsed(text)?.at));
+    this.bring("book predictions", (text) => this.put("setting predictions", this.read("setting predictions") ?? text));
+    this.bring(`${this.prefix}fetched`, (text) => this.put("setting fetched", text));
+  }
+
+  // Whether a newer version has kept things.
+  get isNewer() {
+    return parsed(found(`${this.prefix}version`)) > VERSION;
+  }
+
+  // What the browser has, without what found no room.
+  kept(key) {
+    return this.isNewer ? null : parsed(found(this.prefix + key));
+  }
+
+  read(key) {
+    return unkept.get(this.prefix + key) ?? this.kept(key);
+  }
+
+  // Returns whether the browser has kept it.
+  put(key, value) {
+    try {
+      if (this.isNewer) throw new Error(NEWER);
+      if (this.kept("version") !== VERSION) localStorage.setItem(`${this.prefix}version`, VERSION);
+      localStorage.setItem(this.prefix + key, JSON.stringify(value));
+      unkept.delete(this.prefix + key);
+      return true;
+    } catch {
+      this.hold(key, value);
+      return false;
+    }
+  }
+
+  // Keep something as long as the page lasts.
+  hold(key, value) {
+    unkept.set(this.prefix + key, value);
+  }
+
+  drop(key) {
+    unkept.delete(this.prefix + key);
+    try {
+      if (!this.isNewer) localStorage.removeItem(this.prefix + key);
+    } catch {} // it has nothing
+  }
+
+  keys() {
+    let there = [];
+    try {
+      if (!this.isNewer) there = Object.keys(localStorage);
+    } catch {} // it has none
+    const own = [...there, ...unkept.keys()].filter((key) => key.startsWith(this.prefix));
+    return [...new Set(own)].map((key) => key.slice(this.prefix.length));
+  }
+
+  // The entries whose keys begin with ``start``: what follows it, and the value.
+  entries(start = "") {
+    return this.keys().filter((key) => key.startsWith(start)).map((key) => [key.slice(start.length), this.read(key)])
+      .filter(([, value]) => value !== null);
+  }
+
+  // Whether what the reader has written would be lost with the page.
+  holdsTexts() {
+    return [...unkept.keys()].some((key) => key.startsWith(`${this.prefix}answer `) || key.startsWith(`${this.prefix}earlier `));
+  }
+
+  // Calls ``use`` with each key that another tab writes, and the text; with null for a key where it took away all.
+  listen(use) {
+    addEventListener("storage", ({ key, newValue }) => {
+      if (key === null || key.startsWith(this.prefix)) use(key && key.slice(this.prefix.length), newValue);
+    });
+  }
+
+  // Whether something stands under an older key that is not what was taken over before.
+  waits(old) {
+    const text = this.isNewer ? null : found(old);
+    return text !== null && this.read(`brought ${old}`) !== fingerprint(text);
+  }
+
+  // Take that over: ``take`` says whether all of it is kept. Otherwise the next page tries again.
+  bring(old, take) {
+    if (!this.waits(old)) return;
+    const text = found(old);
+    if (take(text)) this.put(`brought ${old}`, fingerprint(text));
+  }
+
+  // --- the reader's record, by pages ---------------------------------------------------------------
+
+  record() {
+    const pages = {};
+    for (const [key, value] of this.entries("record ")) {
+      const [, page, list, name] = key.match(/^(\S+) (\S+) (.*)$/s) ?? [];
+      if (!page) continue;
+      const here = (pages[decodeURI(page)] ??= blank());
+      if (list === "answers") here.answers[name] = value;
+      else here[list]?.push(name);
+    }
+    return pages;
+  }
+
+  // Make one page's record what ``wanted`` says.
+  keepRecord(page, wanted) {
+    const before = this.record()[page] ?? blank(), start = `record ${encodeURI(page)}`;
+    let kept = true;
+    for (const list of LISTS) {
+      for (const name of before[list]) if (!wanted[list].includes(name)) this.drop(`${start} ${list} ${name}`);
+      for (const name of wanted[list]) if (!before[list].includes(name)) kept = this.put(`${start} ${list} ${name}`, true) && kept;
+    }
+    for (const name of Object.keys(before.answers)) if (!(name in wanted.answers)) this.drop(`${start} answers ${name}`);
+    for (const [name, answer] of Object.entries(wanted.answers)) {
+      if (!same(answer, before.answers[name])) kept = this.put(`${start} answers ${name}`, answer) && kept;
+    }
+    return kept;
+  }
+
+  // Add what a record says that somebody else wrote, as far as it is one. Of an answer that is here, too, the first try
+  // stays, and what was right.
+  takeRecord(pages) {
+    let kept = true;
+    for (const [page, found] of Object.entries(isObject(pages) ? pages : {})) {
+      const here = this.record()[page] ?? blank();
+      for (const list of LISTS) {
+        const names = Array.isArray(found?.[list]) ? found[list].filter((name) => typeof name === "string") : [];
+        here[list] = [...new Set([...here[list], ...names])];
+      }
+      for (const [name, { first, last, right, rightAtFirst } = {}] of Object.entries(found?.answers ?? {})) {
+        const its = { first: String(first), last: String(last), right: right === true, rightAtFirst: rightAtFirst === true };
+        const mine = here.answers[name] ?? its;
+        here.answers[name] = { ...mine, last: its.last, right: mine.right || its.right };
+      }
+      kept = this.keepRecord(page, here) && kept;
+    }
+    return kept;
+  }
+
+  // --- what coursework knows of each question ------------------------------------------------------
+
+  // Its file, and when it was last changed; null where nothing is known.
+  tries() {
+    const all = this.entries("question ").sort(([one], [other]) => (one < other ? -1 : 1));
+    if (!all.length) return null;
+    const text = JSON.stringify(Object.fromEntries(all.map(([name, { tried }]) => [name, tried])), null, 1);
+    return { text, at: Math.max(...all.map(([, { at }]) => at)) };
+  }
+
+  // Keep what a file says of the questions that it changes; ``base`` is the file that it was made from. What another
+  // tab has written meanwhile is joined with it.
+  keepTries(text, at = Date.now(), base = "") {
+    const was = sound(base);
+    let kept = true;
+    for (const [name, tried] of Object.entries(sound(text))) {
+      if (same(tried, was[name])) continue;
+      const here = this.read(`question ${name}`);
+      const [older, newer] = here?.at > at ? [tried, here.tried] : [here?.tried, tried];
+      const both = same(here?.tried, was[name]) ? tried : joinTries(older, newer);
+      if (!same(both, here?.tried)) kept = this.put(`question ${name}`, { tried: both, at: Math.max(at, here?.at ?? 0) }) && kept;
+    }
+    return kept;
+  }
+}
+
+const HELP = ["mistake", "hint", "solution"]; // from little to much, as in coursework.checking.reply
+// In the entry of a question: what is known of its other variants, by number.
+const OTHERS = "other variants";
+
+// A damaged record is none, as for coursework.
+function sound(text) {
+  const found = parsed(text);
+  return isObject(found) ? found : {};
+}
+
+// What is known of one question, made one: what was right stays right, and no answer, hint or help is forgotten.
+function joinTries(older, newer) {
+  if (!isObject(older) || !isObject(newer)) return newer ?? older;
+  if ((older.variant ?? 0) !== (newer.variant ?? 0)) { // between the two somebody said who they are
+    const { [OTHERS]: others, ...own } = older;
+    const { [newer.variant ?? 0]: same, ...rest } = others ?? {};
+    return { ...joinTries(same, newer), [OTHERS]: { ...rest, [own.variant ?? 0]: own, ...newer[OTHERS] } };
+  }
+  const joined = { ...older, ...newer };
+  if (joined[OTHERS]) joined[OTHERS] = { ...older[OTHERS], ...newer[OTHERS] };
+  const right = [older, newer].find(({ outcome }) => outcome === "correct");
+  const help = right ? right.help : HELP.findLast((kind) => [older.help, newer.help].includes(kind));
+  if (right) joined.outcome = "correct";
+  if (help) joined.help = help;
+  else delete joined.help;
+  for (const list of ["answers", "after"]) {
+    if (!joined[list]) continue;
+    const known = [...(older[list] ?? []), ...(newer[list] ?? [])].map((one) => JSON.stringify(one));
+    joined[list] = [...new Set(known)].map((one) => JSON.parse(one));
+  }
+  return joined;
+}
+
+// Two files of what coursework knows, made one.
+export function joinProgress(older, newer) {
+  const [a, b] = [sound(older), sound(newer)];
+  const both = { ...a, ...b };
+  for (const name of Object.keys(a)) if (name in b) both[name] = joinTries(a[name], b[name]);
+  return JSON.stringify(both, null, 1);
+}
