@@ -217,8 +217,8 @@
       if (!said || !output) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
       if (shown && student) { // everybody's numbers are not taken for one's own
-        const folded = make("details", { className: "live-built" }, make("summary", {}, "The numbers that everybody sees"));
-        folded.append(...output.childNodes);
+        const folded = make("details", { className: "live-built" });
+        folded.append(make("summary", {}, "The numbers that everybody sees"), ...output.childNodes);
         output.append(folded);
       }
       output.prepend(make("p", { className: "live-known" }, said));
