@@ -2,6 +2,7 @@
 
 import json
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,11 +18,12 @@ from coursework.authoring.author import question
 from coursework.authoring.forms import flat, mutant, random_form, roots_for_cosines
 from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
-from coursework.checking.kinds import calls_for, canonical, fingerprint, read
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.question import Question, Variant
+from coursework.checking.reading import calls_for, canonical, fingerprint, read
 from coursework.grading.judging import marking
 from coursework.grading.judging.contract import Asked
+from coursework.grading.record import Answer
 from orientation import (
     angular_velocity_matrix,
     dcm_from_body_fixed,
@@ -235,12 +237,12 @@ def try_forms(names, number):
                 plain = one.to_plain(form)
                 reply = one.reply_to(plain)
                 assert reply.outcome == "correct", (one.name, form, reply, f"BOOK_TEST_SEED={SEED}")
-                said = {"outcome": "recorded", "plain": json.loads(json.dumps(plain))}
+                said = Answer("recorded", json.loads(json.dumps(plain)))
                 if known.secret and known.secret.calls:
                     calls = calls_for(known.secret.of(one.public))
-                    said["secret"] = {"plain": to_plain(form, calls), "calls": known.secret.digest}
+                    said = replace(said, secret={"plain": to_plain(form, calls), "calls": known.secret.digest})
                 found = marking.mark(one.name, Asked(known), said)
-                assert found["points"] == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
+                assert found.points == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
                 tried += 1
     assert secretly
     return tried

@@ -21,11 +21,12 @@ import coursework
 from coursework.authoring.author import AuthorError, question
 from coursework.authoring.forms import equivalent_forms, flat, random_form
 from coursework.checking import plugins, questions, sealing
-from coursework.checking.kinds import Fault, Undecidable, fault, read
-from coursework.checking.mistakes import message
+from coursework.checking.catalogue import message
+from coursework.checking.kinds import Fault, Undecidable
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.question import Sealed
 from coursework.checking.questions import NoSuchQuestion
+from coursework.checking.reading import fault, read
 from coursework.checking.reply import Reply
 from orientation import (
     SEQUENCES,
@@ -94,7 +95,7 @@ def student(tmp_path, monkeypatch):
         as_json = json.loads(json.dumps({one.name: one.sealed().as_json() for one in authored}))
         sealed = {name: Sealed.from_json(about, name) for name, about in as_json.items()}
 
-        def find(name):
+        def find(name, student):
             if name not in sealed:
                 raise NoSuchQuestion(name)
             return sealed[name]
@@ -539,7 +540,7 @@ def test_who_gives_up_sees_the_worked_solution_with_the_code_of_the_instructor(s
     student(one)
     assert "opens no solution" in repr(check_module.worked_solution("trial/gimbal", "ABCD"))
     sealed = one.sealed("PYGG-ZGV7-G94A")
-    check_module.find_question = lambda name: sealed
+    check_module.find_question = lambda name, student: sealed
     assert "first" in check_module.worked_solution("trial/gimbal", "pygg zgv7 g94a").solution
     assert check_module.worked_solution("trial/gimbal", "PYGG-ZGV7-G94B").solution == ""
 
@@ -678,7 +679,7 @@ def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
     for folder in plugins.sealed_folders():
         for file in sorted(folder.iterdir()):
             for name in questions.notebook_questions(file.name.removesuffix(".json")):
-                for number in range(questions.find_question(name).question.variants):
+                for number in range(questions.find_question(name, "").question.variants):
                     one = questions.notebook_questions(name.partition("/")[0], number)[name]
                     for order, step in enumerate(one.ladder):
                         opened += 1

@@ -19,6 +19,7 @@ from coursework.checking.variants import Given
 from coursework.grading.execution.sandbox import Limits, run_notebooks
 from coursework.grading.judging.contract import Asked
 from coursework.grading.judging.marking import asked_of_sandbox, mark, questions_of
+from coursework.grading.record import Answer
 
 SOURCES = sorted(find_course().sources.glob("*.ipynb"))
 LIMITS = Limits(cell_seconds=120, cell_wall_seconds=400, notebook_seconds=600, notebook_wall_seconds=900)
@@ -77,8 +78,8 @@ def test_every_authors_solution_is_right_before_the_grader(path):
             answer["secret"]["calls"] = questions[name].secret.digest
     for name, about in questions.items():
         by_a_person = about.question.kind == "free text"
-        found = mark(name, Asked(about), result["answers"][name])
-        assert found["outcome"] == ("undecided" if by_a_person else "correct"), (name, found)
+        found = mark(name, Asked(about), Answer.from_json(result["answers"][name]))
+        assert found.outcome == ("undecided" if by_a_person else "correct"), (name, found)
 
 
 def plain_results(door):

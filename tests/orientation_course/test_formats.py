@@ -15,8 +15,9 @@ import orientation_course
 from coursework.authoring.author import AuthoredQuestion, AuthorError
 from coursework.authoring.course import find_course
 from coursework.authoring.release import release
-from coursework.checking import format_3, mistakes, plugins, questions, sealing
-from coursework.checking.mistakes import by_short_name, short_name
+from coursework.checking import catalogue, format_3, mistakes, plugins, questions, sealing
+from coursework.checking.catalogue import by_short_name
+from coursework.checking.mistakes import short_name
 from coursework.checking.plain import to_plain
 from coursework.checking.question import Question
 from coursework.checking.questions import NOT_IN_THIS_CATALOGUE, judge, notebook_questions
@@ -49,11 +50,11 @@ def catalogue_in_another_order(monkeypatch):
         for name, kind in plugins.kinds().items()
     }
     messages = turned_round(mistakes.MESSAGES)
-    monkeypatch.setattr(mistakes, "MESSAGES", messages)
-    monkeypatch.setattr(mistakes, "kinds", lambda: changed)
-    mistakes._by_short_name.cache_clear()
+    monkeypatch.setattr(catalogue, "MESSAGES", messages)
+    monkeypatch.setattr(catalogue, "kinds", lambda: changed)
+    catalogue._by_short_name.cache_clear()
     yield
-    mistakes._by_short_name.cache_clear()
+    catalogue._by_short_name.cache_clear()
 
 
 def replies_of_then():
@@ -103,7 +104,7 @@ def test_a_new_mistake_changes_nothing_of_what_is_sealed(tmp_path, monkeypatch, 
     request.getfixturevalue("catalogue_in_another_order")
     told = {}
     for mistake in question.mistakes:
-        reply = judge(question.name, questions.find_question(question.name), to_plain(mistake.answer))
+        reply = judge(question.name, questions.find_question(question.name, ""), to_plain(mistake.answer))
         told[mistake.note] = reply.note
     assert told["scalar last"] == "scalar last" and told["conjugate"] == "conjugate"
     assert len(set(told.values())) > 2
@@ -126,16 +127,16 @@ def test_a_format_that_is_not_known_is_refused_in_words(beside, number):
     file = beside / "chapters.json"
     file.write_text(json.dumps({**json.loads(file.read_text("utf8")), "format": number}), "utf8")
     with pytest.raises(RuntimeError, match=f"of chapters are of format {number}.*reads formats 3 and 4.*update"):
-        questions.find_question("chapters/about-x")
+        questions.find_question("chapters/about-x", "")
 
 
 def test_a_question_that_has_another_name_says_so(beside):
     about = {"format": questions.FORMAT, "moved": {"chapters/around-x": "chapters/about-x"}, "questions": {}}
     (beside / questions.MOVED).write_text(json.dumps(about), "utf8")
     with pytest.raises(questions.NoSuchQuestion, match="'chapters/around-x' is called 'chapters/about-x'"):
-        questions.find_question("chapters/around-x")
+        questions.find_question("chapters/around-x", "")
     with pytest.raises(questions.NoSuchQuestion, match="Did you mean"):
-        questions.find_question("chapters/abut-x")
+        questions.find_question("chapters/abut-x", "")
 
 
 def test_a_release_tells_the_names_that_questions_had(tmp_path):
@@ -168,12 +169,12 @@ def test_two_mistakes_never_have_one_short_name(monkeypatch):
     for kind in plugins.kinds():
         if kind != "function":
             by_short_name(Question(kind, symbols={f"q_{number}": (-1, 1) for number in range(9)}))
-    mistakes._by_short_name.cache_clear()
+    catalogue._by_short_name.cache_clear()
     numbers = itertools.cycle([b"same"])
-    monkeypatch.setattr(mistakes, "short_name", lambda note, details: next(numbers))
+    monkeypatch.setattr(catalogue, "short_name", lambda note, details: next(numbers))
     with pytest.raises(RuntimeError, match="one short name"):
         by_short_name(Question("expression"))
-    mistakes._by_short_name.cache_clear()
+    catalogue._by_short_name.cache_clear()
 
 
 def test_the_table_of_a_course_is_its_own(monkeypatch):

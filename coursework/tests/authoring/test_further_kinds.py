@@ -20,6 +20,7 @@ from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.units import PREFIXES, WITH_PREFIX, UnknownUnit, unit
 from coursework.grading.judging import marking
 from coursework.grading.judging.contract import Asked
+from coursework.grading.record import Answer, Mark, Record
 from coursework.grading.review import Class
 
 KNOWN = {
@@ -180,8 +181,8 @@ def test_an_order():
 
 def share(question, answer):
     about = Asked(marking.contract_of(question, b"any secret"))
-    mark = marking.mark("trial/one", about, {"outcome": "recorded", "plain": to_plain(answer)})
-    return mark["points"], mark["messages"]
+    mark = marking.mark("trial/one", about, Answer("recorded", to_plain(answer)))
+    return mark.points, mark.messages
 
 
 def test_an_order_that_is_right_in_part_earns_its_share():
@@ -230,8 +231,8 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
     assert outcome(question, 3) == ("invalid", "shape")
     about = Asked(marking.contract_of(question, b"any secret"))
     for text, expected in (("They do not.", "undecided"), ("", "not attempted"), (ESSAY, "undecided")):
-        mark = marking.mark("trial/one", about, {"outcome": "recorded", "plain": to_plain(text)})
-        assert (mark["outcome"], mark["points"]) == (expected, 0)
+        mark = marking.mark("trial/one", about, Answer("recorded", to_plain(text)))
+        assert (mark.outcome, mark.points) == (expected, 0)
     assert try_question(make("free text", ESSAY)).faults == ["Nothing says what a person looks for: give a `rubric`."]
     with pytest.raises(author.AuthorError, match="a person reads"):
         make("expression", 3, rubric=RUBRIC)
@@ -242,7 +243,9 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
 def test_the_rubric_stands_on_the_page_where_a_person_judges(tmp_path):
     graded = Class(tmp_path)
     graded.questions = {"trial/one": marking.contract_of(make("free text", ESSAY, rubric=RUBRIC), b"any secret")}
-    lines = graded.lines(SimpleNamespace(question="trial/one"), {"marks": {"trial/one": {}}})
+    lines = graded.lines(
+        SimpleNamespace(question="trial/one"), Record("ann", "trial", marks={"trial/one": Mark("undecided")})
+    )
     assert [line for line, *_ in lines] == RUBRIC
 
 

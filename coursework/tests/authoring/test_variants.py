@@ -28,6 +28,7 @@ from coursework.checking import identity, questions, sealing, variants
 from coursework.checking.plain import to_plain
 from coursework.grading.grade import grade
 from coursework.grading.judging import marking
+from coursework.grading.record import Answer, Remembered
 from coursework.grading.reporting.reports import feedback_of
 from coursework.grading.submissions import intake
 
@@ -193,11 +194,11 @@ def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course
         for other in range(6):
             given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
             plain = to_plain(given["force"] * given["arm"])
-            mark = marking.mark(NAME, own[NAME], {"outcome": "recorded", "plain": plain})
+            mark = marking.mark(NAME, own[NAME], Answer("recorded", plain))
             expected = ("correct", "", 1) if other == number else ("wrong", "other numbers", 0)
-            assert (mark["outcome"], mark["note"], mark["points"]) == expected
-        plain = {"outcome": "recorded", "plain": to_plain(7)}
-        assert marking.mark("levers/plain", own["levers/plain"], plain)["points"] == 1
+            assert (mark.outcome, mark.note, mark.points) == expected
+        plain = Answer("recorded", to_plain(7))
+        assert marking.mark("levers/plain", own["levers/plain"], plain).points == 1
         assert (
             marking.asked_of_sandbox(marking.with_second_chances(own))[NAME]["given"]
             == own[NAME].contract.question.given
@@ -319,15 +320,15 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
     chances = own[NAME].second_chances
     assert [one.variant.number for one in chances.values()] == [0, 1]
     right = {
-        name: {"outcome": "recorded", "plain": to_plain(given["force"] * given["arm"])}
+        name: Answer("recorded", to_plain(given["force"] * given["arm"]))
         for name, contract in {NAME: own[NAME].contract, **chances}.items()
         for given in [contract.question.given]
     }
     first, second = chances
-    missing = {"outcome": "missing"}
+    missing = Answer("missing")
 
     def marked(answers, **helped):
-        remembered = {{"own": NAME, "first": first}[one]: {"tries": 3, "help": had} for one, had in helped.items()}
+        remembered = {{"own": NAME, "first": first}[one]: Remembered(3, help=had) for one, had in helped.items()}
         return marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
 
     for answers, helped, points, note in (
@@ -345,11 +346,11 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
         ({NAME: right[NAME], f"{NAME}/sibling-3": right[second]}, {"own": "hint"}, 0.8, "with help"),
     ):
         mark = marked(answers, **helped)
-        assert (mark["points"], mark["note"]) == (points, note), (answers, helped)
-    assert marked(right, own="mistake")["tries"] == 3 and marked(right)["tries"] is None
+        assert (mark.points, mark.note) == (points, note), (answers, helped)
+    assert marked(right, own="mistake").tries == 3 and marked(right).tries is None
     own[NAME] = replace(own[NAME], contract=replace(own[NAME].contract, credit={"help": 1}))
     mark = marked({NAME: right[NAME]}, own="mistake")
-    assert mark["points"] == 1 and mark["messages"] == []  # an author who wants help to cost nothing
+    assert mark.points == 1 and mark.messages == ()  # an author who wants help to cost nothing
     asked = marking.asked_of_sandbox(marking.with_second_chances(own, {first}))
     assert set(asked) == {NAME, "levers/plain", first} and asked[first]["given"] == chances[first].question.given
 

@@ -24,10 +24,11 @@ from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
-from coursework.grading.judging.cases import Case, Contracts, case_by_rule, variants_of
+from coursework.grading.judging.cases import Contracts, case_by_rule, variants_of
 from coursework.grading.judging.contract import Asked, Contract
 from coursework.grading.judging.ledger import CUT, Collision, Ledger
 from coursework.grading.judging.marking import questions_of
+from coursework.grading.record import Answer, Mark, Record, Remembered
 from coursework.grading.reporting.laboratory import BadPolicy, Policies
 from coursework.grading.review import Class
 from coursework.grading.store import Store
@@ -98,13 +99,13 @@ def out(begun, tmp_path):
 
 
 def marks_of(store, name):
-    return {record["student"]: record["marks"][name] for record in store.all()}
+    return {record.student: record.marks[name] for record in store.all()}
 
 
 def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp_path):
     """By its number, nearly everybody had another one then: of 145 right answers 122 became wrong."""
     before = marks_of(out, NAME)
-    assert all(before[student]["points"] == 2 for student in STUDENTS) and before["wrong"]["points"] == 0
+    assert all(before[student].points == 2 for student in STUDENTS) and before["wrong"].points == 0
     taken_out = begun.own[STUDENTS[0]]
     left = [weight for weight in WEIGHTS if weight != taken_out]
     moved = regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left))
@@ -120,16 +121,15 @@ def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp
 
 def test_records_from_before_there_were_cases_are_brought_over(begun, out, tmp_path):
     for record in list(out.all()):
-        old = {key: value for key, value in record.items() if key not in ("cases", "says")}
-        out.save({**old, "format": 2})
+        out.save(dataclasses.replace(record, cases=None, format=2))
     shutil.rmtree(out.folder / "contracts")
     left = [weight for weight in WEIGHTS if weight != begun.own[STUDENTS[3]]]
     assert regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left)) == []
     for record in out.all():
-        case = Case.from_json(record["cases"][NAME])
-        assert record["format"] == 3 and "older record" in case.known
+        case = record.cases[NAME]
+        assert record.format == 3 and "older record" in case.known
         asked = Contracts(out.folder).of(case.own.contract)
-        assert record["student"] == "wrong" or asked.question.given["weight"] == begun.own[record["student"]]
+        assert record.student == "wrong" or asked.question.given["weight"] == begun.own[record.student]
         assert set(case.siblings) == set(siblings_of(NAME, 8))
     # Nothing but the contracts is needed from then on.
     shutil.rmtree(out.folder / "questions")
@@ -142,15 +142,15 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     regrade(out.folder, solutions=fewer)
     found = marks_of(out, "beams/twice").values()
     # All that is called now was called then; but other secret calls follow from other calls.
-    assert {(mark["outcome"], mark["note"]) for mark in found} <= {("correct", ""), ("undecided", "not called")}
+    assert {(mark.outcome, mark.note) for mark in found} <= {("correct", ""), ("undecided", "not called")}
     others = write_beams(tmp_path / "others", WEIGHTS, "[[7.5], [1.5]]")
     regrade(out.folder, solutions=others)
-    assert {(mark["outcome"], mark["note"]) for mark in marks_of(out, "beams/twice").values()} == {
+    assert {(mark.outcome, mark.note) for mark in marks_of(out, "beams/twice").values()} == {
         ("undecided", "not called")
     }
     grade(begun.place / "in", out.folder, solutions=others, limits=LIMITS, show=io.StringIO())
-    assert {mark["points"] for mark in marks_of(out, "beams/twice").values()} == {3}
-    assert {mark["points"] for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {2}
+    assert {mark.points for mark in marks_of(out, "beams/twice").values()} == {3}
+    assert {mark.points for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {2}
 
 
 def test_a_function_is_judged_by_the_calls_that_it_was_given():
@@ -173,7 +173,7 @@ def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out
         if cluster.question == NAME:
             about = graded.contract(cluster)
             given = about.question.given["weight"]
-            students = {record["student"] for record in cluster.members} - {"wrong"}
+            students = {record.student for record in cluster.members} - {"wrong"}
             assert {begun.own[student] for student in students} <= {given}
             assert about.plain["nodes"][0][1] == str(2 * given)
             seen |= students
@@ -215,7 +215,7 @@ class _Hostile:
     def __call__(self, name, question, *others):
         if name == "second":
             self.what()
-        return {"outcome": "correct", "name": name}
+        return Mark("correct")
 
 
 def _too_long():
@@ -239,13 +239,13 @@ def test_an_answer_that_stops_the_judge_costs_nobody_else_a_mark(monkeypatch, tm
     names = ("first", "second", "third")
     monkeypatch.setattr(judging, "MOST_SECONDS", 1)
     monkeypatch.setattr(marking, "mark_with_siblings", _Hostile(what))
-    record = {"student": "ann", "assignment": "turns", "answers": {}, "finished": True, "notebooks": []}
+    record = Record("ann", "turns")
     said = []
     with judging.Judge({"turns": dict.fromkeys(names, question)}, Contracts(tmp_path), said.append) as judge:
         for _ in range(2):
             found = judge.marks(record)
-            assert [found[name]["outcome"] for name in names] == ["correct", "undecided", "correct"]
-            assert found["second"]["note"] == "too much work" and found["second"]["worth"] == 2
+            assert [found[name].outcome for name in names] == ["correct", "undecided", "correct"]
+            assert found["second"].note == "too much work" and found["second"].worth == 2
     assert len(said) == 2 and "'ann' turns second" in said[0]
 
 
@@ -264,17 +264,17 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
     assert "student-00" in (tmp_path / "out" / "whose.csv").read_text()
     said = io.StringIO()
     grade(tmp_path / "in", tmp_path / "out", show=said, as_listed=True, **options)
-    lost = sum(mark["note"] == "other numbers" for mark in marks_of(Store(tmp_path / "out"), NAME).values())
+    lost = sum(mark.note == "other numbers" for mark in marks_of(Store(tmp_path / "out"), NAME).values())
     assert lost < 3 or f"{lost} of 6 answers are right for other numbers" in said.getvalue()
     roster = tmp_path / "roster.csv"
     roster.write_text("student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6]))
     grade(tmp_path / "in", tmp_path / "out", show=io.StringIO(), roster=roster, **options)
-    assert {mark["points"] for mark in marks_of(Store(tmp_path / "out"), NAME).values()} == {2}
+    assert {mark.points for mark in marks_of(Store(tmp_path / "out"), NAME).values()} == {2}
 
 
 # --- decisions ----------------------------------------------------------------------------------
 
-RECORD = {"student": "ann", "assignment": "turns", "answers": {}}
+RECORD = Record("ann", "turns")
 
 
 def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
@@ -337,19 +337,20 @@ def test_a_ledger_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
 def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, out):
     graded = Class(out.folder)
     for record in graded.records:
-        if record["student"] != "wrong":
-            cells = "\n".join(graded.store.work(record["notebooks"][0]["sha256"]))
-            assert record["student"] in cells
+        if record.student != "wrong":
+            cells = "\n".join(graded.store.work(record.notebooks[0].sha256))
+            assert record.student in cells
             shown = graded.without_names(cells)
-            assert record["student"] not in shown and f"me('{graded.aliases[record['student']]}')" in shown
+            assert record.student not in shown and f"me('{graded.aliases[record.student]}')" in shown
     assert graded.without_names("student('Nobody Known')") == "student('somebody')"
     assert not re.search(
         "student-0", graded.without_names("asked Student-03, student-030 and STUDENT-04").replace("student-030", "")
     )
     assert graded.without_names(None) is None
-    graded.records[0]["identity"] = {"name": "Mark O'Neill", "email": "m.oneill@uni.example"}
+    identity = {"name": "Mark O'Neill", "email": "m.oneill@uni.example"}
+    graded.records[0] = dataclasses.replace(graded.records[0], identity=identity)
     graded._know_names()
-    alias = graded.aliases[graded.records[0]["student"]]
+    alias = graded.aliases[graded.records[0].student]
     assert graded.without_names("Mark, m.oneill and Neill mark") == f"{alias}, {alias} and {alias} mark"
 
 
@@ -366,15 +367,15 @@ def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(
     """One of eight has the same numbers; with two siblings it was three, and with four variants three of four."""
     questions = questions_of(begun.place / "solutions" / "beams.ipynb", b"any")
     earned, asked = 0, {NAME: questions[NAME]}
-    friends = {"outcome": "recorded", "plain": to_plain(2 * WEIGHTS[3])}
+    friends = Answer("recorded", to_plain(2 * WEIGHTS[3]))
     for number in range(8):
         student = next(f"{k}" for k in range(999) if variant_of(f"{k}", NAME, 8) == number)
         own, _ = marking.of_student(asked, student)
         answers = dict.fromkeys([NAME, *siblings_of(NAME, 8)], friends)
         for had in ("", "solution"):
-            remembered = {NAME: {"tries": 1, "help": had}} if had else {}
+            remembered = {NAME: Remembered(1, help=had)} if had else {}
             mark = marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
-            earned += mark["points"] > 0
+            earned += mark.points > 0
     assert earned == 2  # of 16
 
 
@@ -546,7 +547,7 @@ def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_
     assert list(out.all()) == before and f"{len(losing)} student" in capsys.readouterr().out
     main(["regrade", str(out.folder), "--solutions", str(solutions), "--yes"])
     assert f"{len(losing) + len(gaining)} moved." in capsys.readouterr().out
-    assert {one["student"] for one in out.all() if one["marks"][NAME]["points"] == 0} == losing | {"wrong"} - gaining
+    assert {one.student for one in out.all() if one.marks[NAME].points == 0} == losing | {"wrong"} - gaining
     assert regrade(out.folder, solutions=solutions, dry_run=True).changes == []
 
 
@@ -567,19 +568,19 @@ def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy
     after = marks_of(out, NAME)
     for student, mark in after.items():
         expected = {
-            "never lower": (before[student]["points"], 2),
+            "never lower": (before[student].points, 2),
             "full credit": (2, 2),
-            "taken out": (2 if student in had else before[student]["points"], 2),
+            "taken out": (2 if student in had else before[student].points, 2),
             "void": (0, 0),
         }[policy]
         if student != "wrong" or policy != "taken out":
-            assert (mark["points"], mark["worth"]) == expected, student
+            assert (mark.points, mark.worth) == expected, student
     # What was chosen holds from then on; and a person's decision stands above it.
     records = list(out.all())
     assert regrade(out.folder, solutions=solutions) == [] and list(out.all()) == records
     Ledger(out.folder).add(out.read(STUDENTS[0], "beams"), NAME, 0.5, who="Ann")
     regrade(out.folder, solutions=solutions)
-    assert out.read(STUDENTS[0], "beams")["marks"][NAME]["points"] == (0 if policy == "void" else 1)
+    assert out.read(STUDENTS[0], "beams").marks[NAME].points == (0 if policy == "void" else 1)
     with pytest.raises(BadPolicy, match="no question 'beams/lode'"):
         regrade(out.folder, solutions=solutions, policies=Policies(void=("beams/lode",)))
 
@@ -590,13 +591,13 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     options = {"limits": LIMITS, "show": said}
     solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
     assert grade(begun.place / "in", out.folder, solutions=solutions, **options)["graded"] == 0
-    assert {mark["points"] for mark in marks_of(out, NAME).values()} == {0}
+    assert {mark.points for mark in marks_of(out, NAME).values()} == {0}
     calls = mended(tmp_path / "calls", ("2*x", "x + x"), calls="[[7.5], [1.5]]")
     found = regrade(out.folder, solutions=calls, dry_run=True)
     assert {one.student for one in found.again} == {*STUDENTS, "wrong"} and "runs just these" in found.lines()[-1]
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
     assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
-    assert out.read(STUDENTS[0], "beams")["marks"]["beams/twice"]["points"] == 3
+    assert out.read(STUDENTS[0], "beams").marks["beams/twice"].points == 3
 
 
 def test_the_figure_of_a_question_is_seen_in_the_review(tmp_path):

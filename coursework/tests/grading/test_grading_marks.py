@@ -21,6 +21,7 @@ from coursework.checking.questions import compare, judge
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.contract import Asked
 from coursework.grading.judging.marking import CUT_SHORT, mark, questions_of
+from coursework.grading.record import Answer, Mark
 from coursework.grading.reporting import reports
 
 
@@ -39,7 +40,7 @@ def questions(solutions):
 
 
 def given(answer, calls=None):
-    return {"outcome": "recorded", "plain": to_plain(answer, calls), "from": "check", "cell": 1}
+    return Answer("recorded", to_plain(answer, calls), source="check", cell=1)
 
 
 def given_function(question, function):
@@ -47,7 +48,7 @@ def given_function(question, function):
     said = given(function, question.contract.question.calls)
     place = question.contract.secret
     with contextlib.suppress(NotPlain):
-        said["secret"] = {"plain": to_plain(function, place.calls), "calls": place.digest}
+        return replace(said, secret={"plain": to_plain(function, place.calls), "calls": place.digest})
     return said
 
 
@@ -79,23 +80,23 @@ A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(the
 )
 def test_outcome_note_and_points(questions, name, answer, outcome, note, points):
     found = mark(name, questions[name], given(answer))
-    assert (found["outcome"], found["note"], found["points"]) == (outcome, note, points)
-    assert found["worth"] == questions[name].contract.worth
-    assert (outcome == "correct") == (not found["messages"])
+    assert (found.outcome, found.note, found.points) == (outcome, note, points)
+    assert found.worth == questions[name].contract.worth
+    assert (outcome == "correct") == (not found.messages)
 
 
 def test_functions_are_judged_by_what_they_return(questions):
     name = "turns/doubled"
     question = questions[name]
-    assert mark(name, question, given_function(question, lambda x: 2 * x))["points"] == 3
-    assert mark(name, question, given_function(question, lambda x: x / 2))["outcome"] == "wrong"
-    assert mark(name, question, given_function(question, lambda x: 1 / 0))["note"] == "raised an error"
-    assert mark(name, question, given_function(question, lambda x: None))["outcome"] == "not attempted"
+    assert mark(name, question, given_function(question, lambda x: 2 * x)).points == 3
+    assert mark(name, question, given_function(question, lambda x: x / 2)).outcome == "wrong"
+    assert mark(name, question, given_function(question, lambda x: 1 / 0)).note == "raised an error"
+    assert mark(name, question, given_function(question, lambda x: None)).outcome == "not attempted"
 
 
 def marks_of(questions, name, answer):
     found = mark(name, questions[name], answer)
-    return found["outcome"], found["note"], found["points"]
+    return found.outcome, found.note, found.points
 
 
 def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
@@ -125,15 +126,15 @@ def test_a_table_of_what_a_function_returned_is_no_function(questions):
     for otherwise in (0.0, 1e300, "?", None):
         forged = given_function(question, lambda x, otherwise=otherwise: table.get(x, otherwise))
         assert marks_of(questions, "turns/doubled", forged) == ("wrong", "right only where it is checked", 0)
-    refusing = {**given_function(question, lambda x: 2 * x), "secret": {"unreadable": "It raised."}}
+    refusing = replace(given_function(question, lambda x: 2 * x), secret={"unreadable": "It raised."})
     assert marks_of(questions, "turns/doubled", refusing)[1] == "right only where it is checked"
     # What was not called, by whosever fault, goes to a person; and so does what was called with other secrets.
     for said in (
         {},
         {"unreadable": CUT_SHORT[0]},
-        {**given_function(question, lambda x: 2 * x)["secret"], "calls": "x"},
+        {**given_function(question, lambda x: 2 * x).secret, "calls": "x"},
     ):
-        found = {**given_function(question, lambda x: 2 * x), "secret": said}
+        found = replace(given_function(question, lambda x: 2 * x), secret=said)
         assert marks_of(questions, "turns/doubled", found) == ("undecided", "not called", 0)
 
 
@@ -223,11 +224,9 @@ def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, monkeypa
     monkeypatch.setattr(marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest))
     first, again = (mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) for _ in range(2))
     assert first == again and judged == ["turns/about-x"]
-    again["outcome"] = "decided"  # what a person decides on one is the others' not
-    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) == first
     changed = Asked(replace(questions["turns/about-x"].contract, version="another", worth=7))
-    assert mark("turns/about-x", changed, given(A_C_N))["points"] == 7
-    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N.T))["outcome"] == "wrong"
+    assert mark("turns/about-x", changed, given(A_C_N)).points == 7
+    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N.T)).outcome == "wrong"
 
 
 def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
@@ -238,14 +237,14 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
             answers = [question.plain, *(entry.plain for entry in question.entries.values())]
             for plain in answers:
                 reply = judge(name, sealed, plain)
-                said = {"outcome": "recorded", "plain": json.loads(json.dumps(plain))}
+                said = Answer("recorded", json.loads(json.dumps(plain)))
                 if question.public.kind == "function" and plain == question.plain:
                     said = given_function(questions[name], question.answer)
                 found = mark(name, questions[name], said)
-                assert (found["outcome"], found["note"], found["messages"]) == (
+                assert (found.outcome, found.note, found.messages) == (
                     reply.outcome,
                     reply.note,
-                    reply.messages,
+                    tuple(reply.messages),
                 )
                 compared += 1
     assert compared > 20
@@ -289,8 +288,8 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
 )
 def test_nothing_is_earned_without_an_answer(questions, answer, finished, outcome, note):
     limited = answer.pop("limited", False)
-    found = mark("turns/about-x", questions["turns/about-x"], answer, finished, limited)
-    assert (found["outcome"], found["note"], found["points"]) == (outcome, note, 0)
+    found = mark("turns/about-x", questions["turns/about-x"], Answer.from_json(answer), finished, limited)
+    assert (found.outcome, found.note, found.points) == (outcome, note, 0)
 
 
 def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
@@ -300,7 +299,7 @@ def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
     monkeypatch.setattr(marking, "_marked", {})
     monkeypatch.setattr(marking, "compare", fail)
     found = mark("turns/about-x", questions["turns/about-x"], given(A_C_N))
-    assert (found["outcome"], found["note"], found["points"]) == ("undecided", "not worked out", 0)
+    assert (found.outcome, found.note, found.points) == ("undecided", "not worked out", 0)
 
 
 def test_the_sandbox_is_told_names_and_calls_and_nothing_else(questions):
@@ -339,8 +338,8 @@ def test_a_costly_answer_is_not_tried_on_every_variant(questions, monkeypatch):
     monkeypatch.setattr(marking, "_marked", {})
     long = {"value": ["expression", 1_500], "nodes": [["symbol", "alpha"], *(["sin", order] for order in range(1_500))]}
     for plain, times in ((to_plain(sm.sin(alpha - beta)), 16), (long, 1)):
-        found = mark("turns/sum", question, {"outcome": "recorded", "plain": plain, "from": "check", "cell": 1})
-        assert found["outcome"] == "wrong" and len(judged) == times
+        found = mark("turns/sum", question, Answer("recorded", plain, source="check", cell=1))
+        assert found.outcome == "wrong" and len(judged) == times
         judged.clear()
 
 
@@ -380,5 +379,5 @@ def test_every_mistake_has_words_for_the_report():
         "number": 8,
     }
     for note in reports.DEEDS:
-        said = reports.deed({"note": note, "details": details, "messages": []})
+        said = reports.deed(Mark("wrong", note, details))
         assert said and "{" not in said

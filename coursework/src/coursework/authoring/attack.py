@@ -23,15 +23,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checking import sealing
-from ..checking.kinds import EXACT, EXACT_WIDTH, FAR, NEAR, PARTS, calls_for, sign_limit, tolerances
-from ..checking.kinds import offsets as offsets_of
+from ..checking.kinds import PARTS, sign_limit
 from ..checking.plugins import kinds, plugins
 from ..checking.points import points
+from ..checking.reading import EXACT, EXACT_WIDTH, FAR, NEAR, calls_for, tolerances
+from ..checking.reading import offsets as offsets_of
 from ..checking.units import unit
 from . import typed
 
 #: What parts the words of a question from the open code of its cell.
 CODE = "\n\n```python\n"
+#: To be raised when the attack gets better: what an older one has measured is measured again then.
+VERSION = 1
 #: Slow hashes that the attack on one question may need; a question beyond it counts as not guessable.
 BUDGET = 2**16
 #: Candidates that are worked out together, and those that are tried before another idea has its turn.
@@ -287,7 +290,7 @@ def _with_units(public, numbers):
 def fingerprints_of(public, numbers):
     """The fingerprints of many candidates: texts, with ``None`` where a candidate is not finite.
 
-    As :func:`coursework.checking.kinds.fingerprint`, in double precision; a test compares the two.
+    As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the two.
     """
     if isinstance(numbers, list):
         return numbers

@@ -26,31 +26,28 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..checking import sealing
+from ..checking.catalogue import by_short_name
+from ..checking.catalogue import mistakes as catalogued_mistakes
 from ..checking.evaluate import MP
 from ..checking.fields import Misread
-from ..checking.kinds import (
-    PARTS,
-    Blank,
-    Fault,
+from ..checking.kinds import PARTS, Blank, Fault, Undecidable, sign_limit
+from ..checking.mistakes import GENERAL, Mistake, short_name
+from ..checking.plain import NotPlain, Plain, to_plain
+from ..checking.plugins import kind_of_values, kinds
+from ..checking.points import ANGLES
+from ..checking.question import OUTCOMES, KnownAnswer, Locker, Note, Question, Sealed
+from ..checking.questions import CODE_LETTERS, NEARLY, code_text, compare, rung_key, salt_of_all
+from ..checking.reading import (
     Reading,
-    Undecidable,
     calls_for,
     canonical,
     edges_near,
     fingerprint,
     fingerprints,
     read,
-    sign_limit,
     tolerances,
     within,
 )
-from ..checking.mistakes import GENERAL, Mistake, by_short_name, short_name
-from ..checking.mistakes import mistakes as catalogued_mistakes
-from ..checking.plain import NotPlain, Plain, to_plain
-from ..checking.plugins import kind_of_values, kinds
-from ..checking.points import ANGLES
-from ..checking.question import OUTCOMES, KnownAnswer, Locker, Note, Question, Sealed
-from ..checking.questions import CODE_LETTERS, NEARLY, code_text, compare, rung_key, salt_of_all
 from ..checking.units import UnknownUnit
 
 #: What answers without symbols may be off by, if the question says nothing: three decimals are enough.

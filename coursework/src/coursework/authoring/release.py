@@ -21,9 +21,9 @@ from pathlib import Path
 
 from ..checking import sealing
 from ..checking.evaluate import MP
-from ..checking.kinds import canonical, read
 from ..checking.question import FORMAT
 from ..checking.questions import MOVED, beside, salt_of_all
+from ..checking.reading import canonical, read
 from ..checking.variants import image
 from .author import AuthorError, solution_code
 from .selftest import secrets_of, told_openly, try_question

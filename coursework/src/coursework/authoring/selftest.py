@@ -21,15 +21,16 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
+from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable
-from ..checking.mistakes import GENERAL, message
+from ..checking.mistakes import GENERAL
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds, plugins
 from ..checking.questions import judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from ..checking.variants import shown
 from . import typed
-from .attack import BUDGET, CODE, Found, attack
+from .attack import BUDGET, CODE, VERSION, Found, attack
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
 from .source import (
@@ -486,13 +487,12 @@ def digest_of_question(source, course, name):
 
 @functools.cache
 def digest_of_attack():
-    """A text that follows from the attack: our two modules, those of plug-ins, and what functions they apply."""
-    modules = [attack.__module__, typed.__name__, *(f"{plugin.__name__}.attack" for plugin in plugins())]
-    digest = hashlib.sha256(" ".join(step.name for step in typed.public_functions()).encode())
-    for name in modules:
-        found = importlib.util.find_spec(name)
-        digest.update(Path(found.origin).read_bytes() if found else b"")
-    return digest.hexdigest()
+    """A text that follows from the attack: which versions of it there are, and what functions it applies."""
+    modules = [f"{plugin.__name__}.attack" for plugin in plugins()]
+    own = [importlib.import_module(name) for name in modules if importlib.util.find_spec(name)]
+    versions = [VERSION, *(getattr(module, "VERSION", 0) for module in own)]
+    known = json.dumps([versions, [step.name for step in typed.public_functions()]])
+    return hashlib.sha256(known.encode()).hexdigest()
 
 
 def proposal(name, worth, found):

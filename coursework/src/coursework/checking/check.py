@@ -7,8 +7,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from .identity import forgotten
-from .kinds import calls_for
+from .identity import forgotten, identity
 from .plain import NotPlain, to_plain
 from .question import Locker, Place
 from .questions import (
@@ -23,6 +22,7 @@ from .questions import (
     rung_key,
     solution_on,
 )
+from .reading import calls_for
 from .reply import HELP, Reply
 from .sealing import unseal
 from .variants import siblings_of, without_sibling
@@ -68,21 +68,22 @@ def check(name: str, answer: object) -> Reply:
     NoSuchQuestion
         If the name is misspelt.
     """
-    sealed = find_question(name)
+    student = identity()
+    sealed = find_question(name, student)
     try:
         reply = judge(name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True))
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:
         reply.solution = solution_on(sealed, reply.opened.solution)
-    entry = _remember(name, reply)
+    entry = _remember(name, student, reply)
     if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS and entry:
-        _show_next_hint(sealed, reply, entry)
+        _show_next_hint(sealed, student, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
         _offer_sibling(reply, sealed.question, reply.help)
-    if reply.outcome != "not attempted" and forgotten(sealed.question):
-        reply.messages.append(forgotten(sealed.question))
+    if reply.outcome != "not attempted" and forgotten(student, sealed.question):
+        reply.messages.append(forgotten(student, sealed.question))
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
     if isinstance(entry.get("answers"), list):
         reply.tried = [str(answer)[:DIGITS] for answer in entry["answers"][-MOST_TOLD:]]
@@ -96,14 +97,15 @@ def check(name: str, answer: object) -> Reply:
 
 def hint(name: str) -> Reply:
     """Show the hints that you have earned for a question: each different answer that is wrong earns one more."""
-    entry = _entry(_read_progress(), name)
-    steps, earned = _steps(find_question(name), entry), _earned(entry)
+    student = identity()
+    entry = _entry(_read_progress(), name, student)
+    steps, earned = _steps(find_question(name, student), entry), _earned(entry)
     if steps[:earned]:
-        _note_help(name, "hint")
+        _note_help(name, student, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
     for other, page, key in entry.get("after", []):
         with suppress(ValueError, LookupError, TypeError):  # of an earlier release of that question
-            locker = Locker.from_json(open_page(find_question(other), Place(page, key)), other)
+            locker = Locker.from_json(open_page(find_question(other, student), Place(page, key)), other)
             lines += [f"Hint: {step}" for step in locker.after.get(name, ())]
     left = len(steps) - min(earned, len(steps))
     if not lines:
@@ -118,24 +120,25 @@ def hint(name: str) -> Reply:
 
 def worked_solution(name: str, code: str) -> Reply:
     """Show the worked solution of a question to one who gives up, with the code that the instructor gave out."""
-    sealed = find_question(name)
+    student = identity()
+    sealed = find_question(name, student)
     locker = opened(sealed, code_text(str(code)))
     if locker is None or locker.solution is None:
         return Reply(
             name, "hints", "", ["This code opens no solution. Your instructor gives the code out when it is time."]
         )
-    _note_help(name, "solution")
-    entry = _entry(_read_progress(), name)
+    _note_help(name, student, "solution")
+    entry = _entry(_read_progress(), name, student)
     said = ["Read it, close it, and write it out for yourself."]
     reply = Reply(name, "hints", "", said, solution_on(sealed, locker.solution))
     _offer_sibling(reply, sealed.question, entry.get("help", ""))
     return reply
 
 
-def _note_help(name, kind):
+def _note_help(name, student, kind):
     """Write down that somebody had help; after the right answer it is none."""
     record = _read_progress()
-    entry = record[name] = _entry(record, name)
+    entry = record[name] = _entry(record, name, student)
     if entry.get("outcome") != "correct":
         kinds = list(HELP)
         entry["help"] = max(kind, entry.get("help", kind), key=lambda one: kinds.index(one) if one in kinds else -1)
@@ -177,10 +180,10 @@ def _earned(entry):
     return max(0, len(entry.get("answers", [])) - 1)
 
 
-def _show_next_hint(sealed, reply, entry):
+def _show_next_hint(sealed, student, reply, entry):
     steps, earned = _steps(sealed, entry), _earned(entry)
     if steps[:earned]:
-        _note_help(reply.question, "hint")
+        _note_help(reply.question, student, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
     if len(steps) > earned:
         # In words, and not as a call of `hint`, which few notebooks import.
@@ -193,8 +196,8 @@ def _show_next_hint(sealed, reply, entry):
 
 def progress() -> Reply:
     """Show how far you are, by chapter, and what is worth another look; from the record beside this notebook."""
-    record = _read_progress()
-    known = {name: entry for name in record if "outcome" in (entry := _entry(record, name))}
+    record, student = _read_progress(), identity()
+    known = {name: entry for name in record if "outcome" in (entry := _entry(record, name, student))}
     record = {name: entry for name, entry in known.items() if not without_sibling(name)[1]}
     if not record:
         return Reply("progress", "hints", "", ["Nothing has been checked in this folder yet."])
@@ -204,7 +207,7 @@ def progress() -> Reply:
         lines = [f"The one question that you have tried is {'right' if right else 'not right yet'}."]
     for notebook in sorted({name.partition("/")[0] for name in record}):
         lines.append(_of_notebook(notebook, record, right))
-    lines += _right_with_help(known, right)
+    lines += _right_with_help(known, right, student)
     lines += _worth_another_look(record)
     return Reply("progress", "correct" if len(right) == len(record) else "hints", "", lines)
 
@@ -228,13 +231,13 @@ def _of_notebook(notebook, record, right):
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
 
 
-def _right_with_help(known, right):
+def _right_with_help(known, right, student):
     """The questions whose points are not all earned, since they were right with help and no sibling without."""
     alone = {without_sibling(name)[0] for name, entry in known.items() if _is_alone(name, entry)}
     found = []
     for name in sorted(right - alone):
         try:
-            count = find_question(name).question.variants
+            count = find_question(name, student).question.variants
         except (LookupError, RuntimeError):
             continue  # a question of another release
         if known[name].get("help") and count > 1:
@@ -256,9 +259,9 @@ def _worth_another_look(record):
     return [f"Worth another look, since you made a mistake there: {', '.join(found)}."] if found else []
 
 
-def _entry(record, name):
-    """What the record knows of a question in the variant of whoever works here; that of others stays beside it."""
-    entry, own = record.get(name), _own_number(name)
+def _entry(record, name, student):
+    """What the record knows of a question in a student's variant; that of others stays beside it."""
+    entry, own = record.get(name), _own_number(name, student)
     entry = dict(entry) if isinstance(entry, dict) else {}
     if not entry or entry.get("variant", 0) == own:
         return {**entry, "variant": own} if own else entry
@@ -270,9 +273,9 @@ def _entry(record, name):
     return {**found, **({"variant": own} if own else {}), OTHERS: others}
 
 
-def _own_number(name):
+def _own_number(name, student):
     try:
-        return own_number(name)
+        return own_number(name, student)
     except (LookupError, RuntimeError):
         return 0  # a question of another release
 
@@ -296,10 +299,10 @@ def _write_progress(record):
         pass
 
 
-def _remember(name, reply):
+def _remember(name, student, reply):
     """Write down the outcome, and where hints can be read again: never the hints themselves."""
     record = _read_progress()
-    entry = _entry(record, name)
+    entry = _entry(record, name, student)
     if reply.outcome == "not attempted":
         return entry
     # What was right once stays right: another try in the same cell takes nothing away.

@@ -49,7 +49,7 @@ me = student
 
 
 def identity() -> str:
-    """Who works here, or an empty text."""
+    """Who works here, or an empty text: what a student calls asks for it, and hands it on."""
     return _identity
 
 
@@ -58,6 +58,6 @@ def plain_identity(identity: str) -> str:
     return " ".join(str(identity).split()).casefold()
 
 
-def forgotten(question: Question) -> str:
+def forgotten(student: str, question: Question) -> str:
     """What is said beside a question with other numbers for each student, while nobody has said who works here."""
-    return FORGOTTEN if question.variants > 1 and not _identity else ""
+    return FORGOTTEN if question.variants > 1 and not student else ""

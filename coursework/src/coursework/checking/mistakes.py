@@ -7,17 +7,13 @@ right answer is needed where the student works. Mistakes that lead to the same a
 The messages are no secret; which of them a question knows, and for what answers, is.
 """
 
-import functools
 import hashlib
-import inspect
 import itertools
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from .fields import Json
-from .plugins import kind_of_values, kinds
-from .question import Note, Question
 from .sealing import MISTAKE
 
 #: Factors that are forgotten or put in twice, as they are said.
@@ -38,17 +34,11 @@ class Mistake(NamedTuple):
     answer: object
 
 
-def message(question: Question, note: str, details: Mapping[str, Json]) -> str:
-    """What a student is told of a mistake."""
-    said = kind_of_values(question).messages.get(note) or MESSAGES[note]
-    return said(question, **details)
-
-
 def _only_the_transpose(question):
     return "This is the transpose of what the question asks for."
 
 
-MESSAGES = {
+MESSAGES: dict[str, Callable[..., str]] = {
     "transposed": _only_the_transpose,
     "in degrees": lambda question: "Your answer is in degrees; angles here are in radians.",
     "in radians": lambda question: "Your answer is in radians; the question asks for degrees.",
@@ -95,61 +85,7 @@ def short_name(note: str, details: Mapping[str, Json]) -> bytes:
     return hashlib.sha256(text.encode("utf8")).digest()[:MISTAKE]
 
 
-def by_short_name(question: Question) -> dict[bytes, Note]:
-    """Every mistake that the messages can name for a question, with its details, by its short name.
-
-    It is the same for all questions of a kind, and so tells nothing.
-
-    Raises
-    ------
-    RuntimeError
-        Two mistakes have the same short name: one of them needs another note.
-    """
-    return _by_short_name(question.kind_of_values, tuple(sorted(question.symbols)))
-
-
-@functools.lru_cache(64)
-def _by_short_name(kind, symbols):
-    kind = kinds()[kind]
-    details = {
-        "symbol": symbols,
-        "first": symbols,
-        "second": symbols,
-        "factor": [name for name, _ in FACTORS],
-        "number": range(len(NUMBERS)),
-    }
-    found = {}
-    for messages, own in ((MESSAGES, {}), (kind.messages, kind.details)):
-        for note, words in messages.items():
-            needed = list(inspect.signature(words).parameters)[1:]
-            if note != "authored":
-                choices = ((own or details).get(name, ()) for name in needed)
-                for values in itertools.product(*choices):
-                    one = Note(note, dict(zip(needed, values, strict=True)))
-                    if found.setdefault(short_name(*one), one) != one:
-                        raise RuntimeError(f"{one} and {found[short_name(*one)]} have one short name: rename a note.")
-    return found
-
-
 # --- what each mistake does to an answer --------------------------------------------------------
-
-
-def mistakes(question, answer, turns=(), turned=None):
-    """Give every mistake of the catalogue that applies to an answer, as :class:`Mistake`.
-
-    Parameters
-    ----------
-    question : Question
-    answer : SymPy object, nested list or number
-        The right answer, as its author wrote it.
-    turns : list of tuples (axis, angle)
-        The successive turns, each about an axis of the frame that the turns before it have reached, of which
-        the answer is the direction cosine matrix or the quaternion.
-    turned : tuple (matrix, components)
-        For components that a matrix turned: the matrix and what it was applied to.
-    """
-    find = kinds()[question.kind].mistakes
-    return list(find(question, answer, list(turns), turned)) if find else []
 
 
 def as_matrix(answer):

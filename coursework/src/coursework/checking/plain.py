@@ -622,7 +622,7 @@ _FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]
 _NAME = re.compile(r"\w{1,60}", re.ASCII)
 
 
-def read_plain(data):
+def read_plain(data: Any) -> Plain:
     """Check data that came out of a student's process, and give it back.
 
     Raises

@@ -18,28 +18,18 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from . import format_3, sealing
+from .catalogue import by_short_name, message
 from .evaluate import MP
 from .fields import Fields, Json, Misread, anything, by_name, text, whole
-from .kinds import (
-    Blank,
-    Fault,
-    Number,
-    Reading,
-    Undecidable,
-    canonical,
-    distance,
-    fault,
-    fingerprint,
-    read,
-    tolerances,
-)
-from .mistakes import by_short_name, message
+from .identity import forgotten, identity
+from .kinds import Blank, Fault, Number, Undecidable
 from .plain import Plain
 from .plugins import kind_of_values, kinds, sealed_folders
 from .points import spellings
-from .question import FORMAT, OUTCOMES, KnownAnswer, Locker, Note, Place, Question, Sealed
+from .question import FORMAT, OUTCOMES, KnownAnswer, Locker, Note, Place, Question, Sealed, Variant
+from .reading import Reading, canonical, distance, fault, fingerprint, read, tolerances
 from .reply import Reply
-from .variants import own_variant, siblings_of, without_sibling
+from .variants import Given, own_variant, siblings_of, text_of, without_sibling
 
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
@@ -141,8 +131,8 @@ def places() -> list[Traversable]:
     return [*([beside] if beside.is_dir() else []), *sealed_folders()]
 
 
-def find_question(name: str) -> Sealed:
-    """Give a question by its full name, in the variant of whoever works here; a sibling by its own name.
+def find_question(name: str, student: str) -> Sealed:
+    """Give a question by its full name, in the variant of a student; a sibling by its own name.
 
     Raises
     ------
@@ -161,7 +151,7 @@ def find_question(name: str) -> Sealed:
         if order > len(siblings):
             there = f"its siblings are {' and '.join(siblings)}" if siblings else "it has no other numbers"
             raise NoSuchQuestion(f"There is no '{name[:80]}': of '{asked}', {there}.")
-        number = own_variant(asked, questions[asked].question, order)
+        number = own_variant(student, asked, questions[asked].question, order)
         return notebook_questions(notebook, number)[asked]
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
@@ -189,11 +179,34 @@ def _moved() -> dict[str, str]:
     return now
 
 
-def own_number(name: str) -> int:
-    """The number of the variant in which a question, or a sibling of one, is found here; 0 where there is only one."""
+def variant(name: str) -> Given:
+    """Show your variant of a question, and give its numbers.
+
+    Parameters
+    ----------
+    name : str
+        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
+
+    Returns
+    -------
+    Given
+
+    Raises
+    ------
+    NoSuchQuestion
+        If the name is misspelt.
+    """
+    student = identity()
+    question = find_question(name, student).question
+    found, note = question.variant or Variant(), forgotten(student, question)
+    return Given(text_of(found) + (f"\n\n{note}" if note else ""), found.given)
+
+
+def own_number(name: str, student: str) -> int:
+    """The number of the variant in which a student finds a question, or a sibling; 0 where there is only one."""
     asked, order = without_sibling(name)
     questions = notebook_questions(name.partition("/")[0])
-    return own_variant(asked, questions[asked].question, order) if asked in questions else 0
+    return own_variant(student, asked, questions[asked].question, order) if asked in questions else 0
 
 
 def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str, Json]:

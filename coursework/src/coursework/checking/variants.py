@@ -17,7 +17,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 
 from .fields import Json, pair, text
-from .identity import forgotten, identity, plain_identity
+from .identity import plain_identity
 from .question import Question, Variant
 
 #: So many siblings of a question count: with all of them, somebody else's answer would count, too.
@@ -91,10 +91,10 @@ def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -
     return sorted(range(count), key=rank)
 
 
-def own_variant(name: str, question: Question, order: int = 0) -> int:
-    """The number of the variant of whoever works here, or of one of its siblings."""
+def own_variant(student: str, name: str, question: Question, order: int = 0) -> int:
+    """The number of a student's variant, or of one of its siblings."""
     variant = question.variant or Variant()
-    return numbers_of_variants(identity(), name, variant, variant.count)[order % variant.count]
+    return numbers_of_variants(student, name, variant, variant.count)[order % variant.count]
 
 
 def siblings_of(name: str, count: int) -> list[str]:
@@ -181,27 +181,3 @@ class Given:
 
     def _repr_markdown_(self) -> str:
         return self._text
-
-
-def variant(name: str) -> Given:
-    """Show your variant of a question, and give its numbers.
-
-    Parameters
-    ----------
-    name : str
-        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
-
-    Returns
-    -------
-    Given
-
-    Raises
-    ------
-    NoSuchQuestion
-        If the name is misspelt.
-    """
-    from .questions import find_question
-
-    question = find_question(name).question
-    found, note = question.variant or Variant(), forgotten(question)
-    return Given(text_of(found) + (f"\n\n{note}" if note else ""), found.given)

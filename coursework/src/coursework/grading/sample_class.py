@@ -238,14 +238,15 @@ class _Answers:
 
     def _with_code(self, exercise, question, judged, answers):
         from .judging.marking import mark
+        from .record import Answer
 
         found = []
         for answer in answers:
             code = code_of(answer, exercise.names) if not callable(answer) else None
             if code is not None and len(code) < 1500:
-                given = {"outcome": "recorded", "plain": question.to_plain(answer)}
+                given = Answer("recorded", question.to_plain(answer))
                 expected = mark(question.name, judged, given)
-                found.append((f"{question.variable} = {code}", (expected["outcome"], expected["note"])))
+                found.append((f"{question.variable} = {code}", (expected.outcome, expected.note)))
         return found
 
 

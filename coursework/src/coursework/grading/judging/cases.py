@@ -7,69 +7,23 @@ contract, the question as it stood then, by its version. Contracts lie in the fo
 
 import json
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from ...checking.fields import by_name
 from ...checking.variants import names_of_variants, numbers_of_variants, siblings_of
+from ..record import AS_GRADED, BY_THE_RULE, FROM_THE_VERSION, Case, Place, Record
 from ..store import write
 from .contract import Asked, Contract, variants_from_json
 from .ledger import Decision, digest_of_answer
 
-#: How a case came to be known: by the rule when the work was graded, or later from a record that did not hold it.
-AS_GRADED, FROM_THE_VERSION, BY_THE_RULE = "as graded", "from the version in an older record", "by the rule of today"
 
-
-@dataclass(frozen=True)
-class Place:
-    """A variant of a question: its name, and the version of the question in it."""
-
-    variant: str
-    contract: str
-
-
-@dataclass(frozen=True)
-class Case:
-    """What a student was asked.
-
-    Attributes
-    ----------
-    question : str
-    own : Place
-    siblings : mapping of str to Place
-        The other variants that may make good for help, by the names of the siblings.
-    rule : str
-        How the variant was found: ``"number 3 of 8"``, ``"by name, of 8"``, or empty where there is only one.
-    edition : str
-        Of the course: another one draws afresh.
-    known : str
-        How this is known.
-    """
-
-    question: str
-    own: Place
-    siblings: Mapping[str, Place] = field(default_factory=dict)
-    rule: str = ""
-    edition: str = ""
-    known: str = AS_GRADED
-
-    def as_json(self) -> dict[str, Any]:
-        return asdict(self)
-
-    def answered(self, asked: Asked) -> "Case":
-        """The same case, once a notebook was run and asked for this: what was mended by then is its contract."""
-        versions = {name: contract.version for name, contract in asked.second_chances.items()}
-        siblings = {
-            name: Place(place.variant, versions.get(name, place.contract)) for name, place in self.siblings.items()
-        }
-        return replace(self, own=Place(self.own.variant, asked.contract.version), siblings=siblings)
-
-    @classmethod
-    def from_json(cls, found: Mapping[str, Any]) -> "Case":
-        siblings = {name: Place(**place) for name, place in found["siblings"].items()}
-        return cls(**{**found, "own": Place(**found["own"]), "siblings": siblings})
+def answered(case: Case, asked: Asked) -> Case:
+    """The same case, once a notebook was run and asked for this: what was mended by then is its contract."""
+    versions = {name: contract.version for name, contract in asked.second_chances.items()}
+    siblings = {name: Place(place.variant, versions.get(name, place.contract)) for name, place in case.siblings.items()}
+    return replace(case, own=Place(case.own.variant, asked.contract.version), siblings=siblings)
 
 
 def variants_of(variants: Sequence[Contract]) -> dict[str, Contract]:
@@ -172,34 +126,33 @@ def judged_alike(one: Contract | None, other: Contract | None) -> bool:
     return one is None or other is None or one.version == other.version or one.judging == other.judging
 
 
-def changed_since(decided: Decision | None, record: Mapping[str, Any], contracts: Contracts) -> str:
+def changed_since(decided: Decision | None, record: Record, contracts: Contracts) -> str:
     """What is another thing than when a person decided: ``"answer"``, ``"question"`` or nothing.
 
     On another answer a decision does not count; on one that is judged otherwise by now it does, until somebody decides
     again, and both are shown.
     """
-    if decided is None or decided.question not in record["marks"]:
+    if decided is None or decided.question not in record.marks:
         return ""
     if decided.answer != digest_of_answer(record, decided.question):
         return "answer"
-    now = record["marks"][decided.question]["version"]
+    now = record.marks[decided.question].version
     return "" if judged_alike(contracts.of(decided.contract), contracts.of(now)) else "question"
 
 
-def case_of(record: Mapping[str, Any], name: str, variants: Sequence[Contract], contracts: Contracts) -> Case | None:
+def case_of(record: Record, name: str, variants: Sequence[Contract], contracts: Contracts) -> Case | None:
     """The case of an answer that was graded; ``None`` if the question was not asked then.
 
     A record that was made before there were cases says by which version an answer was judged: that is one variant.
     """
-    if "cases" in record:
-        kept = record["cases"].get(name)
-        return Case.from_json(kept) if kept else None
-    mark = record.get("marks", {}).get(name)
+    if record.cases is not None:
+        return record.cases.get(name)
+    mark = record.marks.get(name)
     if mark is None:
         return None
-    if mark["version"] in contracts.older:
-        return contracts.older[mark["version"]][1]
-    return case_by_rule(name, variants, record["student"], BY_THE_RULE)
+    if mark.version in contracts.older:
+        return contracts.older[mark.version][1]
+    return case_by_rule(name, variants, record.student, BY_THE_RULE)
 
 
 def asked_of(name: str, variants: Sequence[Contract], case: Case, contracts: Contracts | None) -> Asked:

@@ -16,17 +16,18 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from ...authoring.author import AuthoredQuestion, AuthorError
 from ...authoring.source import MEASURED, measured_strengths, names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
-from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
+from ...checking.kinds import PARTS, Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, read_plain
 from ...checking.plugins import packages
 from ...checking.question import Locker
 from ...checking.questions import OTHER_NUMBERS, compare
+from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
+from ..record import MISSING, Answer, Mark, Record, Remembered
 from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
@@ -45,15 +46,11 @@ LONGEST_FOR_SIBLINGS = 1_000
 #: Verdicts that are kept for those who hand in the same, at most.
 MOST_KEPT = 4096
 #: The mark of an answer under which the process that judges ended, but for what the question says.
-UNJUDGED = {
-    "outcome": "undecided",
-    "note": "too much work",
-    "details": {},
-    "messages": ["Working this answer out takes more time or memory than it may: a person decides."],
-    "points": 0,
-    "group": "",
-    "tries": None,
-}
+UNJUDGED = Mark(
+    "undecided",
+    "too much work",
+    messages=("Working this answer out takes more time or memory than it may: a person decides.",),
+)
 #: A figure in the text of a question, as :func:`coursework.checking.variants.image` writes it.
 PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: How a cell ends that a limit ended: what is missing then may have been lost to it.
@@ -89,7 +86,7 @@ def _questions_of(path, secret, edition):
 def of_student(
     questions: Mapping[str, Sequence[Contract]],
     identity: str,
-    record: Mapping[str, Any] | None = None,
+    record: Record | None = None,
     contracts: Contracts | None = None,
 ) -> tuple[dict[str, Asked], dict[str, Case]]:
     """The questions of a student, each in the student's own variant, and the case of each.
@@ -225,12 +222,12 @@ def asked_of_sandbox(questions):
     }
 
 
-def was_limited(record: Mapping[str, Any]) -> bool:
+def was_limited(record: Record) -> bool:
     """Whether a limit ended one of the cells of a record."""
     return any(
-        cell["outcome"] in BY_A_LIMIT or "SIGKILL" in cell.get("error", "")
-        for notebook in record["notebooks"]
-        for cell in notebook["cells"]
+        cell.outcome in BY_A_LIMIT or "SIGKILL" in (cell.error or "")
+        for notebook in record.notebooks
+        for cell in notebook.cells
     )
 
 
@@ -244,8 +241,7 @@ def mark(name, question, answer, finished=True, limited=False):
     ----------
     name : str
     question : Asked
-    answer : dict
-        As :mod:`coursework.grading.execution.sandbox` gives it.
+    answer : Answer
     finished : bool
         Whether the notebook came to its end; if not, an answer that is missing may be due to that.
     limited : bool
@@ -253,20 +249,17 @@ def mark(name, question, answer, finished=True, limited=False):
 
     Returns
     -------
-    dict
-        ``outcome``, ``note`` with its ``details``, ``messages``, ``points``, ``worth``, the ``version`` of the
-        question, ``group``, which identical answers have in common, and ``guessable``, after how many tries a
-        script finds the right answer, or ``None``.
+    Mark
     """
     # Many hand in the same. What is judged follows from the version of the question and from these texts alone.
     before = (question.before or question.contract).version
     of_question = name, question.contract.version, before, len(question.siblings), question.newer is not None
-    known = *of_question, json.dumps(answer), finished, limited
+    known = *of_question, json.dumps(answer.as_json()), finished, limited
     if known not in _marked:
         if len(_marked) >= MOST_KEPT:
             _marked.clear()
         _marked[known] = _mark(name, question, answer, finished, limited)
-    return dict(_marked[known])
+    return _marked[known]
 
 
 _marked = {}
@@ -275,7 +268,7 @@ _marked = {}
 def _mark(name, question, answer, finished, limited):
     contract = question.contract
     reply, text = judge(name, question, answer, finished, limited)
-    short = reply.outcome == "wrong" and len(answer["plain"]["nodes"]) <= LONGEST_FOR_SIBLINGS
+    short = reply.outcome == "wrong" and len(answer.plain["nodes"]) <= LONGEST_FOR_SIBLINGS
     if short and question.newer and _is_right(name, question.newer, answer):
         said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
         reply = _undecided(name, "numbers of another edition", said)
@@ -287,24 +280,24 @@ def _mark(name, question, answer, finished, limited):
         share = max(share, beyond_chance)
         pairs = "pairs stand in the right order" if contract.question.kind == "order" else "are right"
         reply.messages.append(f"{right} of {parts} {pairs}.")
-    return {
-        "outcome": reply.outcome,
-        "note": reply.note,
-        "details": dict(reply.details),
-        "messages": reply.messages,
-        "points": round(contract.worth * share, 4),
-        "worth": contract.worth,
-        "group": hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
-        "version": contract.version,
-        "guessable": contract.guessable,
-    }
+    return Mark(
+        reply.outcome,
+        reply.note,
+        reply.details,
+        tuple(reply.messages),
+        round(contract.worth * share, 4),
+        contract.worth,
+        hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
+        contract.version,
+        contract.guessable,
+    )
 
 
 def _is_right(name, question, answer):
     """Whether an answer is right for a question. Of most it takes one look to see that they are not."""
     with contextlib.suppress(ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable):
         asked = question.contract.question
-        text = fingerprint(asked, read(asked, answer["plain"]))
+        text = fingerprint(asked, read(asked, answer.plain))
         return text in question.contract.known and judge(name, question, answer)[0].outcome == "correct"
     return False
 
@@ -331,40 +324,35 @@ def parts_right(contract, text):
 def mark_with_siblings(
     name: str,
     question: Asked,
-    answers: Mapping[str, Any],
-    remembered: Mapping[str, Any],
+    answers: Mapping[str, Answer],
+    remembered: Mapping[str, Remembered],
     finished: bool = True,
     limited: bool = False,
-) -> dict[str, Any]:
+) -> Mark:
     """The mark of a question, with regard to the help that a student had and to the siblings that were solved.
 
     Parameters
     ----------
-    answers : dict
+    answers : mapping
         Those of the record, by the names of questions and of siblings.
-    remembered : dict
-        As :func:`coursework.grading.submissions.intake.remembered_in` gives it.
-
-    Returns
-    -------
-    dict
-        As :func:`mark` gives it, and ``tries``, which the notebook remembers, or ``None``.
+    remembered : mapping
+        That of the record.
     """
-    found = mark(name, question, answers.get(name, {"outcome": "missing"}), finished, limited)
-    found["tries"] = remembered.get(name, {}).get("tries")
-    had = remembered.get(name, {}).get("help", "")
+    known = remembered.get(name)
+    found = mark(name, question, answers.get(name, MISSING), finished, limited)
+    found, had = replace(found, tries=known and known.tries), known.help if known else ""
     for sibling, other in question.second_chances.items():
-        helped = remembered.get(sibling, {}).get("help")
-        if sibling in answers and not helped and (had or found["outcome"] != "correct"):
+        helped = sibling in remembered and remembered[sibling].help
+        if sibling in answers and not helped and (had or found.outcome != "correct"):
             if judge(sibling, Asked(other), answers[sibling])[0].outcome == "correct":
-                return found | _by_a_sibling(question.contract, found, sibling)
-    if found["outcome"] == "correct" and had and (question.siblings or question.second_chances):
+                return _by_a_sibling(question.contract, found, sibling)
+    if found.outcome == "correct" and had and (question.siblings or question.second_chances):
         share = question.contract.credit.get("help", WITH_HELP)
         said = (
             f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without help earns the rest."
         )
-        found |= {"note": "with help", "points": round(question.contract.worth * share, 4)}
-        found["messages"] = [said] if share < 1 else []
+        points = round(question.contract.worth * share, 4)
+        return replace(found, note="with help", points=points, messages=(said,) if share < 1 else ())
     return found
 
 
@@ -374,17 +362,17 @@ def _by_a_sibling(contract, found, sibling):
     It earns what help cost. Where the question itself was not answered right, whose numbers were solved is anybody's
     guess, and with each sibling a friend's answer would have one more chance: a person looks.
     """
-    if found["outcome"] == "correct":
+    if found.outcome == "correct":
         said = f"`{sibling}` was solved without help, and counts for this question."
-        return {"note": "by a sibling", "points": contract.worth, "messages": [said]}
+        return replace(found, note="by a sibling", points=contract.worth, messages=(said,))
     said = f"`{sibling}` was solved without help, and the question itself was not answered right: a person decides."
-    messages = [*found["messages"], said]
-    return {"outcome": "undecided", "note": "by a sibling alone", "points": 0, "messages": messages}
+    messages = (*found.messages, said)
+    return replace(found, outcome="undecided", note="by a sibling alone", points=0, messages=messages)
 
 
 def judge(name, question, answer, finished=True, limited=False):
     """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
-    state, contract = answer["outcome"], question.contract
+    state, contract = answer.outcome, question.contract
     if state == "missing":
         if not finished:
             return _undecided(
@@ -396,13 +384,13 @@ def judge(name, question, answer, finished=True, limited=False):
             ), ""
         variable = f" under the name `{question.contract.variable}`" if question.contract.variable else ""
         return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
-    if state == "unreadable" and answer["why"] not in CUT_SHORT:
-        return Reply(name, "invalid", "unreadable", [answer["why"]]), ""
+    if state == "unreadable" and answer.why not in CUT_SHORT:
+        return Reply(name, "invalid", "unreadable", [answer.why]), ""
     if state != "recorded":
         return _undecided(
             name,
             "stopped while it was read",
-            f"Reading this answer was stopped. {answer.get('why') or answer.get('error', '')}".strip(),
+            f"Reading this answer was stopped. {answer.why or answer.error or ''}".strip(),
         ), ""
     found = []
 
@@ -412,7 +400,7 @@ def judge(name, question, answer, finished=True, limited=False):
         return contract.locker(text)
 
     try:
-        plain = in_calls_of(question, read_plain(answer["plain"]))
+        plain = in_calls_of(question, read_plain(answer.plain))
         if plain is None:
             said = "The function was not called with the arguments that this question has now. Grade again: it is run."
             return _undecided(name, "not called", said), ""
@@ -463,7 +451,7 @@ def _in_secret(name, contract, answer, plain, reply, text):
     if right is None:
         return reply  # a mistaken function: what it would return elsewhere is not known
     if place.calls:
-        said = answer.get("secret", {})
+        said = answer.secret or {}
         if "unreadable" in said and said["unreadable"] not in CUT_SHORT:
             return _elsewhere_wrong(name)
         if "plain" not in said or said.get("calls") != place.digest:

@@ -17,9 +17,10 @@ from pathlib import Path
 
 from ...checking.check import calls_for
 from ...checking.evaluate import MP
-from ...checking.kinds import Blank, Fault, Undecidable, canonical, read, tolerances
+from ...checking.kinds import Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, to_plain
 from ...checking.plugins import kinds
+from ...checking.reading import canonical, read, tolerances
 from .contract import Elsewhere
 
 FILE = ".grading-secret"
