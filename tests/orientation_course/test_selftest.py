@@ -21,7 +21,7 @@ from coursework.authoring.selftest import (
     write_measured,
     write_page,
 )
-from coursework.authoring.source import measured_questions, measured_strengths, names_asked
+from coursework.authoring.source import measured_strengths, names_asked
 
 SOURCES = {path.stem: path for path in sorted(COURSE.sources.glob("*.ipynb"))}
 
@@ -126,15 +126,6 @@ def test_what_was_measured_is_measured_again_only_where_something_has_changed(tm
     cell.source += "\n# changed"
     changed = measure_all()
     assert changed and (len(source.questions) == 1 or len(changed) < len(source.questions))
-
-
-@needs_solutions
-def test_every_question_of_the_book_is_measured_in_its_first_variant():
-    """Those of one point, too; and what stands there is of the question as it is now."""
-    measured = measured_questions(COURSE.sources)
-    for path in SOURCES.values():
-        for name in names_asked(path):
-            assert None not in measured[name]["tries"][:1], name
 
 
 def test_what_was_measured_is_written_down_with_its_version(tmp_path):
