@@ -2,8 +2,9 @@
 // numbers that they give for the same poses. Readings, relations, costs and words are that package's one table, which
 // comes with the figure; here are the reader of text and the loops, held to the same cases by
 // tests/test_mismatch_in_the_page.py.
-import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed, dcmFromQuaternion, determinant,
-  dot, length, multiply, nearestDcm, quaternionFromDcm, scale, times, transpose, unit } from './mathematics.js';
+import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
+  dcmFromQuaternion, determinant, dot, length, multiply, nearestDcm, quaternionFromDcm, scale,
+  transpose, unit } from './mathematics.js';
 
 const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, READ_AS = 60, SLACK = 1e-4;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
@@ -287,7 +288,7 @@ function numbersFromDcm({ kind, choices }, dcm) {
     return [[...choices.order].map((part) => parts['wxyz'.indexOf(part)])];
   }
   if (kind === 'rotation vector' || kind === 'axis and angle') {
-    const { axis, angle } = axisAngleFromDcm(dcm), size = angle / radiansOf(choices);
+    const [axis, angle] = axisAngleFromDcm(dcm), size = angle / radiansOf(choices);
     if (kind === 'rotation vector') return [scale(size, axis)];
     return [choices['place of the angle'] === 'last' ? [...axis, size] : [size, ...axis]];
   }
@@ -525,7 +526,7 @@ function constantTurns(start, end) {
   const turns = [[multiply(end[0], transpose(start[0])), null], [null, multiply(transpose(start[0]), end[0])]];
   if (start.length < 4) return turns;
   const moved = [start, end].map((dcms) => dcms.slice(1).map((dcm) => {
-    const { axis, angle } = axisAngleFromDcm(nearestDcm(multiply(dcm, transpose(dcms[0]))).dcm);
+    const [axis, angle] = axisAngleFromDcm(nearestDcm(multiply(dcm, transpose(dcms[0]))).dcm);
     return scale(angle, axis);
   }));
   const most = (values) => values.indexOf(Math.max(...values));
