@@ -21,7 +21,7 @@ def _transposed(question):
 
 
 def _product(question):
-    quaternions = question.get("result", question["kind"]) == "quaternion"
+    quaternions = question.kind_of_values == "quaternion"
     return f"The {'quaternions' if quaternions else 'factors'} are multiplied"
 
 
