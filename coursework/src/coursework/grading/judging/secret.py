@@ -18,13 +18,12 @@ from pathlib import Path
 from typing import Any
 
 from ...authoring.author import AuthoredQuestion
-from ...checking.check import calls_for
 from ...checking.evaluate import MP
 from ...checking.kinds import Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, Plain, to_plain
 from ...checking.plugins import kinds
 from ...checking.question import Question
-from ...checking.reading import canonical, read, tolerances
+from ...checking.reading import calls_for, canonical, read, tolerances
 from .contract import Elsewhere
 
 FILE = ".grading-secret"
