@@ -21,6 +21,9 @@ from orientation import (
     SEQUENCES,
     axis_angle_from_dcm,
     body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_space_fixed,
+    diagnose,
     quaternion_from_dcm,
     random_orientations,
     simple_dcm,
@@ -441,6 +444,30 @@ def test_the_command(tmp_path, capsys):
     assert "second[[3, 0, 1, 2]]" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["first.txt", "1 0 0 0"], "there is no file first.txt"),
+        (["runs/2026-11/first.csv", "1 0 0 0"], "there is no file runs"),
+        (["1 0 0 0"], "required: second"),
+        (["1 0 0 0", "1 0 0 0", "--noise", "much"], "--noise"),
+        (["1 0 0 0", "1 0 0 0", "--first", "Maya"], "no program that is known"),
+        (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "neither a kind of numbers"),
+    ],
+)
+def test_a_command_that_is_misspelt_is_bad_input(arguments, said, capsys):
+    """It ends with 3: 2 would be an answer."""
+    with pytest.raises(SystemExit) as left:
+        main(["explain", *arguments])
+    assert left.value.code == 3 and said in capsys.readouterr().err
+
+
+def test_numbers_that_begin_with_a_minus_are_no_option(capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["explain", "-0.5,0.5,-0.5,0.5", "-0.5,0.5,-0.5,0.5", "--json"])
+    assert left.value.code == 0 and json.loads(capsys.readouterr().out)["residual in degrees"] == 0.0
+
+
 def test_the_command_is_installed():
     done = subprocess.run([sys.executable, "-m", "orientation_workbench", "explain", "1 0 0", "0 0 0 2 1"],
                           capture_output=True, text=True)  # fmt: skip
@@ -509,3 +536,39 @@ def test_public_threads_are_named(threads):
             not_named.append((thread["thread"], str(found)))
     assert len({thread["thread"] for thread in threads}) == len(threads) > 50
     assert len(not_named) <= len(threads) // 30, not_named
+
+
+ANGLES = (0.4, 0.7, -0.3)
+EXPECTED = dcm_from_body_fixed(ANGLES, "zxy")
+#: What is handed in for that orientation, the part of a chain that is the fault, and its words as `diagnose` has them.
+HANDED_IN = {
+    "transposed": (EXPECTED.T, "inverse", "transpose"),
+    "space fixed": (dcm_from_space_fixed(ANGLES, "zxy"), "axes of the turns", "space fixed"),
+    "from behind": (dcm_from_body_fixed(ANGLES[::-1], "zxy"), "places", "reverse order"),
+    "another sequence": (dcm_from_body_fixed(ANGLES, "xyz"), "sequence", "sequence xyz"),
+    "a sign": (dcm_from_body_fixed((0.4, -0.7, -0.3), "zxy"), "signs", "second turn has the wrong sign"),
+    "degrees": (dcm_from_body_fixed(np.degrees(ANGLES), "zxy"), "unit", "degrees where radians"),
+    "radians": (dcm_from_body_fixed(np.radians(ANGLES), "zxy"), "unit", "degrees to radians once too often"),
+    "scalar last": (np.roll(quaternion_from_dcm(EXPECTED), -1), "order", "scalar part stands last"),
+    "conjugate": (quaternion_from_dcm(EXPECTED.T), "inverse", "conjugate"),
+}
+
+
+@pytest.mark.parametrize("fault", HANDED_IN)
+def test_diagnose_and_explain_name_one_mixup(fault):
+    """What `diagnose` calls the only cause is the only fault of the chain that `explain` puts first."""
+    given, part, words = HANDED_IN[fault]
+    expected = EXPECTED if given.shape == (3, 3) else quaternion_from_dcm(EXPECTED)
+    angles = (ANGLES, "zxy") if part in ("places", "axes of the turns", "sequence", "signs", "unit") else ()
+    (cause,) = diagnose(given, expected, *angles).causes
+    assert words in cause
+    usual = table.BOOK | {"sequence": "zxy"}
+    if angles:  # what was handed in, and the angles that were put in: degrees, where these were taken for radians
+        typed, usual = (np.degrees(ANGLES), usual | {"unit": "degrees"}) if fault == "degrees" else (ANGLES, usual)
+        known = {"kind": "Euler angles"} | ({} if part == "sequence" else {"sequence": "zxy"})
+        chain = explain(given, np.array([typed]), second_declared=known).chains[0]
+    else:
+        chain = explain(expected, given).chains[0]
+    assert chain.faults == (part != "sequence")
+    departs = {name for name, value in chain.second["choices"].items() if value != usual[name]}
+    assert departs | ({"inverse"} if chain.relation["inverse"] else set()) == {part}
