@@ -200,7 +200,7 @@ def reply_to(one, answer):
         (ReferenceFrame("E").x + ReferenceFrame("F").y, "unreadable", "not connected"),
         (ReferenceFrame("E"), "frame", "This is the frame E"),
         (ReferenceFrame("E").x, "shape", "a vector"),
-        (simple_dcm("x", sm.Rational(1, 3)), "", "a direction cosine matrix, but not the one"),
+        (simple_dcm("x", sm.Rational(1, 3)), "", "a direction cosine matrix, but not the right one"),
         (..., "", "in place of"),
         (None, "", "in place of"),
     ],
@@ -266,7 +266,7 @@ def test_words_and_truth_values_pass_as_beginners_write_them(one, answer):
     assert passes(one, answer)
 
 
-THREE, MATRIX = "A list of 3 components is asked for; this is ", "A matrix of 3 × 3 is asked for; this is "
+THREE, MATRIX = "The question wants a list of 3 components; this is ", "The question wants a matrix of 3 × 3; this is "
 
 
 @pytest.mark.parametrize(

@@ -636,7 +636,7 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
     check = places["check-simple-orientations-crank"]
     page.page.click(f"button.run-cell >> nth={check - 1}")
     page.wait()
-    assert "not the one that is asked for" in page.below(check)  # it was read
+    assert "but not the right one" in page.below(check)  # it was read
     assert page.outside() == [] and page.errors == []
 
 

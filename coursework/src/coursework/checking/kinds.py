@@ -55,7 +55,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def shape_fault(wanted: str, value: list[Any], got: str | None = None) -> Fault:
-    return Fault("shape", f"{wanted} is asked for; this is {got or _describe(value)}.")
+    return Fault("shape", f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {got or _describe(value)}.")
 
 
 def _describe(value: list[Any]) -> str:
@@ -251,7 +251,7 @@ def _order(question: Question, plain: Plain) -> str:
     parts = [_choice(question, {**plain, "value": part}) for part in value[1]]
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
-        raise Fault("shape", f"{wanted} is asked for; here `{twice}` stands {parts.count(twice)} times.")
+        raise shape_fault(wanted, value, f"one in which `{twice}` stands {parts.count(twice)} times")
     return PARTS["order"].join(parts)
 
 

@@ -305,7 +305,7 @@ def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
         "recorded",
         "",
         [
-            "Your answer can be read, and has the form that is asked for. It is marked later: nothing that you have "
+            "Your answer can be read, and has the right form. It is marked later: nothing that you have "
             "tells whether it is right."
         ],
     )
