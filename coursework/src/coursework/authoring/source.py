@@ -12,10 +12,11 @@ import itertools
 import json
 import re
 import textwrap
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
@@ -75,10 +76,10 @@ class Source(NamedTuple):
     """A notebook with solutions, after its cells were run."""
 
     name: str
-    notebook: dict
-    questions: dict
-    figures: dict
-    rules: dict
+    notebook: Any
+    questions: dict[str, author.AuthoredQuestion]
+    figures: dict[int, Any]
+    rules: dict[str, Rule]
     asks_who: bool
 
 
@@ -114,7 +115,7 @@ def digest_of_code():
     return digest.hexdigest()
 
 
-def names_asked(path):
+def names_asked(path: str | Path) -> dict[str, str]:
     """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
     # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
     cells = [
@@ -124,7 +125,7 @@ def names_asked(path):
     return checked_names(SimpleNamespace(cells=cells))
 
 
-def measured_strengths(sources):
+def measured_strengths(sources: str | Path) -> dict[str, int]:
     """After how many tries the attack guessed each question in its weakest variant, by name: 0 where it did not.
 
     A question that is not named there has not been attacked yet.
@@ -138,7 +139,7 @@ def measured_strengths(sources):
     return {name: min((count for count in one["tries"] if count), default=0) for name, one in measured.items()}
 
 
-def measured_questions(sources):
+def measured_questions(sources: str | Path) -> dict[str, dict[str, Any]]:
     """What was measured of each question by name, as :func:`coursework.authoring.selftest.measured_of` gives it."""
     file = Path(sources, MEASURED)
     if not file.is_file():
@@ -150,10 +151,17 @@ def measured_questions(sources):
         }
     if measured.get("format") != FORMAT_OF_MEASURED:
         raise author.AuthorError(f"{file} is of another version of coursework: delete it, and release anew.")
-    return measured["questions"]
+    questions: dict[str, dict[str, Any]] = measured["questions"]
+    return questions
 
 
-def read_source(path, variant=0, edition="", only=None, pictures=None):
+def read_source(
+    path: str | Path,
+    variant: int = 0,
+    edition: str = "",
+    only: Collection[str] | None = None,
+    pictures: bool | None = None,
+) -> Source:
     """Run a notebook with solutions and give its questions.
 
     Parameters
@@ -372,14 +380,15 @@ def variant_drawn(drawn, text, number=0, count=1, edition=""):
     )
 
 
-def texts_of_questions(notebook, figures=None):
+def texts_of_questions(notebook: Any, figures: Mapping[int, Any] | None = None) -> dict[str, str]:
     """The text of each question as it stands in the source: the Markdown between the check before it and its own.
 
     ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
     """
-    texts, above = {}, []
+    texts: dict[str, str] = {}
+    above, figures = [], figures or {}
     for number, cell in enumerate(notebook.cells):
-        if number in (figures or {}):
+        if number in figures:
             above.append(image(figures[number].picture(), figures[number].alt))
         elif cell.cell_type == "markdown":
             above.append(cell.source)
@@ -491,9 +500,9 @@ class _Uses(ast.NodeVisitor):
         self.generic_visit(node)
 
 
-def checked_names(notebook):
+def checked_names(notebook: Any) -> dict[str, str]:
     """The name of the answer of each question, from the calls of ``check``."""
-    found = {}
+    found: dict[str, str] = {}
     for cell in notebook.cells:
         if cell.cell_type == "code" and "check" in cell.source:
             for node in ast.walk(ast.parse(cell.source)):

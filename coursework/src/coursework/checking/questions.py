@@ -4,13 +4,11 @@ A name is ``'notebook/question'``; the questions of one notebook lie in one file
 folder ``sealed`` stands beside the notebook, or in the package of a plug-in.
 """
 
-import difflib
 import functools
 import hashlib
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
@@ -165,6 +163,8 @@ def find_question(name: str, student: str) -> Sealed:
     notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json") and file != MOVED)
     if name in notebooks:
         raise NoSuchQuestion(f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}.")
+    import difflib  # needed here alone
+
     named = questions or notebook_questions(notebook.lower())
     near = difflib.get_close_matches(name.lower(), [*named, *notebooks], 1, 0.5)
     raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
@@ -452,6 +452,8 @@ def _each(find: Find, texts: Sequence[str], for_others: Callable[[], bool] | Non
     The slow hash lets other threads run: all is looked up at once.
     """
     if texts and for_others or len(texts) > 1:
+        from concurrent.futures import ThreadPoolExecutor  # what it brings is needed here alone
+
         with suppress(RuntimeError), ThreadPoolExecutor(len(texts) + 1) as threads:  # a browser's Python has no threads
             asked = threads.submit(for_others) if for_others else None
             return list(threads.map(find, texts)), asked is not None and asked.result()

@@ -87,8 +87,8 @@ export function byAxesOf(source, target, programs, dcm) {
     ? other[whose].map((way) => one[whose].map((from) => dot(WAYS[way], WAYS[from]))) : IDENTITY));
   if (determinant(body) !== determinant(world)) return { dcm, said: `One hand for another: of the world of ${one.world ? target.program : source.program} no manual says where its axes point to, so none are exchanged.` };
   const same = [body, world].every((rows) => rows.every((row, k) => row[k] === 1));
-  const told = [source, target].map(({ program }) => `of ${program} ${programs[program]?.body?.join(', ')}`).join(', ');
-  return { dcm: multiply(multiply(body, dcm), transpose(world)), said: same ? '' : `The axes are exchanged: x, y, z ${told}.` };
+  const whose = one.body && other.body ? 'body' : 'world', [from, to] = [source, target].map(({ program }) => `${programs[program]?.[whose]?.join(', ')} in ${program}`);
+  return { dcm: multiply(multiply(body, dcm), transpose(world)), said: same ? '' : `The axes are exchanged: x, y, z point ${from}, and ${to}.` };
 }
 
 // Twelve digits after the point: with nine, a program that looks at the length of a quaternion would refuse it.

@@ -470,12 +470,16 @@ function chainsOf(first, second, noise, table, expected) {
   for (const one of first) {
     const turned = [];   // made as they are needed: those of few faults come first
     for (const other of second) {
-      const shared = one.reading.shared.length && other.reading.shared.length;
-      const faults = shared ? ofBoth(one.reading, other.reading).faults : one.reading.faults + other.reading.faults, budget = table['most faults'] - faults;
+      // This runs up to a million times: no more is worked out than what decides.
+      let faults = one.reading.faults + other.reading.faults;
+      if (one.reading.shared.length && other.reading.shared.length) for (const words of one.reading.shared) if (other.reading.shared.includes(words)) faults -= 2;
+      const budget = table['most faults'] - faults;
       if (budget < 0) continue;
       tried += within[budget].length;
       const tolerance = Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise;
-      if (one.fourth.some((value, pose) => Math.abs(value - other.fourth[pose]) > 12 * tolerance)) continue;
+      let alike = true;
+      for (let pose = 0; alike && pose < one.fourth.length; pose += 1) alike = Math.abs(one.fourth[pose] - other.fourth[pose]) <= 12 * tolerance;
+      if (!alike) continue;
       const wanted = other.flat[0];
       for (let k = 0; k < within[budget].length; k += 1) {
         const made = (turned[k] ??= related(relations[k], one.dcms[0]).flat());
