@@ -12,11 +12,13 @@ import itertools
 import json
 import re
 import textwrap
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import coursework
+from coursework.checking.fields import Fields, by_name, whole
 from coursework.checking.plugins import folders_of, packages
 from coursework.checking.question import Variant
 from coursework.checking.variants import Given, image, names_of_variants, packed, shown
@@ -74,10 +76,10 @@ class Source(NamedTuple):
     """A notebook with solutions, after its cells were run."""
 
     name: str
-    notebook: dict
-    questions: dict
-    figures: dict
-    rules: dict
+    notebook: Any
+    questions: dict[str, author.AuthoredQuestion]
+    figures: dict[int, Any]
+    rules: dict[str, Rule]
     asks_who: bool
 
 
@@ -113,7 +115,7 @@ def digest_of_code():
     return digest.hexdigest()
 
 
-def measured_strengths(sources):
+def measured_strengths(sources: str | Path) -> dict[str, int]:
     """After how many tries the attack of the selftest guessed each question, by name: 0 where it did not.
 
     A question that is not named there has not been attacked yet.
@@ -126,13 +128,19 @@ def measured_strengths(sources):
     file = Path(sources, MEASURED)
     if not file.is_file():
         return {}
-    measured = json.loads(file.read_text("utf8"))
-    if measured.get("format") != FORMAT_OF_MEASURED:
+    measured = Fields(json.loads(file.read_text("utf8")), str(file))
+    if measured.maybe("format", whole) != FORMAT_OF_MEASURED:
         raise author.AuthorError(f"{file} is of another version of coursework: run `coursework selftest` anew.")
-    return measured["tries"]
+    return measured.get("tries", by_name(whole))
 
 
-def read_source(path, variant=0, edition="", only=None, pictures=None):
+def read_source(
+    path: str | Path,
+    variant: int = 0,
+    edition: str = "",
+    only: Collection[str] | None = None,
+    pictures: bool | None = None,
+) -> Source:
     """Run a notebook with solutions and give its questions.
 
     Parameters
@@ -351,14 +359,15 @@ def variant_drawn(drawn, text, number=0, count=1, edition=""):
     )
 
 
-def texts_of_questions(notebook, figures=None):
+def texts_of_questions(notebook: Any, figures: Mapping[int, Any] | None = None) -> dict[str, str]:
     """The text of each question as it stands in the source: the Markdown between the check before it and its own.
 
     ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
     """
-    texts, above = {}, []
+    texts: dict[str, str] = {}
+    above, figures = [], figures or {}
     for number, cell in enumerate(notebook.cells):
-        if number in (figures or {}):
+        if number in figures:
             above.append(image(figures[number].picture(), figures[number].alt))
         elif cell.cell_type == "markdown":
             above.append(cell.source)
@@ -470,9 +479,9 @@ class _Uses(ast.NodeVisitor):
         self.generic_visit(node)
 
 
-def checked_names(notebook):
+def checked_names(notebook: Any) -> dict[str, str]:
     """The name of the answer of each question, from the calls of ``check``."""
-    found = {}
+    found: dict[str, str] = {}
     for cell in notebook.cells:
         if cell.cell_type == "code" and "check" in cell.source:
             for node in ast.walk(ast.parse(cell.source)):

@@ -4,13 +4,11 @@ A name is ``'notebook/question'``; the questions of one notebook lie in one file
 folder ``sealed`` stands beside the notebook, or in the package of a plug-in.
 """
 
-import difflib
 import functools
 import hashlib
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
@@ -159,6 +157,8 @@ def find_question(name: str, student: str) -> Sealed:
     notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json") and file != MOVED)
     if name in notebooks:
         raise NoSuchQuestion(f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}.")
+    import difflib  # needed here alone
+
     named = questions or notebook_questions(notebook.lower())
     near = difflib.get_close_matches(name.lower(), [*named, *notebooks], 1, 0.5)
     raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
@@ -397,6 +397,8 @@ def _not_known(
 def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
     """What is known of each fingerprint. The slow hash lets other threads run: they are looked up at once."""
     if len(texts) > 1:
+        from concurrent.futures import ThreadPoolExecutor  # what it brings is needed here alone
+
         with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
             return list(threads.map(find, texts))
     return [find(text) for text in texts]
