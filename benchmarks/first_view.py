@@ -7,8 +7,8 @@ A task is weighed by the time for which it had the processor, not by that which 
 things as well, Lighthouse would count those against the page. So what it has recorded is first set right, and then
 judged. The speed index alone still knows of the time that passed: the busier the machine, the worse it is.
 
-Lighthouse takes a page for shown no sooner than all of it has come. The last column but one says when the first view was
-seen in a browser on a line as slow: the median of three.
+Lighthouse takes a page for shown no sooner than all of it has come. The last column but one says when the first view
+was seen in a browser on a line as slow: the median of three.
 """
 
 import bisect

@@ -25,7 +25,8 @@ TOOLS = """const said = [], tools = { progress() {}, say: (text) => said.push(te
 KEEP = f"""async (scripts, choice) => {{ {TOOLS}
   await (await import(scripts + "keep.js")).keep(tools);
   // Some browsers ask the reader whether to keep what a site stores, and this reader does not answer; some never ask.
-  if (navigator.storage) Object.defineProperty(navigator.storage, "persist", {{ value: () => new Promise(() => {{}}) }});
+  const unanswered = {{ value: () => new Promise(() => {{}}) }};
+  if (navigator.storage) Object.defineProperty(navigator.storage, "persist", unanswered);
   const name = Object.keys(tools.actions).find((text) => text.startsWith(choice));
   await tools.actions[name]();
   await navigator.serviceWorker.ready;
