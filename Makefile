@@ -15,7 +15,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark anywhere mutants clean
+.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark anywhere mutants programs clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -135,6 +135,11 @@ mutants: $(VENV)/ready-mutants setup
 	@$(RUN) -m mutmut results
 	@cd coursework && ../$(RUN) -m mutmut run
 	@cd coursework && ../$(RUN) -m mutmut results
+
+# The programs of the convention card, each in its newest version: what they answer otherwise than stored. It fetches
+# some gigabytes.
+programs: setup
+	@$(RUN) -m tools.programs
 
 renew-pins: setup
 	@$(RUN) -m notebook_pages.pins

@@ -10,6 +10,7 @@ import pytest
 from places import REPOSITORY
 
 from coursework.checking import plugins, questions
+from coursework.checking.question import Question
 from notebook_pages.paths import PACKAGES
 
 #: What the modules of a room may import of this repository's packages, the room itself not named.
@@ -26,7 +27,7 @@ MAY_IMPORT = {
 }
 #: In grading, what follows a notebook on its way uses only what comes before it, and what stands beside the rooms.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
-BESIDE = ("locks", "store", "tables", "versions", "workers")
+BESIDE = ("locks", "record", "store", "tables", "versions", "workers")
 PAGES = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
 OURS = {*PACKAGES, "notebook_pages"}
 
@@ -73,6 +74,19 @@ def test_grading_follows_a_notebook_on_its_way(room):
     assert foreign(f"coursework.grading.{room}", allowed) == []
 
 
+def test_checking_has_no_circles():
+    """Also none that an import within a function hides."""
+    folder, sources = folder_of("coursework.checking"), folder_of("coursework").parent
+    uses = {
+        path.stem: {name.split(".")[2] for name in imported(path, sources) if name.startswith("coursework.checking.")}
+        for path in folder.glob("*.py")
+    }
+    while first := [name for name, others in uses.items() if not others & set(uses)]:
+        for name in first:
+            del uses[name]
+    assert not uses, "each of these is used by what it uses"
+
+
 def test_every_package_is_registered():
     """All folders of packages, but the one that makes the pages."""
     folders = {path.parent for path in REPOSITORY.glob("src/*/__init__.py")}
@@ -96,14 +110,14 @@ def test_checking_needs_no_course():
 def test_a_folder_beside_the_notebook_comes_first(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     questions.notebook_questions.cache_clear()
-    asked = {"statics/lever": {"kind": "expression", "salt": "0", "lockers": {}}}
+    asked = {"statics/lever": {"kind": "expression", "salt": "0", "lockers": ""}}
     (tmp_path / "sealed").mkdir()
     (tmp_path / "sealed" / "statics.json").write_text(json.dumps({"format": questions.FORMAT, "questions": asked}))
     try:
-        assert questions.find_question("statics/lever") == asked["statics/lever"]
-        assert questions.find_question("simple-orientations/boom")["kind"] == "direction cosine matrix"
+        assert questions.find_question("statics/lever", "").question == Question("expression", "0")
+        assert questions.find_question("simple-orientations/boom", "").question.kind == "direction cosine matrix"
         with pytest.raises(questions.NoSuchQuestion, match="Did you mean 'statics/lever'"):
-            questions.find_question("statics/level")
+            questions.find_question("statics/level", "")
     finally:
         questions.notebook_questions.cache_clear()
 
@@ -124,6 +138,40 @@ def test_a_kind_of_question_has_one_owner(monkeypatch):
     monkeypatch.setattr(plugins, "plugins", lambda: [plugin])
     with pytest.raises(RuntimeError, match="'expression'; there is one already"):
         plugins.kinds.__wrapped__()
+
+
+def circles():
+    """The sets of modules that need each other, the imports within functions counted."""
+    needed = {}
+    for folder in (*PACKAGES.values(), PAGES):
+        modules = {path: path.relative_to(folder.parent).with_suffix("").parts for path in folder.rglob("*.py")}
+        for path, parts in modules.items():
+            needed[".".join(parts).removesuffix(".__init__")] = set(imported(path, folder.parent))
+    for module, names in needed.items():
+        # What is named is a module, or lies in one.
+        modules = {name if name in needed else name.rpartition(".")[0] for name in names}
+        needed[module] = (modules & needed.keys()) - {module}
+
+    def reached(module):
+        found, waiting = set(), [module]
+        while waiting:
+            new = needed[waiting.pop()] - found
+            found |= new
+            waiting += new
+        return found
+
+    all_reached = {module: reached(module) for module in needed}
+    return {
+        frozenset({module, *(name for name in names if module in all_reached[name])})
+        for module, names in all_reached.items()
+        if module in names
+    }
+
+
+def test_no_modules_need_each_other():
+    left = set().union(*circles())
+    left = {name for name in left if not name.startswith(("coursework", "orientation_figures"))}
+    assert left == set()
 
 
 def private(name):

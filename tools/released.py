@@ -22,8 +22,8 @@ def digests_of(path):
 
 def contents(question):
     """All that the seal of a question follows from."""
-    cases = {text: entry.cases for text, entry in question.entries.items()}
-    return [question.public, cases, question.near, question.solution, question.after, question.ladder]
+    known = {text: [answer.as_json() for answer in entry.answers] for text, entry in question.entries.items()}
+    return [question.public.as_json(), known, question.near, question.solution, question.after, question.ladder]
 
 
 def digest(content):

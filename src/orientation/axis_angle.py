@@ -19,8 +19,8 @@ SHORTEST = 1e-150
 def _length_missing(f: NumberFunctions[Number], x: Number, y: Number, z: Number) -> Number:
     # 1, which is more than the tolerance, where no direction can be computed: beyond these limits the square of the
     # length is no longer a number with all its digits.
-    length = f.norm(x, y, z)
-    return f.where((length <= SHORTEST) | (length >= 1 / SHORTEST), 1, 0)
+    square = x * x + y * y + z * z
+    return f.where((square <= SHORTEST**2) | (square >= SHORTEST**-2), 1, 0)
 
 
 def _explain_zero(components: Sequence[float], where: str) -> None:

@@ -265,13 +265,15 @@ def _evaluate_batch(
         if guard:
             with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
                 size = guard.excess(functions, *components[: guard.size])
-            if not numpy.all(size <= TOLERANCE):
+            if not (size <= TOLERANCE).all():
                 worst = int(numpy.argmax(size))
                 index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
                 guard.explain([float(column[worst]) for column in components[: guard.size]], f" (item {index})")
-        for column, values in enumerate(formula(functions, *components)):
-            result[start : start + BLOCK, column] = values
-        result[start : start + BLOCK] += 0.0
+        block = result[start : start + BLOCK]
+        rows = numpy.empty(block.shape[::-1])  # written one after another, and turned around at once
+        for row, values in zip(rows, formula(functions, *components)):
+            row[:] = values
+        numpy.add(rows.T, 0.0, out=block)
     return result.reshape(batch + shape)
 
 
@@ -480,7 +482,7 @@ def _array_functions() -> NumberFunctions[Array]:
 
         @staticmethod
         def norm(*components: Array | float) -> Array:
-            return numpy.sqrt(sum(entry * entry for entry in components))
+            return numpy.sqrt(functools.reduce(numpy.add, map(numpy.square, components)))
 
         @staticmethod
         def largest(*sizes: Array) -> Array:

@@ -6,12 +6,12 @@ import math
 import numpy as np
 
 from coursework.authoring.attack import Family, of_pools, of_words, one_sign, size_of
-from coursework.checking.kinds import calls_for
+from coursework.checking.reading import calls_for
 
 
 def families(public, at):
     """The generators of candidates for a question, in the order in which they are tried."""
-    kind = public["kind"]
+    kind = public.kind
     if kind == "sequence":
         yield of_words("all sequences", ["xyz"] * 3, "".join, lambda word: word[0] != word[1] != word[2])
     elif kind == "function":
@@ -22,9 +22,9 @@ def families(public, at):
     elif kind == "quaternion":
         yield from _of_orientations(public, at, lambda quaternions: quaternions, 4)
         yield from of_pools(public, at, 4)
-    elif kind == "matrix" and public.get("shape") == [3, 3]:
+    elif kind == "matrix" and public.shape == (3, 3):
         yield from _of_orientations(public, at, _dcm_of, 9)
-    elif kind == "vector" and public.get("length", 3) == 3:
+    elif kind == "vector" and public.length in (None, 3):
         yield from _of_turned(public, at)
 
 

@@ -6,9 +6,9 @@ def of_dcm(question, answer):
     import sympy
     from sympy.physics.mechanics import ReferenceFrame
 
-    if not isinstance(answer, sympy.MatrixBase) or not question.get("symbols"):
+    if not isinstance(answer, sympy.MatrixBase) or not question.symbols:
         return []
-    target, source = (ReferenceFrame(name) for name in question["frames"])
+    target, source = (ReferenceFrame(name) for name in question.frames)
     target.orient_explicit(source, sympy.ImmutableMatrix(answer).T)
     return [("reference frame", target)]
 

@@ -29,7 +29,7 @@ from . import forms, mistakes
 
 def _dcm(question, value):
     if value[0] == "frames":
-        target, source = question["frames"]
+        target, source = question.frames
         if target not in value[1] or source not in value[1][target]:
             raise Fault(
                 "frame",
@@ -38,7 +38,7 @@ def _dcm(question, value):
             )
         value = value[1][target][source]
     if value[0] == "frame":
-        target, source = question["frames"]
+        target, source = question.frames
         name, others = value[1], value[2]
         if target != name or source not in others:
             connected = [other for other in others if other != name]
@@ -50,7 +50,7 @@ def _dcm(question, value):
         value = others[source]
     if value[0] == "list" and value[1] and all(row[0] == "vector" for row in value[1]):
         # Its rows as the unit vectors themselves: their components are along the source frame.
-        source = question["frames"][1]
+        source = question.frames[1]
         if not all(source in row[1] for row in value[1]):
             raise Fault("frame", f"These vectors are not connected with the frame `{source}` that the question names.")
         value = ["list", [row[1][source] for row in value[1]]]
@@ -92,7 +92,7 @@ def _sequence(question, plain):
 
 
 def _of_angles(question, numbers):
-    return body_fixed_formula(question["sequence"])(FUNCTIONS, *numbers)
+    return body_fixed_formula(question.arguments["sequence"])(FUNCTIONS, *numbers)
 
 
 def _of_axis_and_angle(question, numbers):
@@ -108,7 +108,7 @@ def _dcm_fault(question, numbers):
         key=lambda found: found[0],
     )
     size, i, j = worst
-    where = " at the values tried" if question.get("symbols") else ""
+    where = " at the values tried" if question.symbols else ""
     if size > slack(question):
         names = ("first", "second", "third")
         if i == j:
@@ -132,7 +132,7 @@ def _dcm_fault(question, numbers):
 def _quaternion_fault(question, numbers):
     length = FUNCTIONS.norm(*numbers)
     if abs(length - 1) > slack(question):
-        where = " at the values tried" if question.get("symbols") else ""
+        where = " at the values tried" if question.symbols else ""
         return Fault(
             "not unit length",
             f"The quaternion of an orientation has length 1; this one has length {length_in_words(length)}{where}.",
@@ -153,7 +153,7 @@ def _angles_fault(question, numbers):
 
 def _axis_fault(question, numbers):
     length = FUNCTIONS.norm(*numbers[:3])
-    if abs(length - 1) > slack(question) / 3 and question.get("unit axis", True):
+    if abs(length - 1) > slack(question) / 3 and question.arguments.get("unit axis", True):
         return Fault(
             "not unit length", f"The axis should be a unit vector; this one has length {length_in_words(length)}."
         )

@@ -9,19 +9,19 @@ ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
 def _name(question):
-    target, source = question.get("frames", ("A", "N"))[:2]
+    target, source = (question.frames or ("A", "N"))[:2]
     return rf"${{}}^{{{target}}}\mathbf{{C}}^{{{source}}}$", rf"${{}}^{{{source}}}\mathbf{{C}}^{{{target}}}$"
 
 
 def _transposed(question):
-    if question["kind"] == "matrix" or "frames" not in question:
+    if question.kind == "matrix" or not question.frames:
         return "This is the transpose of what the question asks for."
     wanted, given = _name(question)
     return f"This is {given}, the transpose of {wanted}: its columns are what the rows should be. Transpose it."
 
 
 def _other_order(question):
-    if question.get("result", question["kind"]) == "quaternion":
+    if question.kind_of_values == "quaternion":
         return (
             "The quaternions are multiplied in the wrong order. The first turn goes on the left, unlike with "
             "matrices; in this order the same turns are about axes fixed in the first frame "
@@ -77,7 +77,7 @@ MESSAGES = {
     ),
     "quarter angle": lambda question: "The angle has been halved twice.",
     "angles of another sequence": lambda question, sequence: (
-        f"These are the angles for the sequence `{sequence}`; the question asks for `{question['sequence']}`."
+        f"These are the angles for the sequence `{sequence}`; the question asks for `{question.arguments['sequence']}`."
     ),
     "angles of the transpose": lambda question: "These are the angles of the transposed matrix.",
     "space fixed angles": lambda question: (
@@ -272,7 +272,7 @@ def of_angles(question, answer, turns, turned):
     from orientation import SEQUENCES, body_fixed_from_dcm, dcm_from_body_fixed, space_fixed_from_dcm
 
     angles = [float(angle) for angle in answer]
-    dcm = dcm_from_body_fixed(angles, question["sequence"])
+    dcm = dcm_from_body_fixed(angles, question.arguments["sequence"])
     for turn in range(3):
         yield Mistake(
             "sign of one angle",
@@ -281,11 +281,11 @@ def of_angles(question, answer, turns, turned):
         )
     yield Mistake("sign of every angle", {}, [-angle for angle in angles])
     yield Mistake("angles in reverse", {}, angles[::-1])
-    yield Mistake("angles of the transpose", {}, list(body_fixed_from_dcm(dcm.T, question["sequence"])))
+    yield Mistake("angles of the transpose", {}, list(body_fixed_from_dcm(dcm.T, question.arguments["sequence"])))
     yield Mistake("in degrees", {}, [math.degrees(angle) for angle in angles])
-    yield Mistake("space fixed angles", {}, list(space_fixed_from_dcm(dcm, question["sequence"])))
+    yield Mistake("space fixed angles", {}, list(space_fixed_from_dcm(dcm, question.arguments["sequence"])))
     for sequence in SEQUENCES:
-        if sequence != question["sequence"]:
+        if sequence != question.arguments["sequence"]:
             yield Mistake(
                 "angles of another sequence", {"sequence": sequence}, list(body_fixed_from_dcm(dcm, sequence))
             )

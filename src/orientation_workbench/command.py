@@ -3,6 +3,7 @@
 import argparse
 import json
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -16,14 +17,28 @@ EXIT_CODES = {"same": 0, "named": 1, "undecided": 2, "unrelated": 2}
 BAD_INPUT = 3
 
 
+#: What is the name of a file rather than numbers.
+_NAME_OF_A_FILE = re.compile(r"\S*[^\W\d]\S*\.[a-zA-Z]\w{0,4}")
+
+
+class _Parser(argparse.ArgumentParser):
+    """A word too few or too many is bad input, too: 2 is an answer."""
+
+    def error(self, message):
+        self.print_usage(sys.stderr)
+        self.exit(BAD_INPUT, f"{self.prog}: {message}\n")
+
+
 def main(arguments=None):
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="orientation", description="Where the world's numbers meet the book Orientation of Reference Frames."
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_explain(commands)
     _add_recording(commands)
-    chosen = parser.parse_args(arguments)
+    given = sys.argv[1:] if arguments is None else arguments
+    # What begins with a minus and a digit is a number, and no option.
+    chosen = parser.parse_args([f" {word}" if re.match(r"-[.\d]", word) else word for word in given])
     sys.exit(chosen.run(chosen))
 
 
@@ -88,6 +103,8 @@ def _given(argument):
             return path.read_text(encoding="utf-8")
     except (OSError, ValueError):
         pass  # too long for the name of a file: the numbers themselves
+    if _NAME_OF_A_FILE.fullmatch(argument):
+        raise ValueError(f"there is no file {argument}")
     return argument.replace("\\n", "\n")
 
 
@@ -149,7 +166,8 @@ def as_data(explanation):
         "verdict": explanation.verdict,
         "poses": explanation.poses,
         "faults": list(explanation.faults),
-        "residual in degrees": explanation.residual,
+        # Below a millionth of a degree it is the processor's rounding.
+        "residual in degrees": None if explanation.residual is None else round(explanation.residual, 6),
         "readings left": len(explanation.chains),
         "others": [chain.words() for chain in explanation.chains[1:]],
         "further pose": explanation.further_pose,

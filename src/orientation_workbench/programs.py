@@ -5,9 +5,10 @@ A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives th
 the forms that it takes, each with the line of code for it. In a line, ``{w} {x} {y} {z}`` are the parts of a
 quaternion or of a vector, ``{a} {b} {c}`` three angles in the order of the turns and ``{ax} {ay} {az}`` the same by
 their axes; ``{s}`` is the sequence, ``{S}`` the same in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their
-numbers from 0; ``{m}`` a matrix, row by row. ``sequences`` names the only ones where there are not all twelve.
-``version`` is the one that was run, and empty where the table follows the manual alone, which is at ``manual`` and was
-read in November 2026.
+numbers from 0; ``{m}`` a matrix, row by row, ``{n}`` its nine numbers in that order and ``{t}`` column by column;
+``{-a}`` is what ``{a}`` is with the other sign. ``sequences`` names the only ones where there are not all twelve.
+``version`` is the one that was run, by ``python -m tools.programs``, and empty where the table follows the manual
+alone, which is at ``manual`` and was read in November 2026.
 
 What two programs can be expected to differ by is said by some more, each left out where the manual has nothing on it:
 ``angles`` are the choices for three numbers by that program, as
@@ -126,7 +127,7 @@ PROGRAMS = {
         },
     },
     "OpenCV": {
-        "version": "5.0.0",
+        "version": "5.0.0.93",
         "manual": "https://docs.opencv.org/4.x/d9/d0c/group__calib3d.html",
         "matrix": "transposed",
         "scalar": "",
@@ -177,7 +178,7 @@ PROGRAMS = {
         },
     },
     "Blender": {
-        "version": "",
+        "version": "5.0.1",
         "manual": "https://docs.blender.org/api/current/mathutils.html#mathutils.Euler",
         "matrix": "transposed",
         "scalar": "first",
@@ -193,7 +194,7 @@ PROGRAMS = {
         },
     },
     "OpenCV solvePnP": {
-        "version": "",
+        "version": "5.0.0.93",
         "manual": "https://docs.opencv.org/4.x/d5/d1f/calib3d_solvePnP.html",
         "matrix": "as here",
         "scalar": "",
@@ -201,31 +202,45 @@ PROGRAMS = {
         "three numbers": "rotation vector",
         "inverse": ["rotation vector"],
         "body": RDF,
+        "lines": {
+            "matrix": "np.array({m})",
+            "axis times angle": "rvec = np.array([{x}, {y}, {z}], float)",
+        },
     },
     "COLMAP": {
-        "version": "",
+        "version": "pycolmap 4.2.1",
         "manual": "https://colmap.github.io/format.html",
         "matrix": "as here",
         "scalar": "first",
         "unit": "radians",
         "inverse": ["quaternion"],
         "body": RDF,
+        "lines": {
+            "matrix": "pycolmap.Rotation3d(np.array({m}))",
+            "quaternion": "{w} {x} {y} {z}",
+        },
     },
     "OpenGL view": {
-        "version": "",
+        "version": "PyGLM 2.8.3",
         "manual": "https://registry.khronos.org/OpenGL-Refpages/gl2.1/xhtml/gluLookAt.xml",
         "matrix": "as here",
         "scalar": "",
         "unit": "radians",
         "body": RUB,
+        "lines": {
+            "matrix": "glm::mat3({t})",
+        },
     },
     "nerfstudio": {
-        "version": "",
+        "version": "1.1.5",
         "manual": "https://docs.nerf.studio/quickstart/data_conventions.html",
         "matrix": "transposed",
         "scalar": "",
         "unit": "radians",
         "body": RUB,
+        "lines": {
+            "matrix": "camera_to_worlds[:, :3] = torch.tensor({m})",
+        },
     },
     "PyTorch3D": {
         "version": "",
@@ -234,16 +249,30 @@ PROGRAMS = {
         "scalar": "first",
         "unit": "radians",
         "body": LUF,
+        "lines": {
+            "matrix": "PerspectiveCameras(R=torch.tensor([{m}]))",
+            "quaternion": "quaternion_to_matrix(torch.tensor([{w}, {x}, {y}, {z}]).double())",
+            "body fixed angles": "euler_angles_to_matrix(torch.tensor([{a}, {b}, {c}]).double(), '{S}')",
+            "axis times angle": "axis_angle_to_matrix(torch.tensor([{x}, {y}, {z}]).double())",
+        },
     },
     "kornia": {
-        "version": "",
+        "version": "0.9.0",
         "manual": "https://kornia.readthedocs.io/en/latest/geometry.conversions.html",
         "matrix": "transposed",
         "scalar": "first",
         "unit": "radians",
+        "sequences": {"space fixed angles": ["xyz"]},
+        "angles": ROLL_PITCH_YAW,
+        "lines": {
+            "matrix": "torch.tensor([{m}])",
+            "quaternion": "quaternion_to_rotation_matrix(torch.tensor([[{w}, {x}, {y}, {z}]]).double())",
+            "space fixed angles": "quaternion_from_euler(*torch.tensor([{a}, {b}, {c}]).double())",
+            "axis times angle": "axis_angle_to_rotation_matrix(torch.tensor([[{x}, {y}, {z}]]).double())",
+        },
     },
     "three.js": {
-        "version": "",
+        "version": "0.187.0",
         "manual": "https://threejs.org/docs/pages/Euler.html",
         "matrix": "transposed",
         "scalar": "last",
@@ -251,15 +280,24 @@ PROGRAMS = {
         "angles": {"sequence": "xyz", "axes of the turns": "body fixed"},
         "body": LUF,
         "world": LUF,
+        "sequences": {"body fixed angles": TAIT_BRYAN},
+        "lines": {
+            "matrix": "new Matrix3().set({n})",
+            "quaternion": "new Quaternion({x}, {y}, {z}, {w})",
+            "body fixed angles": "new Euler({ax}, {ay}, {az}, '{S}')",
+        },
     },
     "glTF": {
-        "version": "",
+        "version": "three.js 0.187.0",
         "manual": "https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html",
         "matrix": "transposed",
         "scalar": "last",
         "unit": "radians",
         "body": LUF,
         "world": LUF,
+        "lines": {
+            "quaternion": '"rotation": [{x}, {y}, {z}, {w}]',
+        },
     },
     "Unity": {
         "version": "",
@@ -270,6 +308,11 @@ PROGRAMS = {
         "angles": {"sequence": "zxy", "axes of the turns": "space fixed", "places": "231"},
         "body": ["right", "up", "forward"],
         "world": ["right", "up", "forward"],
+        "sequences": {"space fixed angles": ["zxy"]},
+        "lines": {
+            "quaternion": "new Quaternion({x}f, {y}f, {z}f, {w}f)",
+            "space fixed angles": "Quaternion.Euler({ax}f, {ay}f, {az}f)",
+        },
     },
     "Unreal": {
         "version": "",
@@ -280,6 +323,11 @@ PROGRAMS = {
         "angles": {"sequence": "zyx", "axes of the turns": "body fixed", "places": "213", "signs": "+--"},
         "body": ["forward", "right", "up"],
         "world": ["forward", "right", "up"],
+        "sequences": {"body fixed angles": ["zyx"]},
+        "lines": {
+            "quaternion": "FQuat({x}, {y}, {z}, {w})",
+            "body fixed angles": "FRotator({-b}, {a}, {-c})",
+        },
     },
     "PX4": {
         "version": "",
@@ -290,43 +338,71 @@ PROGRAMS = {
         "angles": {"sequence": "zyx", "axes of the turns": "body fixed", "places": "321"},
         "body": FRD,
         "world": ["left", "forward", "down"],
+        "sequences": {"body fixed angles": ["zyx"]},
+        "lines": {
+            "quaternion": "matrix::Quatf({w}f, {x}f, {y}f, {z}f)",
+            "body fixed angles": "matrix::Eulerf({c}f, {b}f, {a}f)",
+        },
     },
     "Isaac Lab 2": {
-        "version": "",
+        "version": "2.3.2.post1",
         "manual": "https://isaac-sim.github.io/IsaacLab/main/source/migration/migrating_from_isaacgymenvs.html",
         "matrix": "transposed",
         "scalar": "first",
         "unit": "radians",
         "body": FLU,
         "world": FLU,
+        "sequences": {"space fixed angles": ["xyz"]},
+        "angles": ROLL_PITCH_YAW,
+        "lines": {
+            "quaternion": "matrix_from_quat(torch.tensor([{w}, {x}, {y}, {z}]))",
+            "space fixed angles": "quat_from_euler_xyz(*torch.tensor([{a}, {b}, {c}]))",
+        },
     },
     "Isaac Lab 3": {
         "version": "",
-        "manual": "https://github.com/isaac-sim/IsaacLab/pull/4437",
+        "manual": "https://docs.nvidia.com/isaaclab/isaac-lab/migrating-to-3-0",
         "matrix": "transposed",
         "scalar": "last",
         "unit": "radians",
         "body": FLU,
         "world": FLU,
+        "sequences": {"space fixed angles": ["xyz"]},
+        "angles": ROLL_PITCH_YAW,
+        "lines": {
+            "quaternion": "matrix_from_quat(torch.tensor([{x}, {y}, {z}, {w}]))",
+            "space fixed angles": "quat_from_euler_xyz(*torch.tensor([{a}, {b}, {c}]))",
+        },
     },
     "Drake": {
-        "version": "",
+        "version": "1.51.1",
         "manual": "https://drake.mit.edu/doxygen_cxx/classdrake_1_1math_1_1_roll_pitch_yaw.html",
         "matrix": "transposed",
         "scalar": "first",
         "unit": "radians",
         "angles": ROLL_PITCH_YAW,
+        "sequences": {"space fixed angles": ["xyz"]},
+        "lines": {
+            "matrix": "RotationMatrix(np.array({m}))",
+            "quaternion": "RotationMatrix(Quaternion({w}, {x}, {y}, {z}))",
+            "space fixed angles": "RollPitchYaw({a}, {b}, {c})",
+        },
     },
     "PyBullet": {
-        "version": "",
+        "version": "3.2.7",
         "manual": "https://github.com/bulletphysics/bullet3/issues/4407",
         "matrix": "transposed",
         "scalar": "last",
         "unit": "radians",
         "angles": ROLL_PITCH_YAW,
+        "sequences": {"space fixed angles": ["xyz"]},
+        "lines": {
+            "quaternion": "getMatrixFromQuaternion(({x}, {y}, {z}, {w}))",
+            "space fixed angles": "getQuaternionFromEuler(({a}, {b}, {c}))",
+        },
     },
     "URDF": {
-        "version": "",
+        "version": "yourdfpy 0.0.60",
         "manual": "https://wiki.ros.org/urdf/XML/joint",
         "matrix": "transposed",
         "scalar": "",
@@ -334,19 +410,23 @@ PROGRAMS = {
         "angles": ROLL_PITCH_YAW,
         "body": FLU,
         "world": FLU,
+        "sequences": {"space fixed angles": ["xyz"]},
+        "lines": {
+            "space fixed angles": '<origin rpy="{a} {b} {c}"/>',
+        },
     },
     "BVH": {
-        "version": "",
+        "version": "three.js 0.187.0",
         "manual": "https://research.cs.wisc.edu/graphics/Courses/cs-838-1999/Jeff/BVH.html",
         "matrix": "transposed",
         "scalar": "",
         "unit": "degrees",
         "angles": {"axes of the turns": "body fixed"},
+        "lines": {
+            "body fixed angles": "CHANNELS 3 {A}rotation {B}rotation {C}rotation: {a} {b} {c}",
+        },
     },
 }
-
-#: Those for which there is a line of code.
-WITH_CODE = {program: facts for program, facts in PROGRAMS.items() if "lines" in facts}
 
 
 def program_named(words):

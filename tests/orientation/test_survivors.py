@@ -8,10 +8,12 @@ from scipy.spatial.transform import Rotation
 
 from orientation import (
     angle_between,
+    dcm_from_axis_angle,
     dcm_from_rotation_vector,
     interpolate_quaternions,
     mean_orientation,
     random_orientations,
+    same_orientation,
 )
 
 # ---- between two orientations ------------------------------------------------------------------
@@ -67,3 +69,13 @@ def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
     starts = Rotation.random(12, random_state=seed).as_rotvec()
     best = min(minimize(cost, start, (dcms, weights), method="Nelder-Mead").fun for start in starts)
     assert weights @ angle_between(dcms, found) ** 2 <= best + 1e-6
+
+
+@pytest.mark.parametrize(("size", "words"), [(1e-155, "too short"), (1e-160, "too short"), (1e152, "too long")])
+def test_an_axis_whose_square_loses_digits_is_refused(size, words):
+    """Its square is a number still, or infinite: a matrix would come out, and be no rotation."""
+    axis = size * np.array([0.6, 0, 0.8])
+    for one in (axis.tolist(), np.stack([axis] * 3)):
+        with pytest.raises(ValueError, match=words):
+            dcm_from_axis_angle(one, 0.3)
+    assert same_orientation(dcm_from_axis_angle(axis / size * 1e100, 0.3), dcm_from_axis_angle((0.6, 0, 0.8), 0.3))

@@ -70,9 +70,9 @@ builtins.tell = lambda name, value: told.update({name: to_plain(value)})
 
 
 def judge_and_tell(name, question, plain):
-    reply, content = judge(name, question, plain)
+    reply = judge(name, question, plain)
     told[name] = [reply.outcome, reply.note]
-    return reply, content
+    return reply
 
 
 class Absent:

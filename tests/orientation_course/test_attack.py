@@ -2,6 +2,7 @@
 
 import json
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,9 +18,12 @@ from coursework.authoring.author import question
 from coursework.authoring.forms import flat, mutant, random_form, roots_for_cosines
 from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
-from coursework.checking.kinds import calls_for, canonical, fingerprint, read
 from coursework.checking.plain import NotPlain, to_plain
-from coursework.grading.judging import marking, secret
+from coursework.checking.question import Question, Variant
+from coursework.checking.reading import calls_for, canonical, fingerprint, read
+from coursework.grading.judging import marking
+from coursework.grading.judging.contract import Asked
+from coursework.grading.record import Answer
 from orientation import (
     angular_velocity_matrix,
     dcm_from_body_fixed,
@@ -68,7 +72,6 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
     force, field, whole = [0.087, -0.122, 0.985], [-3.1, 21.4, -40.2], [4, -2, 5, 1]
     away = np.cross(force, np.cross(field, force))
     unit = np.array(whole) / np.linalg.norm(whole)
-    given = {"variant": 0, "variants": 2, "text": "", "shown": {}}
     vectors, quaternion = {"force": force, "field": field}, {"whole": whole, "field": field}
     angles = {"psi": 0.3, "theta": 0.8, "phi": -0.5, "field": field}
     rates = np.linalg.solve(angular_velocity_matrix([0.3, 0.8, -0.5], "zxy"), field)
@@ -81,7 +84,7 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
         "of a gimbal": ("vector", rates.tolist(), {}, angles, "The gimbal is z-x-y.", 6000),
     }
     for name, (kind, answer, about, data, text, most) in tried.items():
-        found = attack(question("trial/data", kind, answer, variant={**given, "given": data}, **about), text)
+        found = attack(question("trial/data", kind, answer, variant=Variant(0, 2, data), **about), text)
         assert found.way and found.tries < most, (name, found)
 
 
@@ -133,7 +136,7 @@ NAMES = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
 def with_formulas(names):
     for name in names:
         for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
-            if one.public.get("symbols") and not hasattr(one.answer, "to_matrix"):
+            if one.public.symbols and not hasattr(one.answer, "to_matrix"):
                 yield one
 
 
@@ -141,15 +144,15 @@ def differs(one, answer):
     """Whether an answer is another one somewhere in its domain: by SymPy's numbers, at points of its own."""
     first, second = ([in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer))
     chance = random.Random(one.name)
-    limits = one.public["symbols"]
+    limits = one.public.symbols
     for _ in range(25):
         point = {sm.Symbol(name): sm.Float(chance.uniform(*limit), 30) for name, limit in limits.items()}
         point |= {symbol: point[sm.Symbol(symbol.name)] for symbol in unknown(first) if symbol not in point}
-        for group in one.public.get("unit", ()):
+        for group in one.public.unit:
             length = sm.sqrt(sum(point[sm.Symbol(name)] ** 2 for name in group))
             point |= {sm.Symbol(name): point[sm.Symbol(name)] / length for name in group}
         values = [[sm.N(entry.xreplace(point), 25) for entry in entries] for entries in (first, second)]
-        signs = (1, -1) if one.public.get("either sign") else (1,)
+        signs = (1, -1) if one.public.either_sign else (1,)
         if not any(all(abs(a - s * b) < 1e-8 for a, b in zip(*values, strict=True)) for s in signs):
             return True
     return False
@@ -227,19 +230,19 @@ def try_forms(names, number):
     for name in names:
         for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
             chance = random.Random(f"{SEED} {one.name}")
-            known = marking.about(one, f"a secret of {SEED}".encode())
-            secretly += known["secret"] is not None
+            known = marking.contract_of(one, f"a secret of {SEED}".encode())
+            secretly += known.secret is not None
             for _ in range(number if not hasattr(one.answer, "to_matrix") else 1):
                 form = random_form(one.public, one.answer, chance)
                 plain = one.to_plain(form)
                 reply = one.reply_to(plain)
                 assert reply.outcome == "correct", (one.name, form, reply, f"BOOK_TEST_SEED={SEED}")
-                said = {"outcome": "recorded", "plain": json.loads(json.dumps(plain))}
-                if known["secret"] and "calls" in known["secret"]:
-                    calls = calls_for({**one.public, "calls": known["secret"]["calls"]})
-                    said["secret"] = {"plain": to_plain(form, calls), "calls": secret.digest(known["secret"])}
-                found = marking.mark(one.name, known, said)
-                assert found["points"] == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
+                said = Answer("recorded", json.loads(json.dumps(plain)))
+                if known.secret and known.secret.calls:
+                    calls = calls_for(known.secret.of(one.public))
+                    said = replace(said, secret={"plain": to_plain(form, calls), "calls": known.secret.digest})
+                found = marking.mark(one.name, Asked(known), said)
+                assert found.points == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
                 tried += 1
     assert secretly
     return tried
@@ -259,7 +262,7 @@ def test_every_angle_is_tried_in_all_four_quadrants(salt):
     from coursework.checking.points import points
 
     names = "alpha beta gamma psi".split()
-    found = points({"salt": f"{salt}", "symbols": {name: [-3, 3] for name in names}})
+    found = points(Question("expression", f"{salt}", symbols={name: [-3, 3] for name in names}))
     signs = []
     for name in names:
         quadrants = {(MP.sin(point[name]) > 0, MP.cos(point[name]) > 0) for point in found}

@@ -17,8 +17,9 @@ from coursework.checking.points import spellings
 from coursework.checking.questions import notebook_questions
 from coursework.checking.variants import Given
 from coursework.grading.execution.sandbox import Limits, run_notebooks
-from coursework.grading.judging import secret
+from coursework.grading.judging.contract import Asked
 from coursework.grading.judging.marking import asked_of_sandbox, mark, questions_of
+from coursework.grading.record import Answer
 
 SOURCES = sorted(find_course().sources.glob("*.ipynb"))
 LIMITS = Limits(cell_seconds=120, cell_wall_seconds=400, notebook_seconds=600, notebook_wall_seconds=900)
@@ -27,8 +28,9 @@ LIMITS = Limits(cell_seconds=120, cell_wall_seconds=400, notebook_seconds=600, n
 DRAW = "\n".join(
     [
         "import hashlib, html, random, re",
-        "from collections.abc import Callable",
+        "from collections.abc import Callable, Mapping",
         "from typing import NamedTuple",
+        "Json = object",
         "class AuthorError(ValueError): pass",
         f"MOST_ATTEMPTS = {variation.MOST_ATTEMPTS}",
         inspect.getsource(variation.Rule),
@@ -64,7 +66,7 @@ def test_every_authors_solution_is_right_through_every_door(path):
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
 @pytest.mark.sampled(2)
 def test_every_authors_solution_is_right_before_the_grader(path):
-    questions = questions_of(path, b"a secret")
+    questions = {name: first for name, (first, *_) in questions_of(path, b"a secret").items()}
     job = {
         "id": path.stem,
         "cells": [{"source": cell} for cell in cells_of(path)],
@@ -73,11 +75,11 @@ def test_every_authors_solution_is_right_before_the_grader(path):
     [result] = run_notebooks([job], workers=1, limits=LIMITS)
     for name, answer in result["answers"].items():
         if "secret" in answer:
-            answer["secret"]["calls"] = secret.digest(questions[name]["secret"])
+            answer["secret"]["calls"] = questions[name].secret.digest
     for name, about in questions.items():
-        by_a_person = about["public"]["kind"] == "free text"
-        found = mark(name, about, result["answers"][name])
-        assert found["outcome"] == ("undecided" if by_a_person else "correct"), (name, found)
+        by_a_person = about.question.kind == "free text"
+        found = mark(name, Asked(about), Answer.from_json(result["answers"][name]))
+        assert found.outcome == ("undecided" if by_a_person else "correct"), (name, found)
 
 
 def plain_results(door):
@@ -123,7 +125,7 @@ def test_the_symbols_of_a_question_are_defined_where_its_answer_is_typed(path):
                 modules |= {alias.name for alias in node.names}
         for name in re.findall(r"check\(['\"]([^'\"]+)", cell.source):
             symbols = {
-                symbol.rstrip("'") for symbol in notebook_questions(name.partition("/")[0])[name].get("symbols", ())
+                symbol.rstrip("'") for symbol in notebook_questions(name.partition("/")[0])[name].question.symbols
             }
             missing = {one for one in symbols if not {one, *spellings(one)} & named}
             assert not missing, f"{name}: {missing}"

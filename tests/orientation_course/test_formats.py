@@ -3,6 +3,7 @@
 import itertools
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,13 +12,15 @@ from test_release import HIDDEN, SETUP, SOLUTION, write_source
 
 import coursework
 import orientation_course
-from coursework.authoring.author import AuthorError, Question
+from coursework.authoring.author import AuthoredQuestion, AuthorError
 from coursework.authoring.course import find_course
 from coursework.authoring.release import release
-from coursework.checking import format_3, mistakes, plugins, questions, sealing
-from coursework.checking.mistakes import by_short_name, short_name
+from coursework.checking import catalogue, format_3, mistakes, plugins, questions, sealing
+from coursework.checking.catalogue import by_short_name
+from coursework.checking.mistakes import short_name
 from coursework.checking.plain import to_plain
-from coursework.checking.questions import NOT_IN_THIS_CATALOGUE, in_variant, judge
+from coursework.checking.question import Question
+from coursework.checking.questions import NOT_IN_THIS_CATALOGUE, judge, notebook_questions
 
 SECOND = Path(__file__).parent / "editions" / "second"
 #: Answers to sealed questions of the second edition, as plain data, with the outcome, the note and the details of the
@@ -47,18 +50,19 @@ def catalogue_in_another_order(monkeypatch):
         for name, kind in plugins.kinds().items()
     }
     messages = turned_round(mistakes.MESSAGES)
-    monkeypatch.setattr(mistakes, "MESSAGES", messages)
-    monkeypatch.setattr(mistakes, "kinds", lambda: changed)
-    mistakes._by_short_name.cache_clear()
+    monkeypatch.setattr(catalogue, "MESSAGES", messages)
+    monkeypatch.setattr(catalogue, "kinds", lambda: changed)
+    catalogue._by_short_name.cache_clear()
     yield
-    mistakes._by_short_name.cache_clear()
+    catalogue._by_short_name.cache_clear()
 
 
 def replies_of_then():
     for name, rows in ANSWERS.items():
         question, _, number = name.partition(" ")
         for plain, *expected in rows:
-            reply, _ = judge(question, in_variant(question, int(number or 0)), plain)
+            sealed = notebook_questions(question.partition("/")[0], int(number or 0))[question]
+            reply = judge(question, sealed, plain)
             yield name, [reply.outcome, reply.note, reply.details or {}], expected
 
 
@@ -72,7 +76,7 @@ def test_a_sealed_file_of_the_second_edition_says_what_it_said(beside, catalogue
 def test_every_mistake_of_then_still_has_its_words():
     for kind in plugins.kinds():
         if kind != "function":
-            question = {"kind": kind, "symbols": {"alpha": None, "beta": None}}
+            question = Question(kind, symbols={"alpha": (-3, 3), "beta": (-3, 3)})
             words = {**mistakes.MESSAGES, **plugins.kinds()[kind].messages}
             known = format_3.numbered(question)
             assert {note for note, _ in known} <= set(words)
@@ -81,13 +85,13 @@ def test_every_mistake_of_then_still_has_its_words():
 
 def docking(tmp_path):
     """A question whose typical mistake is sealed in a file of today, and that mistake."""
-    question = Question(
+    question = AuthoredQuestion(
         "moored/docking",
-        {"kind": "quaternion", "frames": ["B", "A"]},
+        Question("quaternion", frames=("B", "A")),
         sm.Matrix([1, 3, 5, 1]) / 6,
         variable="B_q_A",
     )
-    sealed = {"format": questions.FORMAT, "questions": {question.name: question.sealed()}}
+    sealed = {"format": questions.FORMAT, "questions": {question.name: question.sealed().as_json()}}
     (tmp_path / "sealed").mkdir(exist_ok=True)
     (tmp_path / "sealed" / "moored.json").write_text(json.dumps(sealed), "utf8")
     return question
@@ -100,7 +104,7 @@ def test_a_new_mistake_changes_nothing_of_what_is_sealed(tmp_path, monkeypatch, 
     request.getfixturevalue("catalogue_in_another_order")
     told = {}
     for mistake in question.mistakes:
-        reply, _ = judge(question.name, questions.find_question(question.name), to_plain(mistake.answer))
+        reply = judge(question.name, questions.find_question(question.name, ""), to_plain(mistake.answer))
         told[mistake.note] = reply.note
     assert told["scalar last"] == "scalar last" and told["conjugate"] == "conjugate"
     assert len(set(told.values())) > 2
@@ -110,10 +114,11 @@ def test_a_mistake_that_this_version_has_no_words_for_is_still_one(tmp_path, mon
     question = docking(tmp_path)
     text = question.fingerprint_of(to_plain([0.6, 0, 0.8, 0]))
     sealed = question.sealed()
-    key = sealing.slow_key(sealed["salt"], text)
+    key = sealing.slow_key(sealed.question.salt, text)
     name = short_name("told by a later edition", {})
-    sealed["lockers"] = sealing.pack([sealing.locker(key, questions.OUTCOMES.index("mistake"), [name])])
-    reply, _ = judge(question.name, sealed, to_plain([0.6, 0, 0.8, 0]))
+    lockers = sealing.pack([sealing.locker(key, questions.OUTCOMES.index("mistake"), [name])])
+    sealed = replace(sealed, lockers=lockers)
+    reply = judge(question.name, sealed, to_plain([0.6, 0, 0.8, 0]))
     assert reply.outcome == "wrong" and reply.messages == [NOT_IN_THIS_CATALOGUE]
 
 
@@ -122,16 +127,16 @@ def test_a_format_that_is_not_known_is_refused_in_words(beside, number):
     file = beside / "chapters.json"
     file.write_text(json.dumps({**json.loads(file.read_text("utf8")), "format": number}), "utf8")
     with pytest.raises(RuntimeError, match=f"of chapters are of format {number}.*reads formats 3 and 4.*update"):
-        questions.find_question("chapters/about-x")
+        questions.find_question("chapters/about-x", "")
 
 
 def test_a_question_that_has_another_name_says_so(beside):
     about = {"format": questions.FORMAT, "moved": {"chapters/around-x": "chapters/about-x"}, "questions": {}}
     (beside / questions.MOVED).write_text(json.dumps(about), "utf8")
     with pytest.raises(questions.NoSuchQuestion, match="'chapters/around-x' is called 'chapters/about-x'"):
-        questions.find_question("chapters/around-x")
+        questions.find_question("chapters/around-x", "")
     with pytest.raises(questions.NoSuchQuestion, match="Did you mean"):
-        questions.find_question("chapters/abut-x")
+        questions.find_question("chapters/abut-x", "")
 
 
 def test_a_release_tells_the_names_that_questions_had(tmp_path):
@@ -163,13 +168,13 @@ def test_a_record_of_the_second_edition_is_read(tmp_path, monkeypatch):
 def test_two_mistakes_never_have_one_short_name(monkeypatch):
     for kind in plugins.kinds():
         if kind != "function":
-            by_short_name({"kind": kind, "symbols": {f"q_{number}": None for number in range(9)}})
-    mistakes._by_short_name.cache_clear()
+            by_short_name(Question(kind, symbols={f"q_{number}": (-1, 1) for number in range(9)}))
+    catalogue._by_short_name.cache_clear()
     numbers = itertools.cycle([b"same"])
-    monkeypatch.setattr(mistakes, "short_name", lambda note, details: next(numbers))
+    monkeypatch.setattr(catalogue, "short_name", lambda note, details: next(numbers))
     with pytest.raises(RuntimeError, match="one short name"):
-        by_short_name({"kind": "expression"})
-    mistakes._by_short_name.cache_clear()
+        by_short_name(Question("expression"))
+    catalogue._by_short_name.cache_clear()
 
 
 def test_the_table_of_a_course_is_its_own(monkeypatch):

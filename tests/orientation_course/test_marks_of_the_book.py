@@ -23,7 +23,8 @@ def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name):
         whole, part = read_source(path, number).questions, read_source(path, number, only=having).questions
         assert list(whole) == list(part)
         for one, other in zip(whole.values(), part.values(), strict=True):
-            assert {**one.public, "picture": None} == {**other.public, "picture": None}
+            without_pictures = [{**question.public.as_json(), "picture": None} for question in (one, other)]
+            assert without_pictures[0] == without_pictures[1]
             assert (one.plain, one.entries, one.near, one.credit) == (
                 other.plain,
                 other.entries,

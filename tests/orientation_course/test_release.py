@@ -106,10 +106,13 @@ def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
             author.question("trial/one", "vector", [right * (1 + noise), noise, 7], **about)
             for noise in (0, 3e-16, -3e-16, 2e-15)
         ]
-        told = [{text: entry.cases for text, entry in one.entries.items()} | one.public for one in sealed]
+        told = [
+            [one.public.as_json(), {text: [known.as_json() for known in e.answers] for text, e in one.entries.items()}]
+            for one in sealed
+        ]
         assert len({json.dumps(one, sort_keys=True) for one in told}) == 1, right
-        for case in (case for entry in sealed[0].entries.values() for case in entry.cases if "numbers" in case):
-            assert all(len(number.strip("-")) < 17 for number in case["numbers"])
+        for known in (known for entry in sealed[0].entries.values() for known in entry.answers):
+            assert all(len(number.strip("-")) < 17 for number in known.numbers)
 
 
 def test_a_planted_secret_is_found(trial, tmp_path):

@@ -1,12 +1,15 @@
 """The essay's world: its mathematics against the book's own, its stills, and the page as a reader meets it."""
 
 import json
+import re
 from functools import cache
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from test_site import violations
 
+from notebook_pages.paths import HTML
 from orientation import (
     SEQUENCES,
     axis_angle_from_dcm,
@@ -14,7 +17,9 @@ from orientation import (
     dcm_from_axis_angle,
     dcm_from_body_fixed,
     dcm_from_quaternion,
+    dcm_rate,
     interpolate_quaternions,
+    nearest_dcm,
     quaternion_from_dcm,
 )
 from orientation_figures.moving import bundle
@@ -73,7 +78,7 @@ def test_every_frame_of_every_stop_is_that_of_the_book(number):
         ends[1] = ends[1] * np.sign(ends[0] @ ends[1])
         expected = dcm_from_quaternion(interpolate_quaternions(*ends, state["part"]))
     elif stop == "it-moves":
-        return  # the test of drift below
+        return  # what is thrown is tried below
     else:
         expected = dcm_from_body_fixed((psi, theta, phi), "zxy")
     assert D == pytest.approx(expected, abs=1e-9)
@@ -277,6 +282,70 @@ def test_a_drag_turns_the_front_the_way_the_pointer_goes(open_essay):
     assert lens[0] > 0.15 and abs(lens[1]) < 0.08, "the lens, which looked at the reader, has gone to the right"
 
 
+FLICK = """() => {
+  const canvas = document.querySelector('.world canvas'), box = canvas.getBoundingClientRect();
+  for (let k = 1; k <= 6; k += 1) {
+    canvas.dispatchEvent(new PointerEvent('pointermove', { pointerId: 1, pointerType: 'mouse', bubbles: true,
+      clientX: box.left + box.width / 2 + 4 * k, clientY: box.top + 0.42 * box.height }));
+  }
+  canvas.dispatchEvent(new PointerEvent('pointerup', { pointerId: 1, pointerType: 'mouse', bubbles: true }));
+}"""
+
+
+def free_body(dcm, rate, seconds, off=0.0):
+    """Where a body ends that is let go at this rate, by Euler's equations; or where an instrument in it believes so."""
+    inertia = np.array((1.1, 0.8, 1.25))
+
+    def change(_, state):
+        omega = state[:3]
+        turning = dcm_rate(state[3:].reshape(3, 3), omega + off)
+        return np.concatenate((-np.cross(omega, inertia * omega) / inertia, turning.ravel()))
+
+    state = np.concatenate((rate, np.ravel(dcm)))
+    end = solve_ivp(change, (0, seconds), state, rtol=1e-9, atol=1e-9).y[3:, -1]
+    return nearest_dcm(end.reshape(3, 3)).dcm
+
+
+def test_the_camera_is_thrown_and_the_small_turns_add_up(open_essay):
+    page = open_essay()
+    scroll_to(page, "it-moves")
+    box = page.locator(".world canvas").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 0.42 * box["height"])
+    page.mouse.down()
+    page.evaluate(FLICK)
+    page.mouse.up()
+    rest(page)
+    # Without motion its whole flight is over at once.
+    content = page.evaluate("document.querySelector('.world').world.content()")
+    rate, start = np.array(content["rate"]), dcm_from_body_fixed(content["angles"], "zxy")
+    assert 0.5 < np.linalg.norm(rate) < 2.6 and content["time"] == 24
+    truth, told = free_body(start, rate, 24), free_body(start, rate, 24, np.radians(1.5))
+    assert axis_angle_from_dcm(camera(page) @ truth.T)[1] < 0.02
+    off = np.degrees(axis_angle_from_dcm(told @ truth.T)[1])
+    said = re.search(r"are (\d+) degrees off", page.locator(".look").inner_text())
+    assert abs(float(said[1]) - off) < 2
+    # Its address opens it as it flies, and the text takes it back.
+    other = open_essay(fragment_of("rotations", content))
+    assert axis_angle_from_dcm(camera(other) @ camera(page).T)[1] < 0.02
+    scroll_to(other, "your-turn")
+    assert other.evaluate("document.querySelector('.world').world.state.thrown") is None
+    # Without a pointer there is a button.
+    page.get_by_role("button", name="Give it a swing").press("Enter")
+    rest(page)
+    assert page.evaluate("document.querySelector('.world').world.content().rate") != content["rate"]
+
+
+def test_where_scripts_run_the_stills_wait_to_be_printed(browser):
+    page = browser.new_page()
+    page.goto((HTML / "rotations.html").resolve().as_uri())
+    stills = page.locator("[data-stop] svg")
+    assert stills.count() == 0
+    page.locator(".world:is([data-ready], [data-stills])").wait_for()
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    assert stills.count() == len(STILLS)
+    page.close()
+
+
 def test_an_address_opens_the_gimbal_as_it_was(open_essay):
     page = open_essay()
     scroll_to(page, "lock")
@@ -316,7 +385,8 @@ def test_one_line_puts_a_figure_into_any_page(browser, tmp_path):
         (tmp_path / "book" / folder).mkdir(parents=True)
         for name, text in files.items():
             (tmp_path / "book" / folder / name).write_text(text, "utf8")
-    state = fragment_of("gimbal", {"angles": [0.5, 0.25, -0.125], "sequence": "zyx"})
+    # As it was copied beside a figure of a chapter.
+    state = fragment_of("figure-gimbal", {"angles": [0.5, 0.25, -0.125], "sequence": "zyx"})
     text = PLAIN.format(frame=embedding.line("book", "gimbal", state), state=state)
     (tmp_path / "index.html").write_text(text, "utf8")
     page = browser.new_page()
@@ -336,13 +406,45 @@ def test_one_line_puts_a_figure_into_any_page(browser, tmp_path):
     empty.goto((tmp_path / "empty.html").as_uri())
     assert page.evaluate(names) == empty.evaluate(names)
     # What nobody could have set is left aside.
-    fragment = fragment_of("gimbal", {"angles": [1, "x", 2], "sequence": "abc"})
+    fragment = fragment_of("figure-gimbal", {"angles": [1, "x", 2], "sequence": "abc"})
     page.goto((tmp_path / "book/embed/gimbal.html").as_uri() + fragment)
     page.locator(".moving[data-ready] .live").wait_for()
     assert page.get_by_label("psi in degrees", exact=True).input_value() == "15"
     assert faults == []
     page.close()
     empty.close()
+
+
+CAPTIONED = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>A chapter</title><link rel="icon"
+href="data:,"><link rel="stylesheet" href="moving.css"><style>a.headerlink {{ visibility: hidden; }}</style></head>
+<body><div style="height: 3000px"></div><figure id="figure-vane">{still}<figcaption>A vane.<a class="headerlink"
+href="#figure-vane">#</a></figcaption></figure><script src="shared.js"></script><script src="simple.js"></script>
+</body></html>"""
+
+
+def test_the_link_of_a_caption_carries_how_the_figure_stands(browser, tmp_path):
+    from notebook_pages.moving import scripts_and_styles
+    from orientation_figures.moving import SimpleFigure
+
+    texts, _ = scripts_and_styles(["simple"])
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text, "utf8")
+    (tmp_path / "index.html").write_text(CAPTIONED.format(still=SimpleFigure(axis="z", angle=0.5).still()), "utf8")
+    page = browser.new_page()
+    page.goto((tmp_path / "index.html").as_uri())
+    link, angle = page.locator("a.headerlink"), page.locator(".live input[type=number]").first
+    assert not link.is_visible()
+    angle.fill("40")
+    angle.press("Tab")
+    link.click()
+    address = page.url
+    assert address.endswith(link.get_attribute("href")) and "#figure-vane=1." in address
+    page.close()
+    page = browser.new_page()
+    page.goto(address)
+    assert float(page.locator(".live input[type=number]").first.input_value()) == 40
+    assert page.evaluate("scrollY") > 1000, "the page shows the figure"
+    page.close()
 
 
 PHONE = """angles => {

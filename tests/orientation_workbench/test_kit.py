@@ -1,7 +1,5 @@
 """The kit for tests: five libraries are as their manuals say, and every copy with one thing flipped is caught."""
 
-from importlib import import_module
-
 import ahrs
 import numpy as np
 import pytest
@@ -12,7 +10,6 @@ from scipy.spatial.transform import Rotation
 
 import orientation
 from orientation_workbench import assert_convention, convention_of
-from orientation_workbench.programs import expected_of
 
 
 def sympy_matrix(angles):
@@ -122,42 +119,3 @@ def test_no_convention_is_told():
         convention_of(lambda q: np.eye(3), "spinor")
     with pytest.raises(ValueError, match="sens is not known"):
         assert_convention(lambda q: np.eye(3), "quaternion", sens="other")
-
-
-#: Of each program a function from its own quaternion to its matrix, or from a vector, and what that takes to run.
-RUN = {
-    "SciPy": ("scipy", lambda q: Rotation.from_quat(q).as_matrix()),
-    "pytransform3d": ("pytransform3d", pr.matrix_from_quaternion),
-    "transforms3d": ("transforms3d", lambda q: import_module("transforms3d.quaternions").quat2mat(q)),
-    "Eigen (C++)": ("eigenpy", lambda q: import_module("eigenpy").Quaternion(np.array(q)).toRotationMatrix()),
-    "kornia": ("kornia", lambda q: _by_torch("kornia.geometry.conversions", "quaternion_to_rotation_matrix", q)),
-    "PyTorch3D": ("pytorch3d", lambda q: _by_torch("pytorch3d.transforms", "quaternion_to_matrix", q)),
-    "PyBullet": ("pybullet", lambda q: np.reshape(import_module("pybullet").getMatrixFromQuaternion(q), (3, 3))),
-    "Drake": ("pydrake", lambda q: _by_drake(q)),
-    "OpenCV": ("cv2", lambda v: import_module("cv2").Rodrigues(np.array(v))[0]),
-}
-
-
-def _by_torch(module, name, q):
-    torch = import_module("torch")
-    return getattr(import_module(module), name)(torch.tensor(np.array(q))[None])[0].numpy()
-
-
-def _by_drake(q):
-    drake = import_module("pydrake.all")
-    return drake.RotationMatrix(drake.Quaternion(q)).matrix()
-
-
-@pytest.mark.parametrize(
-    "program",
-    [pytest.param(name, marks=() if needs in ("scipy", "pytransform3d") else pytest.mark.long)
-     for name, (needs, _) in RUN.items()],
-)  # fmt: skip
-def test_a_program_answers_as_the_table_of_programs_says(program):
-    """What can be installed is asked; the rest of the table follows the manuals."""
-    needs, function = RUN[program]
-    pytest.importorskip(needs)
-    expected = expected_of(program)
-    found = convention_of(function, expected["three numbers"] if program == "OpenCV" else "quaternion")
-    assert found.inverse == ("matrix" in expected["inverse"]), str(found)
-    assert found.takes.get("order", "wxyz") == expected["declared"].get("order", "wxyz"), str(found)

@@ -16,10 +16,14 @@ from places import REPOSITORY
 from scipy.spatial.transform import Rotation
 from threads import THREADS
 
+from coursework.checking import questions as questions_module
 from orientation import (
     SEQUENCES,
     axis_angle_from_dcm,
     body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_space_fixed,
+    diagnose,
     quaternion_from_dcm,
     random_orientations,
     simple_dcm,
@@ -283,6 +287,19 @@ SPELLED = {
     "COLMAP": "1 {w} {x} {y} {z} -0.737434 1.02973 3.74354 1 P1180141.JPG".format(**parts()),
     "C#": "Debug.Log: ({x}f, {y}f, {z}f, {w}f)".format(**parts()),
     "in words": "x {x} y {y} z {z} w {w}".format(**parts()),
+    "a forum": "My sensor gives w={w} x={x} y={y} z={z} when I hold it at about 45 degrees. Why??".format(**parts()),
+    "in a fence": "```python\n>>> r.as_quat()\narray([{x}, {y}, {z}, {w}])\n```\nThanks!!".format(**parts()),
+    "arguments": "--x 0.1 --y 0 --z 0.2 --qx {x} --qy {y} --qz {z} --qw {w}".format(**parts()),
+    "a trajectory's head": "# timestamp tx ty tz qx qy qz qw\n1305031102.1758 1.3405 0.6 1.6 {x} {y} {z} {w}".format(
+        **parts()
+    ),
+    "a serial port": "qW: {w} qX: {x} qY: {y} qZ: {z}\t\tSys:3 G:3 A:0 M:1".format(**parts()),
+    "Godot": "[X: ({}, {}, {}), Y: ({}, {}, {}), Z: ({}, {}, {}), O: (0.0, 1.5, 2.0)]".format(*entries()),
+    "three.js's elements": "elements: Array(16)\n(16) [{}, {}, {}, 0, {}, {}, {}, 0, {}, {}, {}, 0, 0, 0, 0, 1]".format(
+        *entries()
+    ),
+    "MATLAB's factor": "ans =\n\n   1.0e+00 *\n\n  {} {} {}\n  {} {} {}\n  {} {} {}\n\n>> ".format(*entries()),
+    "rows by number": "row 0: {} {} {}\nrow 1: {} {} {}\nrow 2: {} {} {}\ndet = 1.0000".format(*entries()),
 }
 
 
@@ -301,6 +318,7 @@ def test_angles_as_programs_print_them():
         f"rpy: {roll:.6f} {pitch:.6f} {yaw:.6f}",
         f'<origin rpy="{roll:.6f} {pitch:.6f} {yaw:.6f}" xyz="1 2 3"/>',
         f"roll {roll:.6f} pitch {pitch:.6f} yaw {yaw:.6f}",
+        f"<pose>1 2 3 {roll:.6f} {pitch:.6f} {yaw:.6f}</pose>",
         f"[INFO] [1641239122.213901124] [node]: r:{roll:.6f} p:{pitch:.6f} y:{yaw:.6f}",
         f"P={degrees[1]:.6f} Y={degrees[0]:.6f} R={degrees[2]:.6f} degrees",
         f"yaw = {degrees[0]:.6f}\u00b0, pitch = {degrees[1]:.6f}\u00b0, roll = {degrees[2]:.6f}\u00b0",
@@ -309,21 +327,79 @@ def test_angles_as_programs_print_them():
         assert explain(printed([DCM], 6), text).verdict == "same", text
 
 
-def test_every_link_leads_to_a_section_or_a_question_that_is_there():
-    for (section, title), (question, its_title) in table.TAUGHT.values():
-        assert title and its_title
-        for address, folder in ((section, "chapters"), (question, "tests/solutions")):
-            page, _, anchor = address.removesuffix("/").partition("#")
-            notebook = REPOSITORY / folder / Path(page).with_suffix(".ipynb").name
-            cells = json.loads(notebook.read_text("utf8"))["cells"]
-            lines = [
-                line
-                for cell in cells
-                if cell["cell_type"] == "markdown"
-                for line in "".join(cell["source"]).split("\n")
-            ]
-            headings = [re.sub(r"^#+ (\d+\. )?", "", line) for line in lines if line.startswith("#")]
-            assert anchor in [re.sub(r"[^a-z0-9]+", "-", heading.lower()).strip("-") for heading in headings], address
+def test_a_line_that_names_the_columns_is_read():
+    """Each table says of its numbers what its head says, in the order in which they stand."""
+    yaw, pitch, roll = (f"{angle:.4f}" for angle in np.degrees(body_fixed_from_dcm(DCM, "zyx")))
+    named = parts()
+    turns = {"sequence": "zyx", "axes of the turns": "body fixed", "unit": "degrees"}
+    for text, said in (
+        ("qw,qx,qy,qz\n{w},{x},{y},{z}", {"order": "wxyz"}),
+        ("x y z w\n{x} {y} {z} {w}\n{x} {y} {z} {w}", {"order": "xyzw"}),
+        ("# x y z w\n[{x}, {y}, {z}, {w}]", {"order": "xyzw"}),
+        ("time;p_x;p_y;p_z;q_z;q_y;q_x;q_w\n0.01;1;2;3;{z};{y};{x};{w}", {"order": "zyxw"}),
+        ("| w | x | y | z |\n|---|---|---|---|\n| {w} | {x} | {y} | {z} |", {"order": "wxyz"}),
+        ("IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 {w} {x} {y} {z} 1 2 3 1 a.jpg", {"order": "wxyz"}),
+        ("quaternion (x, y, z, w): {x} {y} {z} {w}", {"order": "xyzw"}),
+        (f"time,roll_deg,pitch_deg,yaw_deg\n0.1,{roll},{pitch},{yaw}", turns | {"places": "321"}),
+        (f"Yaw (\N{DEGREE SIGN})\tPitch (\N{DEGREE SIGN})\tRoll (\N{DEGREE SIGN})\n{yaw}\t{pitch}\t{roll}",
+         turns | {"places": "123"}),
+    ):  # fmt: skip
+        text = text.format(**named)
+        assert read_poses(text, "first").declared == said, text
+        assert (
+            explain("\n".join([printed([DCM], 6)] * len(read_poses(text, "first").numbers)), text).verdict == "same"
+        ), text
+
+
+#: The kinds of mix-up, and where in the table of links each stands.
+FAULTS = {
+    "transposed": "inverse matrix",
+    "conjugate": "inverse quaternion",
+    "columns first": "inverse matrix",
+    "another order of storage": "order",
+    "the other product (JPL)": "inverse quaternion",
+    "the body's axes": "body",
+    "the world's axes": "world",
+    "the other hand": "hand",
+    "space fixed for body fixed": "axes of the turns",
+    "another sequence": "sequence",
+    "angles printed in another order": "places",
+    "one angle's sign": "signs",
+    "degrees for radians": "unit",
+    "a vector of the other sense": "inverse rotation vector",
+    "an axis and angle of the other sense": "inverse axis and angle",
+    "angles of the inverse": "inverse Euler angles",
+    "the angle before its axis": "place of the angle",
+    "a constant turn": "turn",
+}
+
+
+def slug(heading):
+    return re.sub(r"[^a-z0-9]+", "-", re.sub(r"^#+ (\d+\. )?", "", heading).lower()).strip("-")
+
+
+def test_every_fault_leads_to_a_section_and_to_a_checked_question():
+    """Each fault that can be named has links; each leads to a heading, that of a question to something checked."""
+    groups = {group["group"] for groups in table.KINDS.values() for group in groups}
+    assert {*FAULTS.values()} == {*table.TAUGHT} == groups | {f"inverse {kind}" for kind in table.COUNTS} | {
+        "body", "world", "hand", "turn"}  # fmt: skip
+    for section, *questions in table.TAUGHT.values():
+        assert questions
+        for (address, title), folder in ((section, "chapters"), *((one, "tests/solutions") for one in questions)):
+            page, _, anchor = address.partition("#")
+            cells = json.loads((REPOSITORY / folder / Path(page).with_suffix(".ipynb").name).read_text("utf8"))["cells"]
+            below, found = False, []
+            for cell in cells:
+                source = "".join(cell["source"])
+                headings = [line for line in source.split("\n") if line.startswith("#")]
+                if cell["cell_type"] == "markdown" and headings:
+                    below = anchor in map(slug, headings)
+                if below:
+                    found.append(source)
+            assert found and title, address
+            if folder != "chapters":
+                checked = [name for name in re.findall(r"^check\('([^']+)'", "\n".join(found), re.MULTILINE)]
+                assert checked and all(questions_module.find_question(name) for name in checked), address
 
 
 BAD = {
@@ -366,6 +442,30 @@ def test_the_command(tmp_path, capsys):
     with pytest.raises(SystemExit):
         main(["explain", str(tmp_path / "here"), str(tmp_path / "there")])
     assert "second[[3, 0, 1, 2]]" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["first.txt", "1 0 0 0"], "there is no file first.txt"),
+        (["runs/2026-11/first.csv", "1 0 0 0"], "there is no file runs"),
+        (["1 0 0 0"], "required: second"),
+        (["1 0 0 0", "1 0 0 0", "--noise", "much"], "--noise"),
+        (["1 0 0 0", "1 0 0 0", "--first", "Maya"], "no program that is known"),
+        (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "neither a kind of numbers"),
+    ],
+)
+def test_a_command_that_is_misspelt_is_bad_input(arguments, said, capsys):
+    """It ends with 3: 2 would be an answer."""
+    with pytest.raises(SystemExit) as left:
+        main(["explain", *arguments])
+    assert left.value.code == 3 and said in capsys.readouterr().err
+
+
+def test_numbers_that_begin_with_a_minus_are_no_option(capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["explain", "-0.5,0.5,-0.5,0.5", "-0.5,0.5,-0.5,0.5", "--json"])
+    assert left.value.code == 0 and json.loads(capsys.readouterr().out)["residual in degrees"] == 0.0
 
 
 def test_the_command_is_installed():
@@ -436,3 +536,39 @@ def test_public_threads_are_named(threads):
             not_named.append((thread["thread"], str(found)))
     assert len({thread["thread"] for thread in threads}) == len(threads) > 50
     assert len(not_named) <= len(threads) // 30, not_named
+
+
+ANGLES = (0.4, 0.7, -0.3)
+EXPECTED = dcm_from_body_fixed(ANGLES, "zxy")
+#: What is handed in for that orientation, the part of a chain that is the fault, and its words as `diagnose` has them.
+HANDED_IN = {
+    "transposed": (EXPECTED.T, "inverse", "transpose"),
+    "space fixed": (dcm_from_space_fixed(ANGLES, "zxy"), "axes of the turns", "space fixed"),
+    "from behind": (dcm_from_body_fixed(ANGLES[::-1], "zxy"), "places", "reverse order"),
+    "another sequence": (dcm_from_body_fixed(ANGLES, "xyz"), "sequence", "sequence xyz"),
+    "a sign": (dcm_from_body_fixed((0.4, -0.7, -0.3), "zxy"), "signs", "second turn has the wrong sign"),
+    "degrees": (dcm_from_body_fixed(np.degrees(ANGLES), "zxy"), "unit", "degrees where radians"),
+    "radians": (dcm_from_body_fixed(np.radians(ANGLES), "zxy"), "unit", "degrees to radians once too often"),
+    "scalar last": (np.roll(quaternion_from_dcm(EXPECTED), -1), "order", "scalar part stands last"),
+    "conjugate": (quaternion_from_dcm(EXPECTED.T), "inverse", "conjugate"),
+}
+
+
+@pytest.mark.parametrize("fault", HANDED_IN)
+def test_diagnose_and_explain_name_one_mixup(fault):
+    """What `diagnose` calls the only cause is the only fault of the chain that `explain` puts first."""
+    given, part, words = HANDED_IN[fault]
+    expected = EXPECTED if given.shape == (3, 3) else quaternion_from_dcm(EXPECTED)
+    angles = (ANGLES, "zxy") if part in ("places", "axes of the turns", "sequence", "signs", "unit") else ()
+    (cause,) = diagnose(given, expected, *angles).causes
+    assert words in cause
+    usual = table.BOOK | {"sequence": "zxy"}
+    if angles:  # what was handed in, and the angles that were put in: degrees, where these were taken for radians
+        typed, usual = (np.degrees(ANGLES), usual | {"unit": "degrees"}) if fault == "degrees" else (ANGLES, usual)
+        known = {"kind": "Euler angles"} | ({} if part == "sequence" else {"sequence": "zxy"})
+        chain = explain(given, np.array([typed]), second_declared=known).chains[0]
+    else:
+        chain = explain(expected, given).chains[0]
+    assert chain.faults == (part != "sequence")
+    departs = {name for name, value in chain.second["choices"].items() if value != usual[name]}
+    assert departs | ({"inverse"} if chain.relation["inverse"] else set()) == {part}

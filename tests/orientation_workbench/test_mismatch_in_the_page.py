@@ -67,6 +67,19 @@ def mixtures(count, seed):
         yield case(*map(printed, both_sides(chain, random_orientations(2, orientations))), declared)
 
 
+TABLES = (
+    "qw,qx,qy,qz\n0.9205,0.3602,-0.0702,0.1343",
+    "# x y z w\n[0.3602, -0.0702, 0.1343, 0.9205]",
+    "t;p_x;p_y;p_z;q_z;q_y;q_x;q_w\n1.5;1;2;3;0.1343;-0.0702;0.3602;0.9205",
+    "| w | x | y | z |\n|---|---|---|---|\n| 0.9205 | 0.3602 | -0.0702 | 0.1343 |",
+    "time,roll_deg,pitch_deg,yaw_deg\n0.1,10.0,20.0,30.0",
+    "r11 r12 r13 r21 r22 r23 r31 r32 r33\n1 0 0 0 1 0 0 0 1",
+    "quaternion (x, y, z, w): 0.3602 -0.0702 0.1343 0.9205",
+    "x y z\n0.1 0.2 0.3",
+    "w x y z\n0.1 0.2 0.3",
+)
+
+
 def special():
     dcm, poses = (
         np.array(random_orientations(1, np.random.default_rng(2))[0]),
@@ -90,6 +103,8 @@ def special():
         yield case(printed(quaternion_from_dcm(poses[:2])), printed(poses[:2]), programs=(first, second))
     for text, _ in BAD.values():
         yield case(text, "1 0 0 0")
+    for text in TABLES:
+        yield case(text, printed([dcm]))
     yield case("roll: 0.1\npitch: 0.2\nyaw: 0.3", "0.3 0.2 0.1", ({}, {"sequence": "zyx"}))
     yield case(printed([simple_dcm("z", 0.5)]), printed([simple_dcm("z", -0.5)]))
     yield case("1 0 0 0", "1 0 0 0")
@@ -138,7 +153,12 @@ def broken(generator, text):
 def test_both_say_the_same_of_broken_text(count):
     """Whatever is pasted, there is an answer or a word on what was read, and both languages say the same."""
     generator = random.Random(21)
-    texts = [*SPELLED.values(), *SPELLINGS.values(), *(one[side] for one in PASTED for side in ("first", "second"))]
+    texts = [
+        *TABLES,
+        *SPELLED.values(),
+        *SPELLINGS.values(),
+        *(one[side] for one in PASTED for side in ("first", "second")),
+    ]
     cases = [case(broken(generator, generator.choice(texts)), "0.9205 0.3602 -0.0702 0.1343") for _ in range(count)]
     for one, found in zip(cases, in_the_page(cases)):
         wanted = in_python(one)

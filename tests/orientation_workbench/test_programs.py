@@ -1,12 +1,16 @@
 """What programs promise: numbers made as their manuals and sources say are found to differ by nothing else."""
 
+import json
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from test_mismatch import printed
 
+from orientation import quaternion_from_axis_angle
 from orientation_workbench import explain
 from orientation_workbench.programs import PROGRAMS, program_named
+from tools.programs.__main__ import ORIENTATIONS, STORED
 
 ANGLES = np.array([[0.3, 0.5, -0.4], [1.0, -0.2, 0.7]])
 ROTATION = Rotation.from_euler("XYZ", ANGLES)
@@ -59,6 +63,25 @@ def test_programs_that_keep_their_promises_differ_by_nothing_else(promise):
     first_program, first, second_program, second = PROMISES[promise]
     found = explain(first, second, first_program=first_program, second_program=second_program)
     assert found.verdict == "same", str(found)
+
+
+ANSWERS = json.loads(STORED.read_text("utf8"))
+
+
+@pytest.mark.parametrize("program", ANSWERS)
+def test_programs_that_were_run_answered_as_the_table_says(program):
+    """``python -m tools.programs`` asks them anew every night."""
+    assert PROGRAMS[program]["version"].endswith(ANSWERS[program]["version"])
+    truth = np.array([quaternion_from_axis_angle(np.array(axis), angle) for axis, angle in ORIENTATIONS])
+    for answer in ANSWERS[program]["answers"]:
+        known = {name: answer["form"][name] for name in ("kind", "sequence") if name in answer["form"]}
+        found = explain(truth, np.array(answer["numbers"]), first_program="this book", second_program=program,
+                        second_declared=known, noise=2e-5)  # fmt: skip
+        assert found.verdict == "same", (answer["asked"], str(found))
+
+
+def test_what_claims_to_have_been_run_has_been():
+    assert {name for name, facts in PROGRAMS.items() if facts["version"]} == {*ANSWERS, "SymPy mechanics"}
 
 
 def test_what_goes_beyond_the_manuals_is_named():

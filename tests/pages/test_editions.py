@@ -98,7 +98,7 @@ def test_every_question_of_the_second_edition_is_there_or_has_left_word():
     for notebook, names in SECOND["questions"].items():
         for name in names:
             try:
-                assert find_question(f"{notebook}/{name}")
+                assert find_question(f"{notebook}/{name}", "")
             except NoSuchQuestion as error:
                 assert "is called" in str(error), error
 

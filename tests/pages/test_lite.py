@@ -260,7 +260,7 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
 def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
     """The page asks; the notebook knows it and shows that one's numbers; what is said there, the page knows."""
     question = "simple-orientations/compass"
-    count = notebook_questions("simple-orientations")[question]["variants"]
+    count = notebook_questions("simple-orientations")[question].question.variants
     ada, ben = (next(s for s in (f"s{k}" for k in range(99)) if variant_of(s, question, count) == n) for n in (3, 5))
     context = browser.new_context(viewport={"width": 1300, "height": 900})
     page = context.new_page()

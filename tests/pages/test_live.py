@@ -588,7 +588,7 @@ def test_exercise_is_checked_in_the_page(context, site):
 @pytest.mark.sampled(1, of="what a page keeps")
 def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
-    count = notebook_questions("simple-orientations")[question]["variants"]
+    count = notebook_questions("simple-orientations")[question].question.variants
     students = {variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)}
     page = Page(context, site, name)
     sealed = []
@@ -704,7 +704,7 @@ def test_a_sibling_question_is_one_button_away(context, site):
     assert "sibling = variant('simple-orientations/compass/sibling')" in code
     assert "check('simple-orientations/compass/sibling', other_compass)" in code
     # That of nobody is the next. The page writes a minus where Python has a hyphen, and sets numbers one by one.
-    own = notebook_questions("simple-orientations", 1)["simple-orientations/compass"]["shown"]
+    own = notebook_questions("simple-orientations", 1)["simple-orientations/compass"].question.variant.shown
     shown = "".join(page.below(place).replace("\N{MINUS SIGN}", "-").split())
     assert all(number in shown for text in own.values() for number in re.findall(r"-?\d+", text)), own
     assert page.errors == []

@@ -5,7 +5,7 @@ A student needs ``from coursework import check`` and no more.
 
 from .checking.check import check, hint, progress, worked_solution
 from .checking.identity import me, student
-from .checking.variants import variant
+from .checking.questions import variant
 
 __version__ = "1.2.0"
 

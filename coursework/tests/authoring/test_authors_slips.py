@@ -132,7 +132,7 @@ def test_hints_may_belong_to_one_mistake_of_the_author(tmp_path):
     named = f"mistakes={{'Too few.': 2 * x, 'Too many.': 5 * x}}, {hinted}"
     question = read_source(sources(tmp_path, question=changed("'x')", f"'x', {named})"))).questions["trial/one"]
     hints = {
-        entry.notes[0][1]["text"]: entry.cases[0]["hints"]
+        entry.notes[0].details["text"]: list(entry.answers[0].hints)
         for entry in question.entries.values()
         if entry.notes and entry.notes[0][0] == "authored"
     }

@@ -19,6 +19,8 @@ from coursework.checking import questions
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.units import PREFIXES, WITH_PREFIX, UnknownUnit, unit
 from coursework.grading.judging import marking
+from coursework.grading.judging.contract import Asked
+from coursework.grading.record import Answer, Mark, Record
 from coursework.grading.review import Class
 
 KNOWN = {
@@ -36,7 +38,7 @@ def make(kind, answer, **about):
 
 
 def outcome(question, answer):
-    reply = questions.judge(question.name, question.sealed(), to_plain(answer))[0]
+    reply = questions.judge(question.name, question.sealed(), to_plain(answer))
     return reply.outcome, reply.note
 
 
@@ -157,9 +159,9 @@ def test_the_unit_of_an_exam_is_not_told():
     """What a student receives is the same for another unit."""
     one, other = (make("measurement", (3, unit), exam=True).sealed() for unit in ("kN m", "mm"))
     assert one == other
-    reply = questions.judge("trial/one", one, to_plain((3, "kN m")))[0]
+    reply = questions.judge("trial/one", one, to_plain((3, "kN m")))
     assert reply.outcome == "recorded"
-    assert questions.judge("trial/one", one, to_plain((3, "kNm")))[0].note == "unknown unit"
+    assert questions.judge("trial/one", one, to_plain((3, "kNm"))).note == "unknown unit"
 
 
 # --- orders and lists -----------------------------------------------------------------------------
@@ -178,9 +180,9 @@ def test_an_order():
 
 
 def share(question, answer):
-    about = marking.about(question, b"any secret")
-    mark = marking.mark("trial/one", about, {"outcome": "recorded", "plain": to_plain(answer)})
-    return mark["points"], mark["messages"]
+    about = Asked(marking.contract_of(question, b"any secret"))
+    mark = marking.mark("trial/one", about, Answer("recorded", to_plain(answer)))
+    return mark.points, mark.messages
 
 
 def test_an_order_that_is_right_in_part_earns_its_share():
@@ -200,7 +202,7 @@ def test_who_guesses_a_list_earns_nothing_on_average():
     assert share(truths, [not right[0], not right[1], not right[2], *right[3:]])[0] == 6  # 9 of 12, beyond 6
     words = ["N", "N m", "Pa", "N/m"]
     answer = [chance.choice(words) for _ in range(8)]
-    question = marking.about(make("words", answer, options=words, length=8, partial=True), b"any secret")
+    question = marking.contract_of(make("words", answer, options=words, length=8, partial=True), b"any secret")
     shares = []
     for _ in range(600):
         text = " | ".join(chance.choice(words) for _ in range(8)).lower()
@@ -222,15 +224,15 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
     question = make("free text", ESSAY, rubric=RUBRIC, worth=4)
     assert try_question(question).faults == []
     sealed = question.sealed()
-    assert sealed["lockers"] == "" and "commute" not in str(sealed)
-    reply = questions.judge("trial/one", sealed, to_plain("They do not."))[0]
+    assert sealed.lockers == "" and "commute" not in str(sealed)
+    reply = questions.judge("trial/one", sealed, to_plain("They do not."))
     assert (reply.outcome, reply.note) == ("undecided", "for a person") and "3 words" in reply.messages[0]
     assert outcome(question, "  ")[0] == outcome(question, ...)[0] == "not attempted"
     assert outcome(question, 3) == ("invalid", "shape")
-    about = marking.about(question, b"any secret")
+    about = Asked(marking.contract_of(question, b"any secret"))
     for text, expected in (("They do not.", "undecided"), ("", "not attempted"), (ESSAY, "undecided")):
-        mark = marking.mark("trial/one", about, {"outcome": "recorded", "plain": to_plain(text)})
-        assert (mark["outcome"], mark["points"]) == (expected, 0)
+        mark = marking.mark("trial/one", about, Answer("recorded", to_plain(text)))
+        assert (mark.outcome, mark.points) == (expected, 0)
     assert try_question(make("free text", ESSAY)).faults == ["Nothing says what a person looks for: give a `rubric`."]
     with pytest.raises(author.AuthorError, match="a person reads"):
         make("expression", 3, rubric=RUBRIC)
@@ -240,8 +242,10 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
 
 def test_the_rubric_stands_on_the_page_where_a_person_judges(tmp_path):
     graded = Class(tmp_path)
-    graded.questions = {"trial/one": marking.about(make("free text", ESSAY, rubric=RUBRIC), b"any secret")}
-    lines = graded.lines(SimpleNamespace(question="trial/one"), {"marks": {"trial/one": {}}})
+    graded.questions = {"trial/one": marking.contract_of(make("free text", ESSAY, rubric=RUBRIC), b"any secret")}
+    lines = graded.lines(
+        SimpleNamespace(question="trial/one"), Record("ann", "trial", marks={"trial/one": Mark("undecided")})
+    )
     assert [line for line, *_ in lines] == RUBRIC
 
 
@@ -282,4 +286,4 @@ def test_a_plot_of_matplotlib_is_a_figure_of_a_question(tmp_path):
         cell.source for cell in cells
     )
     first, again = (read_source(course.sources / "trial.ipynb", 1).questions["trial/line"] for _ in range(2))
-    assert first.public["picture"] == again.public["picture"] and first.public["salt"] == again.public["salt"]
+    assert first.public.variant.picture == again.public.variant.picture and first.public.salt == again.public.salt

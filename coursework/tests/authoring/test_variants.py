@@ -9,6 +9,7 @@ import json
 import re
 import shutil
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import nbformat
@@ -27,6 +28,7 @@ from coursework.checking import identity, questions, sealing, variants
 from coursework.checking.plain import to_plain
 from coursework.grading.grade import grade
 from coursework.grading.judging import marking
+from coursework.grading.record import Answer, Remembered
 from coursework.grading.reporting.reports import feedback_of
 from coursework.grading.submissions import intake
 
@@ -109,7 +111,7 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
     assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
     assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
     for other in range(6):
-        given = read_source(course.sources / "levers.ipynb", other).questions["levers/see-saw"].public["given"]
+        given = read_source(course.sources / "levers.ipynb", other).questions["levers/see-saw"].public.given
         right = given["force"] * given["arm"] == lever.force * lever.arm
         outcome = coursework.check("levers/see-saw", given["force"] * given["arm"]).outcome
         assert (outcome == "correct") == right
@@ -154,19 +156,22 @@ def test_the_grader_finds_the_same_variant_from_the_roster():
 
 def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course, tmp_path):
     found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
-    assert len(found[NAME]["others"]) == 5 and "others" not in found["levers/plain"]
+    assert len(found[NAME]) == 6 and len(found["levers/plain"]) == 1
     for number in (0, 4):
         student = student_with(number) if number else next(f"{k}" for k in range(99) if not variant(f"{k}"))
         own, _ = marking.of_student(found, student)
         for other in range(6):
-            given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public["given"]
+            given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
             plain = to_plain(given["force"] * given["arm"])
-            mark = marking.mark(NAME, own[NAME], {"outcome": "recorded", "plain": plain})
+            mark = marking.mark(NAME, own[NAME], Answer("recorded", plain))
             expected = ("correct", "", 1) if other == number else ("wrong", "other numbers", 0)
-            assert (mark["outcome"], mark["note"], mark["points"]) == expected
-        plain = {"outcome": "recorded", "plain": to_plain(7)}
-        assert marking.mark("levers/plain", own["levers/plain"], plain)["points"] == 1
-        assert marking.asked_of_sandbox(own)[NAME]["given"] == own[NAME]["public"]["given"]
+            assert (mark.outcome, mark.note, mark.points) == expected
+        plain = Answer("recorded", to_plain(7))
+        assert marking.mark("levers/plain", own["levers/plain"], plain).points == 1
+        assert (
+            marking.asked_of_sandbox(marking.with_second_chances(own))[NAME]["given"]
+            == own[NAME].contract.question.given
+        )
 
 
 def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
@@ -281,18 +286,18 @@ def test_hints_and_the_worked_solution_are_help(recorded, course, way):
 def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_path):
     found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
     own, _ = marking.of_student(found, student_with(5))
-    chances = own[NAME]["second chances"]
-    assert [one["public"].get("variant", 0) for one in chances.values()] == [0, 1]
+    chances = own[NAME].second_chances
+    assert [one.variant.number for one in chances.values()] == [0, 1]
     right = {
-        name: {"outcome": "recorded", "plain": to_plain(given["force"] * given["arm"])}
-        for name, question in {NAME: own[NAME], **chances}.items()
-        for given in [question["public"]["given"]]
+        name: Answer("recorded", to_plain(given["force"] * given["arm"]))
+        for name, contract in {NAME: own[NAME].contract, **chances}.items()
+        for given in [contract.question.given]
     }
     first, second = chances
-    missing = {"outcome": "missing"}
+    missing = Answer("missing")
 
     def marked(answers, **helped):
-        remembered = {{"own": NAME, "first": first}[one]: {"tries": 3, "help": had} for one, had in helped.items()}
+        remembered = {{"own": NAME, "first": first}[one]: Remembered(3, help=had) for one, had in helped.items()}
         return marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
 
     for answers, helped, points, note in (
@@ -310,13 +315,13 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
         ({NAME: right[NAME], f"{NAME}/sibling-3": right[second]}, {"own": "hint"}, 0.8, "with help"),
     ):
         mark = marked(answers, **helped)
-        assert (mark["points"], mark["note"]) == (points, note), (answers, helped)
-    assert marked(right, own="mistake")["tries"] == 3 and marked(right)["tries"] is None
-    own[NAME]["credit"] = {"help": 1}
+        assert (mark.points, mark.note) == (points, note), (answers, helped)
+    assert marked(right, own="mistake").tries == 3 and marked(right).tries is None
+    own[NAME] = replace(own[NAME], contract=replace(own[NAME].contract, credit={"help": 1}))
     mark = marked({NAME: right[NAME]}, own="mistake")
-    assert mark["points"] == 1 and mark["messages"] == []  # an author who wants help to cost nothing
+    assert mark.points == 1 and mark.messages == ()  # an author who wants help to cost nothing
     asked = marking.asked_of_sandbox(marking.with_second_chances(own, {first}))
-    assert set(asked) == {NAME, "levers/plain", first} and asked[first]["given"] == chances[first]["public"]["given"]
+    assert set(asked) == {NAME, "levers/plain", first} and asked[first]["given"] == chances[first].question.given
 
 
 def test_a_notebook_remembers_tries_and_help(recorded):
@@ -378,9 +383,7 @@ def test_an_edition_draws_afresh():
 
 
 def test_salts_differ_so_that_a_guess_serves_one_variant(course):
-    salts = [
-        read_source(course.sources / "levers.ipynb", k).questions["levers/see-saw"].public["salt"] for k in range(6)
-    ]
+    salts = [read_source(course.sources / "levers.ipynb", k).questions["levers/see-saw"].public.salt for k in range(6)]
     assert len(set(salts)) == 6
 
 

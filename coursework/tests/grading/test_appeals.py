@@ -74,14 +74,14 @@ def out(begun, tmp_path):
 
 
 def points_of(store):
-    return {record["student"]: record["points"] for record in store.all()}
+    return {record.student: record.points for record in store.all()}
 
 
 def cluster_of(store, question, student):
     (found,) = [
         one
         for one in Class(store.folder).clusters.values()
-        if one.question == question and student in [record["student"] for record in one.members]
+        if one.question == question and student in [record.student for record in one.members]
     ]
     return found
 
@@ -138,7 +138,7 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
     command = ["export", str(out.folder), "--lms", str(book), "--filled", str(book)]
     main(command)
     cluster = cluster_of(out, SUM, "ben")
-    place = [record["student"] for record in cluster.members].index("ben")
+    place = [record.student for record in cluster.members].index("ben")
     with Served(out.folder, grader="Ann") as served:
         words = f"I am right {SCRIPT}"
         raised = form(form="appeal", state="raised", only=place, words=words)
@@ -186,9 +186,9 @@ def test_a_mark_is_that_of_the_day_it_is_asked_for(out):
     for month, state in ((1, None), (2, "raised"), (3, "accepted")):
         day = datetime.datetime(2026, month, 15, tzinfo=datetime.UTC)
         marks = gradebooks.Marks(out, as_of=day)
-        (found,) = [one for one in marks.records if one["student"] == "ben"]
-        appeals = found["marks"][SUM].get("appeals", [])
-        assert [one["state"] for one in appeals] == ([state] if state else []) and found["points"] == 2 * (month == 3)
+        (found,) = [one for one in marks.records if one.student == "ben"]
+        appeals = found.marks[SUM].appeals
+        assert [one["state"] for one in appeals] == ([state] if state else []) and found.points == 2 * (month == 3)
 
 
 def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
@@ -215,8 +215,8 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
     (tmp_path / "roster.csv").write_text("student,name\nada,ada\nbenjamin,ben\ncem,cem\n")
     options = {"solutions": begun / "solutions", "limits": LIMITS, "show": io.StringIO()}
     grade(begun / "in", out.folder, roster=tmp_path / "roster.csv", **options)
-    found = out.read("benjamin", "essays")["marks"][SUM]
-    assert (found["points"], [one["state"] for one in found["appeals"]]) == (1, ["accepted"])
+    found = out.read("benjamin", "essays").marks[SUM]
+    assert (found.points, [one["state"] for one in found.appeals]) == (1, ["accepted"])
     again = Ledger(out.folder)
     again.take_back([out.read("benjamin", "essays")], SUM, "Ben")
     assert again.current()["benjamin", "essays", SUM].credit == 1
@@ -238,7 +238,7 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
     # Handed in anew, the answer is judged anew, and what was decided on the earlier one is not forgotten.
     put(tmp_path / "in", "ben", answered("Since.", 7), "essays.ipynb")
     grade(tmp_path / "in", out.folder, show=said, **options)
-    assert out.read("ben", "essays")["points"] == 0
+    assert out.read("ben", "essays").points == 0
     assert "1 decision is on an answer or a question that has changed since (ben)" in said.getvalue()
     # The question itself is mended: the decision counts, and somebody is to look.
     mended, said = write_essays(tmp_path / "mended", right="6"), io.StringIO()

@@ -95,8 +95,8 @@ def test_the_grader_marks_what_the_check_only_took_down(exam, tmp_path):
         cells = [SETUP, f"A_C_N = sm.sympify({str(answer.tolist())!r})", "check('trial/about-x', A_C_N)"]
         put(tmp_path / "handed-in", student, notebook(cells), "trial.ipynb")
     grade(tmp_path / "handed-in", tmp_path / "out", solutions=exam.sources, show=io.StringIO())
-    marks = {record["student"]: record["marks"]["trial/about-x"] for record in Store(tmp_path / "out").all()}
-    assert [(marks[name]["outcome"], marks[name]["points"]) for name in ("right", "turned", "wrong")] == [
+    marks = {record.student: record.marks["trial/about-x"] for record in Store(tmp_path / "out").all()}
+    assert [(marks[name].outcome, marks[name].points) for name in ("right", "turned", "wrong")] == [
         ("correct", 2),
         ("wrong", 1),
         ("wrong", 0),

@@ -15,9 +15,10 @@ from coursework.checking.points import points
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade
 from coursework.grading.judging.marking import questions_of
+from coursework.grading.record import Record
 from coursework.grading.store import Store, file_name
 from coursework.grading.submissions import intake
-from coursework.grading.submissions.identity import Roster
+from coursework.grading.submissions.roster import Roster
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
 
@@ -67,8 +68,8 @@ def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
 
 def cell_of_what_is_known(questions):
     """What a student may find out: where the check looks, and what a friend's right answer comes to there."""
-    places = points(questions["turns/sum"]["public"])
-    calls = [call[0] for call in questions["turns/doubled"]["public"]["calls"]]
+    places = points(questions["turns/sum"][0].question)
+    calls = [call[0] for call in questions["turns/doubled"][0].question.calls]
     with MP.workdps(40):
         values = [MP.nstr(MP.sin(place["alpha"] + place["beta"]), 40) for place in places]
     texts = [{name: MP.nstr(value, 40) for name, value in place.items()} for place in places]
@@ -93,27 +94,27 @@ def records(tmp_path_factory):
     grade(place / "submissions", place / "out", solutions=solutions, show=io.StringIO(), allow_weak_isolation=False)
     store = Store(place / "out")
     assert not list(place.rglob("forged"))
-    return {record["student"]: record for record in store.all()}
+    return {record.student: record for record in store.all()}
 
 
 def test_who_does_not_forge_has_all_points(records):
-    assert records["right"]["points"] == records["right"]["worth"] == 6
+    assert records["right"].points == records["right"].worth == 6
     assert len(records) == len(answers.ATTACKS) + 1
 
 
 @pytest.mark.parametrize("attack", answers.ATTACKS, ids=lambda attack: attack.name)
 def test_an_answer_that_is_not_right_earns_nothing(records, attack):
-    marks = records[attack.name]["marks"]
+    marks = records[attack.name].marks
     asked = f"turns/{attack.question.replace('_', '-')}"
-    assert (marks[asked]["points"], marks[asked]["outcome"] in attack.outcome.split(" or ")) == (0, True), marks[asked]
+    assert (marks[asked].points, marks[asked].outcome in attack.outcome.split(" or ")) == (0, True), marks[asked]
     for name, mark in marks.items():
         if name != asked:
-            assert mark["points"] in ((0, mark["worth"]) if attack.spoils else (mark["worth"],)), (name, mark)
+            assert mark.points in ((0, mark.worth) if attack.spoils else (mark.worth,)), (name, mark)
 
 
 def test_many_of_them_pass_the_check_that_a_student_has(records):
     """They are no straw men: only where nobody can look are they told from right answers."""
-    notes = [mark["note"] for record in records.values() for mark in record["marks"].values()]
+    notes = [mark.note for record in records.values() for mark in record.marks.values()]
     assert notes.count("right only where it is checked") >= 12
 
 
@@ -184,10 +185,10 @@ def test_records_of_two_lie_in_two_places_on_every_system():
 
 def test_a_copy_of_a_record_counts_for_nobody(tmp_path):
     store = Store(tmp_path)
-    store.save({"student": "bob", "assignment": "turns", "points": 6})
+    store.save(Record("bob", "turns"))
     (tmp_path / "records" / "eve").mkdir()
     shutil.copy(store.place("bob", "turns"), tmp_path / "records" / "eve" / "turns.json")
-    assert [record["student"] for record in store.all()] == ["bob"]
+    assert [record.student for record in store.all()] == ["bob"]
 
 
 def test_a_name_begins_no_line_of_its_own(tmp_path):

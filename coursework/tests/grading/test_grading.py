@@ -14,6 +14,7 @@ import subprocess
 import sys
 import weakref
 import zipfile
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import nbformat
@@ -27,11 +28,12 @@ from coursework.grading.execution.sandbox import Limits, Sandbox, WeakIsolation,
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.judging.ledger import Ledger
+from coursework.grading.record import Answer
 from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
 from coursework.grading.store import InUse, Store, file_name
 from coursework.grading.submissions import languages
-from coursework.grading.submissions.identity import Roster
+from coursework.grading.submissions.roster import Roster
 from coursework.grading.tables import as_cell, as_written, table
 from coursework.grading.workers import TaskLost, side_by_side
 
@@ -117,7 +119,7 @@ def rows_of(path):
 
 
 def outcomes(course, student):
-    return [mark["outcome"] for mark in record(course, student)["marks"].values()]
+    return [mark.outcome for mark in record(course, student).marks.values()]
 
 
 def contents(folder):
@@ -155,24 +157,24 @@ def contents(folder):
 def test_marks(course, student, expected, points):
     assert outcomes(course, student) == expected
     found = record(course, student)
-    assert (found["points"], found["worth"]) == (points, 6)
+    assert (found.points, found.worth) == (points, 6)
 
 
 def test_a_record_says_what_it_rests_on(course):
     found = record(course, "endless")
     written = (course / "submissions" / "endless" / "turns.ipynb").read_bytes()
-    (one,) = found["notebooks"]
-    assert one["sha256"] == hashlib.sha256(written).hexdigest()
-    assert one["isolation"]["layers"] and one["isolation"]["weak"] is False and one["seed"] == 0
-    assert [cell["outcome"] for cell in one["cells"]][3] == "timeout"
-    assert found["limits"] == dataclasses.asdict(LIMITS)
-    assert set(found["software"]) >= {"python", "sympy", "numpy", "coursework"}
-    assert set(found["answers"]) == set(found["marks"]) == {name for name in RIGHT if name.startswith("turns/")}
-    assert all(mark["version"] for mark in found["marks"].values())
+    (one,) = found.notebooks
+    assert one.sha256 == hashlib.sha256(written).hexdigest()
+    assert one.isolation["layers"] and one.isolation["weak"] is False and one.seed == 0
+    assert [cell.outcome for cell in one.cells][3] == "timeout"
+    assert found.limits == dataclasses.asdict(LIMITS)
+    assert set(found.software) >= {"python", "sympy", "numpy", "coursework"}
+    assert set(found.answers) == set(found.marks) == {name for name in RIGHT if name.startswith("turns/")}
+    assert all(mark.version for mark in found.marks.values())
 
 
 def test_out_of_order_is_said(course):
-    assert record(course, "backwards")["notebooks"][0]["notes"] == ["works only out of order"]
+    assert record(course, "backwards").notebooks[0].notes == ("works only out of order",)
     assert "in another order than they stand in" in page(course, "backwards")
     assert "works only out of order" in (course / "out" / "report.html").read_text()
 
@@ -333,10 +335,15 @@ def test_identical_wrong_answers_are_put_together(tmp_path, course):
         store = Store(tmp_path)
         for number, group in enumerate(groups):
             found = record(course, "right")
-            found["student"] = f"student-{number}"
-            found["marks"]["turns/sum"] |= {"outcome": "wrong", "note": "", "group": group, "points": 0}
-            found["answers"]["turns/sum"] = {"outcome": "recorded", "plain": plain}
-            store.save(found)
+            mark = replace(found.marks["turns/sum"], outcome="wrong", note="", group=group, points=0)
+            store.save(
+                replace(
+                    found,
+                    student=f"student-{number}",
+                    marks={**found.marks, "turns/sum": mark},
+                    answers={**found.answers, "turns/sum": Answer("recorded", plain)},
+                )
+            )
         write_all(store)
         return (tmp_path / "report.html").read_text()
 
@@ -345,17 +352,14 @@ def test_identical_wrong_answers_are_put_together(tmp_path, course):
 
 
 def test_reports_hold_one_record_at_a_time(tmp_path, course, monkeypatch):
-    alive, most = weakref.WeakSet(), 0
-
-    class Record(dict):
-        __hash__ = object.__hash__
+    made, most = [], 0
 
     def all_of_them(store):
         nonlocal most
         for number in range(300):
-            found = Record(record(course, "right"), student=f"student-{number}")
-            alive.add(found)
-            most = max(most, len(alive))
+            found = replace(record(course, "right"), student=f"student-{number}")
+            made.append(weakref.ref(found))
+            most = max(most, sum(one() is not None for one in made))
             yield found
             del found
 
@@ -410,7 +414,7 @@ def test_what_changed_is_graded_again(course, copied, tmp_path):
     put(submissions, "right", handed_in(sum="sine = 0"))
     said = grade(submissions, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     assert said == {"graded": 1, "kept": 14, "refused": 3}
-    assert Store(copied).read("right", "turns")["points"] == 5
+    assert Store(copied).read("right", "turns").points == 5
 
 
 def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypatch):
@@ -493,7 +497,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     shown = io.StringIO()
     grade(few, copied, show=shown, **options)
     assert "'somebody' is now 'bb' or 'cc'" in shown.getvalue() and "count for nobody now" in shown.getvalue()
-    assert Store(copied).read("bb", "turns")["points"] == 5
+    assert Store(copied).read("bb", "turns").points == 5
 
 
 def test_a_ledger_of_other_answers_is_said(course, copied, capsys, tmp_path):
@@ -501,8 +505,8 @@ def test_a_ledger_of_other_answers_is_said(course, copied, capsys, tmp_path):
     (tmp_path / "other").mkdir()
     other = Ledger(tmp_path / "other")
     other.add(found, "turns/sum", 1)
-    other.add({**found, "student": "stranger"}, "turns/sum", 1)
-    other.add({**found, "answers": {}}, "turns/about-x", 1)
+    other.add(replace(found, student="stranger"), "turns/sum", 1)
+    other.add(replace(found, answers={}), "turns/about-x", 1)
     main(["merge", str(copied), str(other.path)])
     said = capsys.readouterr().out
     assert "3 decisions from" in said and "2 of them are on answers that are not here: stranger, mistaken. They" in said
@@ -518,9 +522,9 @@ def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path
     with monkeypatch.context() as patched:
         patched.setattr(Sandbox, "run", die)
         grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
-    assert {mark["outcome"] for mark in Store(copied).read("right", "turns")["marks"].values()} == {"undecided"}
+    assert {mark.outcome for mark in Store(copied).read("right", "turns").marks.values()} == {"undecided"}
     again = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
-    assert again["graded"] == 1 and Store(copied).read("right", "turns")["points"] == 5
+    assert again["graded"] == 1 and Store(copied).read("right", "turns").points == 5
 
 
 @pytest.mark.parametrize("workers", [0, -1])
@@ -544,7 +548,7 @@ def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypa
 def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course, copied, tmp_path):
     solutions = shutil.copytree(course / "solutions", tmp_path / "course" / "solutions")
     said = tmp_path / "course" / "course.toml"
-    page, marks = copied / "feedback" / "right" / "turns.html", record(course, "right")["marks"]
+    page, marks = copied / "feedback" / "right" / "turns.html", record(course, "right").marks
     said.write_text('chapter = "https://book.example/{notebook}.html"\n')
     regrade(copied, solutions=solutions)
     assert page.read_text("utf8").count('<a href="https://book.example/turns.html">the chapter</a>') == len(marks)
@@ -563,10 +567,10 @@ def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course
 
 def test_feedback_gives_no_outputs_of_calls_away(course):
     """What a function returned to the check would do for a friend's answer, and the secret calls for all later ones."""
-    found = record(course, "right")["answers"]["turns/doubled"]
-    assert found["plain"]["value"][0] == found["secret"]["plain"]["value"][0] == "function"
+    found = record(course, "right").answers["turns/doubled"]
+    assert found.plain["value"][0] == found.secret["plain"]["value"][0] == "function"
     said = page(course, "right")
-    numbers = [node[1] for plain in (found["plain"], found["secret"]["plain"]) for node in plain["nodes"]]
+    numbers = [node[1] for plain in (found.plain, found.secret["plain"]) for node in plain["nodes"]]
     assert len(numbers) == 5 and not [number for number in numbers if number[:6] in said]
     assert "in place of" not in page(course, "blank") and "Nothing was answered." in page(course, "blank")
 
@@ -634,9 +638,9 @@ def test_what_dies_under_a_notebook_costs_only_that_one(course, prepared, tmp_pa
     options = {"solutions": course / "solutions", "limits": LIMITS, "workers": 2, "show": io.StringIO()}
     assert grade(tmp_path / "few", prepared, **options)["graded"] == 9
     for found in Store(prepared).all():
-        expected = "undecided" if found["student"] == "student-4" else "not attempted"
-        assert {mark["outcome"] for mark in found["marks"].values()} == {expected}
-        assert ("given up" in found["notebooks"][0]["isolation"]) == (expected == "undecided")
+        expected = "undecided" if found.student == "student-4" else "not attempted"
+        assert {mark.outcome for mark in found.marks.values()} == {expected}
+        assert ("given up" in found.notebooks[0].isolation) == (expected == "undecided")
     assert len(graded_lines(prepared)) == len(set(graded_lines(prepared))) == 9
     # No final record of a machine's failure: it is tried again, and nothing else is.
     assert grade(tmp_path / "few", prepared, **options)["graded"] == 1
@@ -739,8 +743,8 @@ def test_a_person_decides_what_is_undecided(course, copied):
     (copied / "decisions.csv").write_text(table(list(row), [list(row.values())]))
     (moved,) = regrade(copied, solutions=course / "solutions")
     assert (moved.student, moved.before, moved.after) == ("nearly", 5, 5.5)
-    mark = Store(copied).read("nearly", "turns")["marks"]["turns/sum"]
-    assert (mark["outcome"], mark["points"], mark["messages"]) == ("decided", 0.5, ["Rounded."])
+    mark = Store(copied).read("nearly", "turns").marks["turns/sum"]
+    assert (mark.outcome, mark.points, mark.messages) == ("decided", 0.5, ("Rounded.",))
     assert [row["student"] for row in rows_of(copied / "undecided.csv")] == ["endless"]
     (copied / "decisions.csv").write_text("student,question,credit\r\nnearly,turns/sum,much\r\n")
     with pytest.raises(ValueError, match="line 2: credit is a number from 0 to 1, and this is 'much'"):
@@ -763,7 +767,7 @@ def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(course, copied,
     _, row = rows_of(copied / "undecided.csv")
     (copied / "decisions.csv").write_text(decisions.format(id=row["id"]), "utf8")
     regrade(copied, solutions=course / "solutions")
-    assert Store(copied).read("nearly", "turns")["points"] == points
+    assert Store(copied).read("nearly", "turns").points == points
     assert re.search(said, capsys.readouterr().err, re.S)
     lines = (copied / "ledger.jsonl").read_text().splitlines() if (copied / "ledger.jsonl").exists() else []
     assert regrade(copied, solutions=course / "solutions") == []
@@ -784,8 +788,8 @@ def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, t
     ledger.add(found, "turns/sum", 0.25, who="Bea", rubric=["Sign"])
     assert ledger.path.read_bytes().startswith(before)
     assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4.25]
-    mark = store.read("mistaken", "turns")["marks"]["turns/sum"]
-    assert mark["before"]["note"] == "opposite" and mark["decided"]["who"] == "Bea" and mark["messages"] == ["Sign"]
+    mark = store.read("mistaken", "turns").marks["turns/sum"]
+    assert mark.before.note == "opposite" and mark.decided["who"] == "Bea" and mark.messages == ("Sign",)
     Ledger(copied).add(found, "turns/sum", None, who="Bea", why="taken back")
     assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4]
     ledger = Ledger(copied)
@@ -795,7 +799,7 @@ def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, t
     again = tmp_path / "again"
     put(again, "mistaken", handed_in(sum="sine = 0"))
     grade(again, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
-    assert store.read("mistaken", "turns")["marks"]["turns/sum"]["outcome"] == "wrong"
+    assert store.read("mistaken", "turns").marks["turns/sum"].outcome == "wrong"
     with pytest.raises(ValueError, match="from 0 to 1"):
         ledger.add(found, "turns/sum", 2)
 
@@ -1226,13 +1230,11 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
         refused = any(did.startswith("refused") for did in about["did"])
         assert (found is None) == refused, about["did"]
         for name, (outcome, note) in ({} if refused else about["questions"]).items():
-            mark = found["marks"][name]
+            mark = found.marks[name]
             if any(did.startswith("hostile") for did in about["did"]):
-                assert (
-                    not mark["points"] or outcome != "not attempted"
-                )  # it may have spoilt its own, and gained nothing
+                assert not mark.points or outcome != "not attempted"  # it may have spoilt its own, and gained nothing
             else:
-                assert mark["outcome"] == outcome and (not note or mark["note"] == note), (student, about["did"], name)
+                assert mark.outcome == outcome and (not note or mark.note == note), (student, about["did"], name)
                 compared += 1
     assert compared > 200
     main(["regrade", str(tmp_path / "out"), "--solutions", solutions])

@@ -17,6 +17,7 @@ from coursework.grading.judging import marking
 from coursework.grading.judging.cases import Contracts
 from coursework.grading.judging.judge import Judge
 from coursework.grading.judging.ledger import Ledger
+from coursework.grading.record import Answer, Record
 from coursework.grading.store import Store
 
 NAME = "turns/sum"
@@ -55,13 +56,7 @@ def judged(answers, questions, folder):
     said = []
     with Judge({"turns": {NAME: questions[NAME]}}, Contracts(folder), said.append) as judge:
         for number, plain in enumerate(answers):
-            record = {
-                "student": f"{number}",
-                "assignment": "turns",
-                "answers": {NAME: {"outcome": "recorded", "plain": plain, "from": "check", "cell": 0}},
-                "finished": True,
-                "notebooks": [],
-            }
+            record = Record(f"{number}", "turns", answers={NAME: Answer("recorded", plain, source="check", cell=0)})
             yield judge.marks(record)[NAME]
     assert said == []
 
@@ -76,7 +71,7 @@ def test_ordinary_answers_are_judged_in_bounded_time_and_memory(number, question
         except NotPlain:
             pass
     # None takes so much that the judge has to be ended: that would be said.
-    outcomes = {mark["outcome"] for mark in judged(answers, questions, tmp_path)}
+    outcomes = {mark.outcome for mark in judged(answers, questions, tmp_path)}
     assert outcomes <= {"wrong", "invalid", "undecided", "correct"} and {"wrong", "invalid"} <= outcomes
 
 
@@ -117,9 +112,9 @@ def test_hostile_answers_leave_every_other_mark(questions, tmp_path):
     honest = [to_plain(sm.sin(alpha + beta)), to_plain(-sm.sin(alpha + beta))]
     answers = [one for bad in hostile for one in (bad, *honest)]
     found = list(judged(answers, questions, tmp_path))
-    assert [mark["outcome"] for mark in found[1::3]] == ["correct"] * len(hostile)
-    assert [mark["note"] for mark in found[2::3]] == ["opposite"] * len(hostile)
-    assert not any(mark["points"] for mark in found[::3])
+    assert [mark.outcome for mark in found[1::3]] == ["correct"] * len(hostile)
+    assert [mark.note for mark in found[2::3]] == ["opposite"] * len(hostile)
+    assert not any(mark.points for mark in found[::3])
 
 
 # --- the machine goes down ----------------------------------------------------------------------
@@ -152,9 +147,9 @@ def do(place, what):
     else:
         ledger = Ledger(store.folder)
         for record in store.all():
-            for name in record["marks"]:
+            for name in record.marks:
                 print("id", ledger.add(record, name, 0.5, who="Ann").id, flush=True)
-                key = record["student"], record["assignment"], name
+                key = record.student, record.assignment, name
                 if not ledger.standing().appeals.get(key):
                     print("id", ledger.appeal(record, name, "Again.", who="Ann").id, flush=True)
 
@@ -252,7 +247,7 @@ def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run
         assert len(kept) == len(set(kept)) and set(said) <= set(kept)
         whole_ledger = Ledger(whole / "out")
         assert [one.id for one in whole_ledger.events] == expected
-        assert len(whole_ledger.decisions) == sum(len(record["marks"]) for record in Store(whole / "out").all())
+        assert len(whole_ledger.decisions) == sum(len(record.marks) for record in Store(whole / "out").all())
         shutil.copy(whole / "out" / "ledger.jsonl", other / "out" / "ledger.jsonl")
         (other / "out" / "ledger.cut").unlink(missing_ok=True)
     assert (other / "book-filled.csv").read_bytes() == (whole / "book-filled.csv").read_bytes()

@@ -16,7 +16,7 @@ from grading_class import handed_in, notebook, put
 
 from coursework.grading.grade import Course, NothingToGrade, grade, sort_work
 from coursework.grading.submissions import intake
-from coursework.grading.submissions.identity import BadRoster, Roster
+from coursework.grading.submissions.roster import BadRoster, Roster
 
 GOOD = nbformat.writes(handed_in()).encode()
 

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import random
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -18,7 +19,9 @@ from coursework.checking.plain import MOST_NODES, NotPlain, read_plain, to_plain
 from coursework.checking.points import points
 from coursework.checking.questions import compare, judge
 from coursework.grading.judging import marking, secret
+from coursework.grading.judging.contract import Asked
 from coursework.grading.judging.marking import CUT_SHORT, mark, questions_of
+from coursework.grading.record import Answer, Mark
 from coursework.grading.reporting import reports
 
 
@@ -30,22 +33,22 @@ def solutions(tmp_path_factory):
 @pytest.fixture(scope="module")
 def questions(solutions):
     return {
-        name: about
+        name: Asked(first)
         for path in sorted(solutions.glob("*.ipynb"))
-        for name, about in questions_of(path, b"secret").items()
+        for name, (first,) in questions_of(path, b"secret").items()
     }
 
 
 def given(answer, calls=None):
-    return {"outcome": "recorded", "plain": to_plain(answer, calls), "from": "check", "cell": 1}
+    return Answer("recorded", to_plain(answer, calls), source="check", cell=1)
 
 
 def given_function(question, function):
     """What the sandbox says of a function: what it returned to the check, and to the secret calls."""
-    said = given(function, question["public"]["calls"])
-    place = question["secret"]
+    said = given(function, question.contract.question.calls)
+    place = question.contract.secret
     with contextlib.suppress(NotPlain):
-        said["secret"] = {"plain": to_plain(function, place["calls"]), "calls": secret.digest(place)}
+        return replace(said, secret={"plain": to_plain(function, place.calls), "calls": place.digest})
     return said
 
 
@@ -77,39 +80,39 @@ A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(the
 )
 def test_outcome_note_and_points(questions, name, answer, outcome, note, points):
     found = mark(name, questions[name], given(answer))
-    assert (found["outcome"], found["note"], found["points"]) == (outcome, note, points)
-    assert found["worth"] == questions[name]["worth"]
-    assert (outcome == "correct") == (not found["messages"])
+    assert (found.outcome, found.note, found.points) == (outcome, note, points)
+    assert found.worth == questions[name].contract.worth
+    assert (outcome == "correct") == (not found.messages)
 
 
 def test_functions_are_judged_by_what_they_return(questions):
     name = "turns/doubled"
     question = questions[name]
-    assert mark(name, question, given_function(question, lambda x: 2 * x))["points"] == 3
-    assert mark(name, question, given_function(question, lambda x: x / 2))["outcome"] == "wrong"
-    assert mark(name, question, given_function(question, lambda x: 1 / 0))["note"] == "raised an error"
-    assert mark(name, question, given_function(question, lambda x: None))["outcome"] == "not attempted"
+    assert mark(name, question, given_function(question, lambda x: 2 * x)).points == 3
+    assert mark(name, question, given_function(question, lambda x: x / 2)).outcome == "wrong"
+    assert mark(name, question, given_function(question, lambda x: 1 / 0)).note == "raised an error"
+    assert mark(name, question, given_function(question, lambda x: None)).outcome == "not attempted"
 
 
 def marks_of(questions, name, answer):
     found = mark(name, questions[name], answer)
-    return found["outcome"], found["note"], found["points"]
+    return found.outcome, found.note, found.points
 
 
 def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
     """The points of the check follow from the question: who reads them can put a polynomial through them."""
-    public = questions["turns/sum"]["public"]
+    public = questions["turns/sum"].contract.question
     places = points(public)
     rows = sm.Matrix([[sm.Float(point["alpha"], 40) ** power for power in range(len(places))] for point in places])
     right = sm.Matrix([sm.sin(sm.Float(point["alpha"] + point["beta"], 40)) for point in places])
     polynomial = sum(part * alpha**power for power, part in enumerate(rows.LUsolve(right)))
     plain = to_plain(sm.expand(polynomial))
-    assert compare("turns/sum", public, plain, questions["turns/sum"]["known"].get).outcome == "correct"
+    assert compare("turns/sum", public, plain, questions["turns/sum"].contract.locker).outcome == "correct"
     forged = "wrong", "right only where it is checked", 0
     assert marks_of(questions, "turns/sum", given(sm.expand(polynomial))) == forged
     # A share of the points for a known mistake is earned in no other way.
     assert marks_of(questions, "turns/about-x", given(A_C_N.T)) == ("wrong", "transposed", 1)
-    place = points(questions["turns/about-x"]["public"])
+    place = points(questions["turns/about-x"].contract.question)
     x = sm.Symbol("theta")
     through = [sm.interpolate([(sm.Float(p["theta"], 40), sm.cos(sm.Float(p["theta"], 40))) for p in place], x)]
     through.append(sm.interpolate([(sm.Float(p["theta"], 40), sm.sin(sm.Float(p["theta"], 40))) for p in place], x))
@@ -119,19 +122,19 @@ def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questi
 
 def test_a_table_of_what_a_function_returned_is_no_function(questions):
     question = questions["turns/doubled"]
-    table = {call[0]: 2 * call[0] for call in question["public"]["calls"]}
+    table = {call[0]: 2 * call[0] for call in question.contract.question.calls}
     for otherwise in (0.0, 1e300, "?", None):
         forged = given_function(question, lambda x, otherwise=otherwise: table.get(x, otherwise))
         assert marks_of(questions, "turns/doubled", forged) == ("wrong", "right only where it is checked", 0)
-    refusing = {**given_function(question, lambda x: 2 * x), "secret": {"unreadable": "It raised."}}
+    refusing = replace(given_function(question, lambda x: 2 * x), secret={"unreadable": "It raised."})
     assert marks_of(questions, "turns/doubled", refusing)[1] == "right only where it is checked"
     # What was not called, by whosever fault, goes to a person; and so does what was called with other secrets.
     for said in (
         {},
         {"unreadable": CUT_SHORT[0]},
-        {**given_function(question, lambda x: 2 * x)["secret"], "calls": "x"},
+        {**given_function(question, lambda x: 2 * x).secret, "calls": "x"},
     ):
-        found = {**given_function(question, lambda x: 2 * x), "secret": said}
+        found = replace(given_function(question, lambda x: 2 * x), secret=said)
         assert marks_of(questions, "turns/doubled", found) == ("undecided", "not called", 0)
 
 
@@ -145,9 +148,9 @@ def test_the_secret_is_made_once_and_decides_the_points(tmp_path, solutions):
         secret.secret_beside(tmp_path / "nowhere")
     one, same, other = (questions_of(solutions / "turns.ipynb", known) for known in (b"one", b"one", b"other"))
     assert one == same
-    for name in one:
-        assert one[name]["secret"] != other[name]["secret"] and one[name]["version"] != other[name]["version"]
-        assert one[name]["secret"].get("salt") != one[name]["public"]["salt"]
+    for (first,), (second,) in zip(one.values(), other.values(), strict=True):
+        assert first.secret != second.secret and first.version != second.version
+        assert first.secret.salt != first.question.salt
 
 
 def test_secret_calls_are_like_the_authors(questions):
@@ -189,7 +192,7 @@ def test_secret_calls_are_others_than_those_of_the_check(function, calls, others
     """Where only words of the author's may be asked for, a table of them is all that a function can be."""
     question = author.question("trial/one", "function", function, calls=calls, result="expression")
     for number in range(10):
-        made = secret.secret_of(question, b"secret %d" % number)["calls"]
+        made = secret.secret_of(question, b"secret %d" % number).calls
         assert any(call not in calls for call in made) == others
 
 
@@ -221,11 +224,9 @@ def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, monkeypa
     monkeypatch.setattr(marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest))
     first, again = (mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) for _ in range(2))
     assert first == again and judged == ["turns/about-x"]
-    again["outcome"] = "decided"  # what a person decides on one is the others' not
-    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) == first
-    changed = {**questions["turns/about-x"], "version": "another", "worth": 7}
-    assert mark("turns/about-x", changed, given(A_C_N))["points"] == 7
-    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N.T))["outcome"] == "wrong"
+    changed = Asked(replace(questions["turns/about-x"].contract, version="another", worth=7))
+    assert mark("turns/about-x", changed, given(A_C_N)).points == 7
+    assert mark("turns/about-x", questions["turns/about-x"], given(A_C_N.T)).outcome == "wrong"
 
 
 def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
@@ -235,15 +236,15 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
             sealed = question.sealed()
             answers = [question.plain, *(entry.plain for entry in question.entries.values())]
             for plain in answers:
-                reply, _ = judge(name, sealed, plain)
-                said = {"outcome": "recorded", "plain": json.loads(json.dumps(plain))}
-                if question.public["kind"] == "function" and plain == question.plain:
+                reply = judge(name, sealed, plain)
+                said = Answer("recorded", json.loads(json.dumps(plain)))
+                if question.public.kind == "function" and plain == question.plain:
                     said = given_function(questions[name], question.answer)
                 found = mark(name, questions[name], said)
-                assert (found["outcome"], found["note"], found["messages"]) == (
+                assert (found.outcome, found.note, found.messages) == (
                     reply.outcome,
                     reply.note,
-                    reply.messages,
+                    tuple(reply.messages),
                 )
                 compared += 1
     assert compared > 20
@@ -287,8 +288,8 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
 )
 def test_nothing_is_earned_without_an_answer(questions, answer, finished, outcome, note):
     limited = answer.pop("limited", False)
-    found = mark("turns/about-x", questions["turns/about-x"], answer, finished, limited)
-    assert (found["outcome"], found["note"], found["points"]) == (outcome, note, 0)
+    found = mark("turns/about-x", questions["turns/about-x"], Answer.from_json(answer), finished, limited)
+    assert (found.outcome, found.note, found.points) == (outcome, note, 0)
 
 
 def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
@@ -298,13 +299,14 @@ def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
     monkeypatch.setattr(marking, "_marked", {})
     monkeypatch.setattr(marking, "compare", fail)
     found = mark("turns/about-x", questions["turns/about-x"], given(A_C_N))
-    assert (found["outcome"], found["note"], found["points"]) == ("undecided", "not worked out", 0)
+    assert (found.outcome, found.note, found.points) == ("undecided", "not worked out", 0)
 
 
 def test_the_sandbox_is_told_names_and_calls_and_nothing_else(questions):
+    questions = {name: asked.contract for name, asked in questions.items()}
     told = marking.asked_of_sandbox(questions)
     assert told["turns/about-x"] == {"variable": "A_C_N", "calls": None, "secret calls": None}
-    secretly = {"arguments": questions["turns/doubled"]["secret"]["calls"], "as": "lists"}
+    secretly = {"arguments": list(questions["turns/doubled"].secret.calls), "as": "lists"}
     assert told["turns/doubled"] == {
         "variable": "doubled",
         "calls": {"arguments": [[1.5], [-2.0]], "as": "lists"},
@@ -330,14 +332,14 @@ def test_the_work_on_a_hostile_answer_is_bounded():
 
 
 def test_a_costly_answer_is_not_tried_on_every_variant(questions, monkeypatch):
-    question = {**questions["turns/sum"], "siblings": [questions["turns/sum"]] * 15}
+    question = replace(questions["turns/sum"], siblings=(questions["turns/sum"].contract,) * 15)
     judged, whole = [], marking.judge
     monkeypatch.setattr(marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest))
     monkeypatch.setattr(marking, "_marked", {})
     long = {"value": ["expression", 1_500], "nodes": [["symbol", "alpha"], *(["sin", order] for order in range(1_500))]}
     for plain, times in ((to_plain(sm.sin(alpha - beta)), 16), (long, 1)):
-        found = mark("turns/sum", question, {"outcome": "recorded", "plain": plain, "from": "check", "cell": 1})
-        assert found["outcome"] == "wrong" and len(judged) == times
+        found = mark("turns/sum", question, Answer("recorded", plain, source="check", cell=1))
+        assert found.outcome == "wrong" and len(judged) == times
         judged.clear()
 
 
@@ -377,5 +379,5 @@ def test_every_mistake_has_words_for_the_report():
         "number": 8,
     }
     for note in reports.DEEDS:
-        said = reports.deed({"note": note, "details": details, "messages": []})
+        said = reports.deed(Mark("wrong", note, details))
         assert said and "{" not in said

@@ -8,6 +8,7 @@ import random
 import re
 import statistics as of_python
 import zipfile
+from dataclasses import replace
 from zoneinfo import ZoneInfo
 
 import numpy as np
@@ -21,6 +22,7 @@ from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade
 from coursework.grading.judging import term
 from coursework.grading.judging.ledger import Ledger
+from coursework.grading.record import Answer, Mark, Record, RunNotebook
 from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.statistics import HIDDEN_BELOW, Correlation
 from coursework.grading.store import Store
@@ -55,19 +57,14 @@ def rules(tmp_path):
 
 
 def record(points, worth=6, when="", late=False, assignment="turns", identity=None):
-    return {
-        "assignment": assignment,
-        "points": points,
-        "worth": worth,
-        "undecided": 0,
-        "identity": identity or {},
-        "notebooks": [{"handed in": when, "late": late}],
-    }
+    notebook = RunNotebook(late=late, handed_in=when)
+    marks = {f"{assignment}/sum": Mark("correct", points=points, worth=worth)}
+    return Record("ann", assignment, identity=identity or {}, notebooks=(notebook,), marks=marks)
 
 
 def result(rules, *records, student="ann", now=datetime.datetime(2026, 12, 1, tzinfo=UTC), worth=None):
     worth = worth or {"turns": 6, "axes": 2}
-    results, total = term.results_of(student, {one["assignment"]: one for one in records}, rules, worth, now)
+    results, total = term.results_of(student, {one.assignment: one for one in records}, rules, worth, now)
     return {one.assignment: one for one in results}, total
 
 
@@ -359,19 +356,10 @@ def test_an_extension_for_nobody_is_said(out, rules):
 def test_names_and_answers_stay_text(rules, tmp_path):
     name = '<img src=x onerror="alert(1)">'
     store = Store(tmp_path / "out")
-    mark = {
-        "outcome": "wrong", "note": "", "details": {}, "messages": [], "points": 0, "worth": 1, "group": "",
-        "version": "1", "guessable": None, "title": name,
-    }  # fmt: skip
+    mark = Mark("wrong", worth=1, version="1", title=name)
     plain = {"value": ["text", "</code><script>alert(2)</script>"], "nodes": []}
-    store.save(
-        {
-            **record(0, 1),
-            "student": name,
-            "marks": {"turns/sum": mark},
-            "answers": {"turns/sum": {"outcome": "recorded", "plain": plain}},
-        }
-    )
+    answers = {"turns/sum": Answer("recorded", plain)}
+    store.save(replace(record(0, 1), student=name, marks={"turns/sum": mark}, answers=answers))
     write_course(store, rules())
     for path in (tmp_path / "out" / "course").rglob("*.html"):
         content = path.read_text()
@@ -392,9 +380,8 @@ def late(tmp_path):
         ("ann", "2026-10-07T12:00:00", False), ("bob", "2026-10-05T12:00:00", False), ("carl", "", False)
     ):  # fmt: skip
         found = record(6, when=when, late=marked)
-        about = {"title": "the sum", "group": "", "version": "v", "details": {}, "guessable": None, "tries": None}
-        mark = {"outcome": "correct", "note": "", "points": 6, "worth": 6, "messages": [], **about}
-        store.save({**found, "student": student, "marks": {"turns/sum": mark}, "answers": {}})
+        mark = Mark("correct", points=6, worth=6, version="v", title="the sum")
+        store.save(replace(found, student=student, marks={"turns/sum": mark}))
     (tmp_path / "term.toml").write_text(RULES + "[extensions.bob]\nturns = 'excused'\n")
     (tmp_path / "book.csv").write_text(BOOK)
     return store
@@ -436,7 +423,7 @@ def test_a_decision_is_handed_on_also_before_it_is_in_the_pages(late, tmp_path):
 
 def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
     """Canvas marks a file as late and does not say when it came: that cost nothing."""
-    late.save({**late.read("carl", "turns"), "notebooks": [{"handed in": "", "late": True}]})
+    late.save(replace(late.read("carl", "turns"), notebooks=(RunNotebook(late=True),)))
     rules = tmp_path / "term.toml"
     with pytest.raises(SystemExit, match="1 are marked as late.*marked = 0.1"):
         filled(late, "--rules", str(rules))

@@ -280,7 +280,7 @@ def judge_by_hand(term, store, dice):
     records = list(store.all())
     for record in dice.sample(records, min(len(records), 2 + len(records) // 10)):
         question = dice.choice(["load", "twice"])
-        name, key = f"{record['assignment']}/{question}", (record["student"], record["assignment"], question)
+        name, key = f"{record.assignment}/{question}", (record.student, record.assignment, question)
         if key in term.decided:
             continue
         first, second = dice.choice([0, 0.25, 0.5, 1]), dice.choice([0, 0.5, 1])
@@ -334,9 +334,9 @@ def go_through(term, monkeypatch, cache):
         full_credit=tuple(f"{name}/load@taken-out" for name in sorted(term.full_credit)),
         void=tuple(f"{name}/load" for name in sorted(term.void)),
     )
-    before = [record["points"] for record in Store(out).all()]
+    before = [record.points for record in Store(out).all()]
     regrade(out, solutions=solutions, policies=policies, dry_run=True)
-    assert [record["points"] for record in Store(out).all()] == before
+    assert [record.points for record in Store(out).all()] == before
     with_crashes(dice, monkeypatch, lambda: regrade(out, solutions=solutions, policies=policies, show=options["show"]))
     # Some hand in again, and all is graded once more.
     for (student, name), work in dice.sample(sorted(term.work.items(), key=lambda one: one[0]), 3):
@@ -384,9 +384,9 @@ def decide_what_waits(store):
     ledger = Ledger(store.folder)
     standing = ledger.standing()
     for record in store.all():
-        for name, mark in with_decisions(record, standing)["marks"].items():
-            if mark["outcome"] == "undecided":
-                assert mark["note"] == "numbers of another edition", mark
+        for name, mark in with_decisions(record, standing).marks.items():
+            if mark.outcome == "undecided":
+                assert mark.note == "numbers of another edition", mark
                 ledger.add(record, name, 0, who="Ann")
 
 

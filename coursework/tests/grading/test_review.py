@@ -4,13 +4,13 @@ import base64
 import functools
 import http.client
 import io
-import json
 import re
 import shutil
 import signal
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from urllib.parse import quote
 
 import nbformat
@@ -21,6 +21,7 @@ from coursework.__main__ import main
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import grade, regrade
 from coursework.grading.judging.ledger import Ledger
+from coursework.grading.record import Record, Remembered
 from coursework.grading.review import POLICY, Class, application, hints_of
 from coursework.grading.store import Store
 
@@ -178,10 +179,10 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
     with Served(out, grader="Ann") as served:
         served_class = Class(out)
         (cluster,) = [
-            one for one in served_class.clusters.values() if len(one.members) == 2 and one.mark["outcome"] == "wrong"
+            one for one in served_class.clusters.values() if len(one.members) == 2 and one.mark.outcome == "wrong"
         ]
         assert served.decide(cluster.id, "credit=0.5&comment=Half+of+it.&rubric=Copied%3F&why=appeal").status == 303
-        place = [one["student"] for one in cluster.members].index("copies")
+        place = [one.student for one in cluster.members].index("copies")
         assert served.decide(cluster.id, f"credit=1&only={place}").status == 303
         for body, status in (("credit=9", 400), ("credit=-1", 400), ("credit=x", 400), ("credit=nan", 400), ("", 400),
                              ("credit=1&only=9", 400)):  # fmt: skip
@@ -190,8 +191,8 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
         assert "by Ann" in page and "Copied?" in page and "appeal" in page
     moved = {one.student: one.after for one in regrade(out, solutions=graded / "solutions")}
     assert moved == {"copies": 6, "was-copied": 5.5}
-    mark = Store(out).read("was-copied", "turns")["marks"]["turns/sum"]
-    assert mark["messages"] == ["Copied?", "Half of it."] and mark["before"]["outcome"] == "wrong"
+    mark = Store(out).read("was-copied", "turns").marks["turns/sum"]
+    assert mark.messages == ("Copied?", "Half of it.") and mark.before.outcome == "wrong"
     assert regrade(out, solutions=graded / "solutions") == []
     page = (out / "feedback" / "was-copied" / "turns.html").read_text()
     assert "Decided by a person" in page and "Half of it." in page and "appeal" not in page.partition("<main>")[2]
@@ -230,7 +231,7 @@ def test_hints_are_for_a_person_and_no_marks(out):
     assert ("copies", "the same unusual wrong answer as 1 other") in hints
     assert ("pokes", "the notebook opened /etc/passwd") in hints
     assert "right" not in said
-    assert {record["student"]: record["points"] for record in served.records}["copies"] == 5
+    assert {record.student: record.points for record in served.records}["copies"] == 5
 
 
 def test_equal_code_is_a_hint_only_where_few_have_it(out):
@@ -240,25 +241,27 @@ def test_equal_code_is_a_hint_only_where_few_have_it(out):
         "sine = sm.sin(alpha)*sm.cos(beta) + sm.cos(alpha)*sm.sin(beta)  # mine\n" * 2,
         "check('turns/sum', sine)",
     ]
-    one, other = json.loads(json.dumps([records[0], records[1]]))
-    for record in (one, other):
-        record["answers"]["turns/sum"]["cell"] = 2
+
+    def in_cell_2(record):
+        return replace(record, answers={**record.answers, "turns/sum": replace(record.answer("turns/sum"), cell=2)})
+
+    one, other = map(in_cell_2, records[:2])
     found = hints_of([one, other, *records[2:]], lambda digest: same)
-    assert any("sign by sign" in said for said in found[one["student"], "turns/sum"])
-    everybody = json.loads(json.dumps(records))
-    for record in everybody:
-        record["answers"]["turns/sum"]["cell"] = 2
+    assert any("sign by sign" in said for said in found[one.student, "turns/sum"])
+    everybody = list(map(in_cell_2, records))
     assert not any("sign by sign" in said for said in sum(hints_of(everybody, lambda digest: same).values(), []))
 
 
 def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
-    records = json.loads(json.dumps(Class(out).records))
-    one, other, third = (record["student"] for record in records[:3])
+    records = Class(out).records
+    one, other, third = (record.student for record in records[:3])
 
     def said_of(*tried):
-        for record, answers in zip(records, tried, strict=False):
-            record["remembered"] = {"turns/sum": {"tries": len(answers), "tried": answers, "help": ""}}
-        found = hints_of(records, lambda digest: [])
+        remembering = [
+            replace(record, remembered={"turns/sum": Remembered(len(answers), tuple(answers))})
+            for record, answers in zip(records, tried, strict=False)
+        ]
+        found = hints_of([*remembering, *records[len(tried) :]], lambda digest: [])
         return {
             student: [said for said in found[student, "turns/sum"] if "tried on the way" in said]
             for student in (one, other, third)
@@ -411,13 +414,13 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
     store = Store(out)
     found = store.read("rounded-0", "turns")
     for record in store.all():
-        store.place(record["student"], record["assignment"]).unlink()
+        store.place(record.student, record.assignment).unlink()
     for number in range(100):
-        one = json.loads(json.dumps(found))
+        one = found.as_json()
         one["student"] = f"student-{number:03}"
         one["marks"]["turns/sum"]["group"] = f"{number:016x}"
         one["answers"]["turns/sum"]["plain"]["nodes"][0][-1] = f"1.000{number:03}"
-        store.save(one)
+        store.save(Record.from_json(one, "one"))
     with Served(out) as served:
         # The page's own policy lets no script of a test in either; what it says is tested above.
         page = browser.new_context(bypass_csp=True).new_page()

@@ -14,7 +14,7 @@ from coursework.grading.grade import NothingToGrade, grade
 from coursework.grading.judging import ledger as judging
 from coursework.grading.judging.ledger import Ledger
 from coursework.grading.store import Store
-from coursework.grading.submissions.identity import Roster
+from coursework.grading.submissions.roster import Roster
 
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 
@@ -60,7 +60,7 @@ def test_a_full_disk_is_said_in_a_sentence_and_the_next_run_goes_on(course, monk
             main(command)
     assert "Traceback" not in str(found.value) + capsys.readouterr().err
     main(command)
-    assert {record["points"] for record in Store(course / "out").all()} == {5}
+    assert {record.points for record in Store(course / "out").all()} == {5}
 
 
 def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypatch):

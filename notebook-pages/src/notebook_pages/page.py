@@ -96,6 +96,7 @@ USE = re.compile(r'<use ([^>]*)href="#([^"]*)"([^>]*)/>')
 #: A name of a program within the text, and in the line that says how a function is called.
 LITERAL = re.compile(r'<code class="([^"]*)"><span class="pre">([^<]*)</span></code>')
 NAME = re.compile(r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>')
+STILL = re.compile(r"(<figure\b[^>]*\bdata-stop=[^>]*>)(.*?)(</figure>)", re.DOTALL)
 
 
 def share_outlines(body):
@@ -134,7 +135,8 @@ def lighten(body):
     Every figure brings the style sheet of all figures and the outlines of its letters, since in a notebook it stands
     alone. There it is a figure to a screen reader, too; here it lies in one that has a name, or its drawing has one.
     Names, brackets, blanks and operators of a program have the colour of the text around them, and need no element
-    each; nor does a single word within an element.
+    each; nor does a single word within an element. The stills of a page that moves its own figure (``data-stop``) are
+    seen on paper and without scripts: where there are scripts, the browser need not read them.
     """
     seen = set()
 
@@ -145,6 +147,7 @@ def lighten(body):
 
     body = re.sub(r"<style>\.orientation-figure[^<]*</style>", first_only, body)
     body = re.sub(r'<figure (?=class="orientation-figure)', '<figure role="none" ', body)
+    body = STILL.sub(r"\1<noscript>\2</noscript>\3", body)
     body = NAME.sub(r"\1\2", LITERAL.sub(r'<code class="\1">\2</code>', body))
     return share_outlines(re.sub(r'<span class="(?:n|p|w|nn|o)">([^<]*)</span>', r"\1", body))
 

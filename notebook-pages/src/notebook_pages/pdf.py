@@ -159,6 +159,8 @@ def article(site, page, set_formula=as_picture):
     """The text of a page, ready to stand in one document with the others."""
     soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
     text = soup.select_one("article")
+    for still in text.select("noscript"):
+        still.unwrap()
     for element in text.select(ONLY_ON_SCREEN):
         element.decompose()
     for heading in text.select("section > :is(h2, h3):only-child"):

@@ -28,7 +28,7 @@ const begin = () => {
   });
   for (const figure of document.querySelectorAll('.world')) seen.observe(figure);
 };
-if (document.readyState === 'complete') begin(); else addEventListener('load', () => setTimeout(begin));
+if (document.readyState === 'loading') addEventListener('DOMContentLoaded', begin); else begin();
 })();
 """
 IMPORT = re.compile(r"^(?:import|export) \{([^}]*)\} from .*;\n", re.MULTILINE)

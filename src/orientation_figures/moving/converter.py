@@ -4,14 +4,14 @@ import traitlets
 
 from orientation.euler_angles import SEQUENCES
 from orientation.quaternions import dcm_from_quaternion
-from orientation_workbench.programs import FORMS, OTHER, WITH_CODE
+from orientation_workbench.programs import FORMS, OTHER, PROGRAMS
 
 from .figure import MovingFigure
 from .state import Numbers
 
 # What a side of the converter says; for a program of the table its own convention goes before the last three.
 CHOICES = {
-    "program": (*WITH_CODE, OTHER),
+    "program": (*PROGRAMS, OTHER),
     "form": FORMS,
     "sequence": SEQUENCES,
     "matrix": ("as here", "transposed"),
@@ -38,7 +38,7 @@ class Side(traitlets.TraitType):
             allowed = CHOICES[name]
             if chosen not in allowed:
                 raise traitlets.TraitError(f"{self.name} has {name} {chosen!r}; there is {', '.join(allowed)}")
-        lines = WITH_CODE.get(side["program"], {}).get("lines", FORMS)
+        lines = PROGRAMS.get(side["program"], {}).get("lines", FORMS)
         if side["form"] not in lines:
             raise traitlets.TraitError(f"{side['program']} takes no {side['form']}; it takes {', '.join(lines)}")
         return side
@@ -71,7 +71,7 @@ class ConverterFigure(MovingFigure):
     target = Side(FIRST | {"program": "this book", "form": "body fixed angles", "sequence": "zxy"}).tag(
         sync=True, state=True
     )
-    programs = traitlets.Dict(WITH_CODE, read_only=True).tag(sync=True, told=True)
+    programs = traitlets.Dict(PROGRAMS, read_only=True).tag(sync=True, told=True)
 
     @property
     def dcm(self):

@@ -25,6 +25,21 @@ ORDERS_OF_ANGLES = (
     (r"\brpy\b|\broll\W{1,3}pitch\W{1,3}yaw\b", YAW_PITCH_ROLL | {"places": "321"}),
     (r"\bypr\b|\byaw\W{1,3}pitch\W{1,3}roll\b", YAW_PITCH_ROLL),
 )
+#: The same of the four parts of a quaternion.
+ORDERS_OF_PARTS = (
+    (r"\bq?_?w\W{1,3}q?_?x\W{1,3}q?_?y\W{1,3}q?_?z\b|\bwxyz\b", {"order": "wxyz"}),
+    (r"\bq?_?x\W{1,3}q?_?y\W{1,3}q?_?z\W{1,3}q?_?w\b|\bxyzw\b", {"order": "xyzw"}),
+)
+#: A line that names the columns of a table: what parts its names, the marks before and behind one, the names that are
+#: those of a quaternion rather than of a place, and the entries of a matrix.
+PARTING = r"\s*[,;|\t]\s*"
+AROUND_A_FIELD = r"^[\s\[\](){}<>\"'#/%|]+|[\s\[\](){}<>\"'\u00b0]+$"
+UNIT_OF_A_COLUMN = r"[_ ]?[\[(][^\])]*[\])]?$|[_ ](?:deg(?:rees)?|rad(?:ians)?)$"
+OF_A_QUATERNION = r"q|rot|ori|att"
+#: The names of a quaternion's parts where a place's are there as well.
+PART_OF_A_QUATERNION = r"(?:^|[_.])q_?[wxyz]$"
+ENTRY_OF_A_MATRIX = r"^[a-z]*_?(\d)_?(\d)$"
+NO_ROW = r"^[\s|:=+-]*$|^\s*(?:#|//|%)"
 #: The innermost of brackets in brackets.
 INNERMOST = r"[\[({]([^\[\](){}]*)[\])}]"
 NOT_A_NUMBER = r"(?<![a-z])[-+]?(nan|inf(?:inity)?)(?![a-z])"
@@ -53,8 +68,17 @@ CLEANING = (
     (r"\b(?:size|shape|dims?)\b\W{0,3}[\[(][\d\s,]*[\])]", " "),
     (r"\b\d+\s*[x\u00d7]\s*\d+\b", " "),
     (r"\bwith indices.*$", " "),
+    # The number of a row, where it stands before it.
+    (r"^\s*(?:row\s*)?\d{1,3}\s*[:)]\s+(?=[-+.\d\[(])", " "),
+    # The length of a list before it, the factor of MATLAB's console, Godot's columns with their place.
+    (r"\barray\s*\(\d+\)|\(\d+\)\s*(?=\[)", " "),
+    (r"^\s*1\.0e\+?0+\s*\*\s*$", " "),
+    (r"\bo\s*:\s*\([^)]*\)", " "),
+    (r"\b[xyz]\s*:\s*(?=\([^)]*,)", " "),
+    # Of a pose of SDF the first three numbers are a place.
+    (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
     (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
-    (r"""["']?\b(?:seq|secs?|nsecs?|nanosecs?|id|index|rows|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
+    (r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
      r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""", " "),
     # Stamps of time, and the marks of a list.
     (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
@@ -74,6 +98,15 @@ def whole_spelling():
         "radians": RADIANS,
         "yaw pitch roll": YAW_PITCH_ROLL,
         "orders of angles": [list(entry) for entry in ORDERS_OF_ANGLES],
+        "orders of parts": [list(entry) for entry in ORDERS_OF_PARTS],
+        "parting": PARTING,
+        "around a field": AROUND_A_FIELD,
+        "unit of a column": UNIT_OF_A_COLUMN,
+        "of a quaternion": OF_A_QUATERNION,
+        "part of a quaternion": PART_OF_A_QUATERNION,
+        "entry of a matrix": ENTRY_OF_A_MATRIX,
+        "no row": NO_ROW,
+        "whole number": rf"^{NUMBER}$",
         "innermost": INNERMOST,
         "not a number": NOT_A_NUMBER,
         "arithmetic": ARITHMETIC,

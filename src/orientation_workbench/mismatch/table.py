@@ -406,16 +406,19 @@ FURTHER_POSES = (
 )
 
 
-#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation: the section, and a
-#: checked question on that very fault.
+_CARD = "chapters/convention-card.html"
+_FOUR_QUESTIONS = (f"{_CARD}#four-questions", "The convention card")
+_THE_WAY_BACK = ("chapters/simple-orientations.html#the-way-back", "The way back")
+_A_KNEE = ("exercises/cases-from-practice.html#a-knee-from-two-boxes", "A knee, from two boxes")
+_A_SHAFT = ("exercises/unit-quaternions.html#a-shaft-turning-clockwise", "A shaft turning clockwise")
+
+#: Where the book teaches what was mixed up, by the group of a reading, or the part of a relation: the section, and
+#: checked questions of which that very fault is one of the mistakes. An inverse goes by what was pasted.
 TAUGHT = {
-    "order": (
-        ("chapters/convention-card.html#four-questions", "The convention card"),
-        ("exercises/convention-card.html#two-messages", "Two messages"),
-    ),
+    "order": (_FOUR_QUESTIONS, ("exercises/convention-card.html#two-messages", "Two messages")),
     "sequence": (
         ("chapters/euler-angles.html#the-twelve-sequences", "The twelve sequences"),
-        ("exercises/euler-angles.html#four-frames-one-after-another", "Four frames, one after another"),
+        ("exercises/back-from-a-matrix.html#three-machines-one-set-of-angles", "Three machines, one set of angles"),
     ),
     "axes of the turns": (
         ("chapters/euler-angles.html#body-fixed", "Body fixed"),
@@ -427,29 +430,41 @@ TAUGHT = {
     ),
     "signs": (
         ("chapters/simple-orientations.html#who-has-turned-you-or-the-vector", "Who has turned, you or the vector?"),
-        ("exercises/simple-orientations.html#a-bicycle-crank", "A bicycle crank"),
+        _A_KNEE,
     ),
-    "unit": (
-        ("chapters/convention-card.html#four-questions", "The convention card"),
-        ("exercises/simple-orientations.html#a-ship-s-heading", "A ship's heading"),
-    ),
+    "unit": (_FOUR_QUESTIONS, ("exercises/simple-orientations.html#a-ship-s-heading", "A ship's heading")),
     "place of the angle": (
         ("chapters/axis-and-angle.html#a-direction-that-stays", "Axis and angle"),
         ("exercises/axis-and-angle.html#a-folding-bicycle", "A folding bicycle"),
     ),
-    "inverse": (
-        ("chapters/simple-orientations.html#the-way-back", "The way back"),
+    "inverse matrix": (
+        _THE_WAY_BACK,
+        ("exercises/orientation-with-sympy.html#the-maker-s-table", "The maker's table"),
+    ),
+    "inverse quaternion": (
+        _FOUR_QUESTIONS,
+        ("exercises/orientation-from-sensors.html#three-instruments-three-conventions",
+         "Three instruments, three conventions"),
+        ("exercises/convention-card.html#an-old-spacecraft", "An old spacecraft"),
+    ),
+    "inverse Euler angles": (_THE_WAY_BACK, _A_KNEE),
+    "inverse rotation vector": (_THE_WAY_BACK, _A_SHAFT),
+    "inverse axis and angle": (_THE_WAY_BACK, _A_SHAFT),
+    "body": (
+        (f"{_CARD}#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
+        ("exercises/direction-cosine-matrices.html#a-phone-at-the-windscreen", "A phone at the windscreen"),
+    ),
+    "world": (
+        (f"{_CARD}#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
+        ("exercises/reference-frames.html#where-is-the-north-a-phone-finds-out",
+         "Where is the north? A phone finds out"),
+    ),
+    "hand": (
+        ("chapters/reference-frames.html#can-numbers-tell-left-from-right", "Can numbers tell left from right?"),
         ("exercises/convention-card.html#a-game-engine", "A game engine"),
     ),
-    "axes": (
-        ("chapters/convention-card.html#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
-        ("exercises/cases-from-practice.html#which-way-is-the-phone-pointing", "Which way is the phone pointing?"),
-    ),
-    "turn": (
-        ("chapters/convention-card.html#exercises", "Hand and eye"),
-        ("exercises/cases-from-practice.html#a-knee-from-two-boxes", "A knee, from two boxes"),
-    ),
-}
+    "turn": ((f"{_CARD}#exercises", "Hand and eye"), _A_KNEE),
+}  # fmt: skip
 
 
 def whole_table():

@@ -28,6 +28,12 @@ _INNERMOST = _pattern(spelling.INNERMOST)
 _NOT_A_NUMBER, _ARITHMETIC = _pattern(spelling.NOT_A_NUMBER), _pattern(spelling.ARITHMETIC)
 _DEGREES, _RADIANS = _pattern(spelling.DEGREES), _pattern(spelling.RADIANS)
 _ORDERS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_ANGLES]
+_PARTS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_PARTS]
+_PARTING, _AROUND, _UNIT, _OF_A_QUATERNION, _ENTRY, _NO_ROW = map(_pattern, (
+    spelling.PARTING, spelling.AROUND_A_FIELD, spelling.UNIT_OF_A_COLUMN, spelling.OF_A_QUATERNION,
+    spelling.ENTRY_OF_A_MATRIX, spelling.NO_ROW))  # fmt: skip
+_PART_OF_A_QUATERNION = _pattern(spelling.PART_OF_A_QUATERNION)
+_WHOLE_NUMBER = _pattern(rf"^{spelling.NUMBER}$")
 _SUM, _PART, _SCALAR = map(_pattern, (spelling.SUM, spelling.PART_OF_A_SUM, spelling.SCALAR_OF_A_SUM))
 _SIGNS, _CLEANING = _replacing(spelling.SIGNS_OF_A_SUM), _replacing(spelling.CLEANING)
 #: Names that numbers come with, in the order in which they are read, and what those names say.
@@ -101,8 +107,11 @@ def _rows_of_array(given, name):
 
 
 def _rows_of_text(text, name):
+    if columns := _columns(text):
+        return columns
     for pattern, replacement in _CLEANING:
         text = pattern.sub(replacement, text)
+    parts = [more for pattern, more in _PARTS if pattern.search(text)]
     bare = _COMMENT.sub("", text)
     if NUMBER.search(bare):  # what stands in comments alone was meant
         text = bare
@@ -118,11 +127,10 @@ def _rows_of_text(text, name):
             f"the {name} side holds no numbers: '{shown}'" if shown else f"the {name} side is empty: paste its numbers"
         )
     declared = {"unit": "degrees"} if _DEGREES.search(text) else {"unit": "radians"} if _RADIANS.search(text) else {}
-    half = _half(NUMBER.findall(text))
-    labelled = _labelled(text)
-    if labelled:
-        rows, more = labelled
+    if labelled := _labelled(text):
+        rows, half, more = labelled
         return rows, half, declared | more
+    half = _half(NUMBER.findall(text))
     rows = [[float(number) for number in NUMBER.findall(group)] for group in _INNERMOST.findall(text)]
     rows = [row for row in rows if row]
     in_brackets = {len(row) for row in rows}
@@ -130,7 +138,58 @@ def _rows_of_text(text, name):
         rows = _rows_of_lines(text)
     if all(len(row) == 3 for row in rows):
         declared |= next((more for pattern, more in _ORDERS if pattern.search(text)), {})
+    if len(parts) == 1 and all(len(row) == 4 for row in rows):
+        declared |= parts[0]
     return rows, half, declared
+
+
+def _fields(line):
+    """What stands between the marks of a line of a table, or between its spaces."""
+    line = line.strip().strip("|")
+    parted = _PARTING.split(line.strip()) if _PARTING.search(line) else line.split()
+    fields = [_AROUND.sub("", field) for field in parted]
+    return fields[:-1] if fields and not fields[-1] else fields
+
+
+def _columns(text):
+    """Rows, half a unit and what is said, of a table under a line that names its columns; None where none does."""
+    for pattern, replacement in _CLEANING[:2]:
+        text = pattern.sub(replacement, text)
+    lines = text.split("\n")
+    for place, line in enumerate(lines):
+        names = [] if NUMBER.search(line) else [field.lower() for field in _fields(_AROUND.sub("", line))]
+        if len(names) < 3:
+            continue
+        table = [_fields(below) for below in lines[place + 1 :] if not _NO_ROW.search(below)]
+        if not table or any(len(row) != len(names) for row in table) or not (found := _named_columns(names)):
+            continue
+        which, more = found
+        kept = [[row[column] for column in which] for row in table]
+        if all(_WHOLE_NUMBER.search(field) for row in kept for field in row):
+            said = line.replace("_", " ")
+            unit = "degrees" if _DEGREES.search(said) else "radians" if _RADIANS.search(said) else None
+            half = _half([field for row in kept for field in row])
+            return [list(map(float, row)) for row in kept], half, more | ({"unit": unit} if unit else {})
+    return None
+
+
+def _named_columns(names):
+    """Which columns hold an orientation, in the order in which they are read, and what their names say of them."""
+    bare = [_UNIT.sub("", name) for name in names]
+    entries = [(found[1], found[2], column) for column, name in enumerate(bare) if (found := _ENTRY.search(name))]
+    if len(entries) == 9:
+        return [column for *_, column in sorted(entries)], {}
+    for own in ([bool(_OF_A_QUATERNION.search(name)) for name in bare], [True] * len(bare)):
+        keys = [re.sub(r"^(.*[_.])?q?_*", "", name) if mine else "" for name, mine in zip(bare, own)]
+        for place, more in _NAMES[:2]:
+            which = [[column for column, key in enumerate(keys) if place.get(key) == each]
+                     for each in range(max(place.values()) + 1)]  # fmt: skip
+            if all(len(columns) == 1 for columns in which):
+                # As they stand, so that what is said of the numbers holds for the reader's own.
+                order = sorted(range(len(which)), key=lambda each: which[each])
+                name, letters = ("order", "wxyz") if "order" in more else ("places", "123")
+                return [which[each][0] for each in order], more | {name: "".join(letters[each] for each in order)}
+    return None
 
 
 def _rows_of_lines(text):
@@ -176,7 +235,8 @@ def _without_places(text):
 def _labelled(text):
     """Numbers that come with their names, ``w: 1, x: 0, ...`` or ``roll = ...``; None if they do not."""
     pairs = [(match[1].lower(), NUMBER.match(text, match.end())) for match in _NAMED.finditer(text)]
-    pairs = [(re.sub(r"^(.*[_.])?q?_*", "", key), float(found[0])) for key, found in pairs if found]
+    parts = [(key, found) for key, found in pairs if found and _PART_OF_A_QUATERNION.search(key)]
+    pairs = [(re.sub(r"^(.*[_.])?q?_*", "", key), found[0]) for key, found in parts or pairs if found]
     for place, more in _NAMES:
         size = max(place.values()) + 1
         kept = [(place[key], value) for key, value in pairs if key in place]
@@ -184,9 +244,9 @@ def _labelled(text):
             continue
         rows = [[None] * size for _ in range(len(kept) // size)]
         for which, (where, value) in enumerate(kept):
-            rows[which // size][where] = value
+            rows[which // size][where] = float(value)
         if not any(None in row for row in rows):
-            return rows, more
+            return rows, _half([value for _, value in kept]), more
     return None
 
 

@@ -23,10 +23,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checking import sealing
-from ..checking.kinds import EXACT, EXACT_WIDTH, FAR, NEAR, PARTS, calls_for, sign_limit, tolerances
-from ..checking.kinds import offsets as offsets_of
+from ..checking.kinds import PARTS, sign_limit
 from ..checking.plugins import kinds, plugins
 from ..checking.points import points
+from ..checking.reading import EXACT, EXACT_WIDTH, FAR, NEAR, calls_for, tolerances
+from ..checking.reading import offsets as offsets_of
 from ..checking.units import unit
 from . import typed
 
@@ -111,11 +112,11 @@ def _shells(sizes):
 
 
 def attack(question, text="", budget=BUDGET):
-    """Attack a :class:`coursework.authoring.author.Question` and count the slow hashes that it takes.
+    """Attack a :class:`coursework.authoring.author.AuthoredQuestion` and count the slow hashes that it takes.
 
     Parameters
     ----------
-    question : Question
+    question : AuthoredQuestion
     text : str
         What the student is asked, in words: its numbers are tried.
     budget : int
@@ -129,10 +130,10 @@ def really_attack(sealed, text="", budget=100):
     """The same attack with the slow hash on what a student has; only ``budget`` hashes are spent."""
 
     def open_(known):
-        found = sealing.open_locker(sealed["lockers"], sealing.slow_key(sealed["salt"], known))
+        found = sealing.open_locker(sealed.lockers, sealing.slow_key(sealed.question.salt, known))
         return 0 if found is None else 1 if found[0] == 0 else 2
 
-    return _attack(sealed, text, budget, open_)
+    return _attack(sealed.question, text, budget, open_)
 
 
 def _attack(public, text, budget, open_):
@@ -154,7 +155,7 @@ def _in_turns(public, text):
     """Candidates from what the subject suggests, and from what the question gives, some of each in turn."""
     words = text.partition(CODE)[0]
     streams = [_portions(families(public, words))]
-    if not kinds()[public.get("result", public["kind"])].text and public["kind"] != "free text":
+    if not kinds()[public.kind_of_values].text and public.kind != "free text":
         pool, steps = _beginning(public, text), typed.priced(typed.public_functions(), words)
         values = _portions(_of_values(public, pool, (*steps, *typed.OPERATIONS)))
         turns = _portions(_of_values(public, _beginning(public, text), (*steps, *typed.TURNS), typed.MOST // 2))
@@ -196,17 +197,17 @@ def _and_beside(public, family, choice, known, open_, tried):
 def _beginning(public, text):
     """What a student holds, as :mod:`coursework.authoring.typed` begins with it."""
     words, _, code = text.partition(CODE)
-    if public["kind"] == "function":
+    if public.kind == "function":
         return typed.of_arguments(calls_for(public), [shape_of(public)])
-    return typed.beginning(At(public, words), public.get("given", {}), words, code, [shape_of(public)])
+    return typed.beginning(At(public, words), public.given, words, code, [shape_of(public)])
 
 
 def shape_of(public):
     """The shape of an answer at one point, or for one call."""
-    values, size = public.get("result", public["kind"]), size_of(public)
+    values, size = public.kind_of_values, size_of(public)
     if values in ("expression", "measurement"):
         return ()
-    return tuple(public["shape"]) if "shape" in public else {1: (), 9: (3, 3)}.get(size, (size,))
+    return public.shape if public.shape else {1: (), 9: (3, 3)}.get(size, (size,))
 
 
 def _of_values(public, pool, steps, most=typed.MOST):
@@ -237,8 +238,8 @@ def _of_table(public, table, shape):
 
 def _tables(public, pool, price, whole):
     """The values of a pool that have a price as candidates: those that use all that is given, or the others."""
-    values, shape = public.get("result", public["kind"]), shape_of(public)
-    special = values in ROTATIONS or public.get("unit vector", False)
+    values, shape = public.kind_of_values, shape_of(public)
+    special = values in ROTATIONS or bool(public.unit_vector)
     found = np.array(pool.of_shape(shape, special, price, whole))
     if len(found) and values == "measurement":
         yield _of_table(public, _with_units(public, found), None)
@@ -249,7 +250,7 @@ def _tables(public, pool, price, whole):
 def _of_parts(public, pool):
     """Vectors that are put together: of numbers, and of a vector and a number, that a pool has by then."""
     size = size_of(public)
-    if public.get("result", public["kind"]) != "vector" or size < 2:
+    if public.kind_of_values != "vector" or size < 2:
         return
     for most in (6, 12, 24, EACH.get(size, 0)):
         numbers = np.array(pool.of_shape(())[: min(most, int((4 * BUDGET) ** (1 / size)))])
@@ -277,9 +278,7 @@ def _with_units(public, numbers):
     for value in numbers[:3000]:
         for one in found:
             far = np.broadcast_to(np.array(one.exponents) * FAR * absolute, (len(value), len(one.exponents)))
-            rows.append(
-                np.concatenate([(value * float(one.size) / float(public["scale"]))[:, None], far], axis=1).ravel()
-            )
+            rows.append(np.concatenate([(value * float(one.size) / float(public.scale))[:, None], far], axis=1).ravel())
     return np.array(rows)
 
 
@@ -289,17 +288,17 @@ def _with_units(public, numbers):
 def fingerprints_of(public, numbers):
     """The fingerprints of many candidates: texts, with ``None`` where a candidate is not finite.
 
-    As :func:`coursework.checking.kinds.fingerprint`, in double precision; a test compares the two.
+    As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the two.
     """
     if isinstance(numbers, list):
         return numbers
     absolute, relative = (float(part) for part in tolerances(public))
     count = numbers.shape[1]
-    width = EXACT_WIDTH if public.get("tolerance") is None else 3 * count
+    width = EXACT_WIDTH if public.tolerance is None else 3 * count
     scale = numbers / absolute
     if relative:
         scale = np.sign(numbers) * np.log1p(relative * np.abs(numbers) / absolute) / relative
-    offsets = np.array([float(offset) for offset in offsets_of(public["salt"], count)])
+    offsets = np.array([float(offset) for offset in offsets_of(public.salt, count)])
     cells = np.floor(scale / width + offsets)
     finite = np.isfinite(cells).all(axis=1)
     cells = np.where(np.isfinite(cells), cells, 0).astype(np.int64).tolist()
@@ -308,7 +307,7 @@ def fingerprints_of(public, numbers):
 
 def one_sign(public, numbers, size):
     """Of two opposites the one that is taken, as in :mod:`coursework.checking.kinds`."""
-    if not public.get("either sign"):
+    if not public.either_sign:
         return numbers
     limit = float(sign_limit(public))
     groups = numbers.reshape(len(numbers), -1, size)
@@ -323,7 +322,7 @@ def one_sign(public, numbers, size):
 
 def families(public, text=""):
     """The generators of candidates for a question, in the order in which they are tried."""
-    kind = public["kind"]
+    kind = public.kind
     at = At(public, text)
     for plugin in plugins():
         if importlib.util.find_spec(f"{plugin.__name__}.attack"):
@@ -343,9 +342,9 @@ class At:
 
     def __init__(self, public, text=""):
         self.points = points(public)
-        self.symbols = list(public.get("symbols", ()))
+        self.symbols = list(public.symbols)
         self.values = {name: np.array([float(point[name]) for point in self.points]) for name in self.symbols}
-        self.angular = [name for name, (low, high) in public.get("symbols", {}).items() if low < 0 < high]
+        self.angular = [name for name, (low, high) in public.symbols.items() if low < 0 < high]
         self.given = sorted({float(found) for found in re.findall(r"\d+(?:\.\d+)?", text)}, key=lambda x: (x, x))[:24]
         self.ones = np.ones(len(self.points))
 
@@ -358,15 +357,15 @@ class At:
 
 
 WORDS = {
-    "choice": lambda public: [of_words("all options", [public["options"]], lambda word: word[0].lower())],
-    "truth values": lambda public: [of_words("all lists", ["TF"] * public["length"], "".join)],
+    "choice": lambda public: [of_words("all options", [public.options], lambda word: word[0].lower())],
+    "truth values": lambda public: [of_words("all lists", ["TF"] * public.length, "".join)],
     "words": lambda public: [
-        of_words("all lists", [public["options"]] * public["length"], lambda word: PARTS["words"].join(word).lower())
+        of_words("all lists", [public.options] * public.length, lambda word: PARTS["words"].join(word).lower())
     ],
     "order": lambda public: [
         of_words(
             "all orders",
-            [public["options"]] * len(public["options"]),
+            [public.options] * len(public.options),
             lambda word: PARTS["order"].join(word).lower(),
             lambda word: len(set(word)) == len(word),
         )
@@ -393,7 +392,7 @@ UNITS = (
 def _of_measurements(public, at):
     absolute = max(float(tolerances(public)[0]), float(NEAR))
     found = [unit(text) for text in UNITS]
-    sizes = np.array([float(one.size) for one in found]) / float(public["scale"])
+    sizes = np.array([float(one.size) for one in found]) / float(public.scale)
     far = np.array([one.exponents for one in found]) * FAR * absolute
     pool = _monomials(at) if at.symbols else _numbers(public, at)
 
@@ -425,7 +424,7 @@ def of_pools(public, at, size):
         return one_sign(public, np.moveaxis(pool[choices], 1, 2).reshape(len(choices), -1), size)
 
     if size > 1:
-        if not at.symbols and public.get("unit vector"):
+        if not at.symbols and public.unit_vector:
             yield _directions(public)
         yield Family("small formulas for every component", (len(pool),) * size, evaluate, by_shells=True)
         return
@@ -499,7 +498,7 @@ def _numbers(public, at):
 def _sweep(public):
     """Every value of one number, from zero outwards: a cell at a time."""
     absolute, _ = (float(part) for part in tolerances(public))
-    step = 3 * absolute if public.get("tolerance") is not None else float(EXACT) * EXACT_WIDTH
+    step = 3 * absolute if public.tolerance is not None else float(EXACT) * EXACT_WIDTH
 
     def evaluate(choices):
         return (choices[:, :1] + 0.5) * (1 - 2 * choices[:, 1:]) * step
@@ -541,11 +540,11 @@ def _of_functions(public):
 
 def size_of(public):
     """How many numbers an answer is compared by, at one point or for one call."""
-    values = public.get("result", public["kind"])
+    values = public.kind_of_values
     if values == "expression":
         return 1
     if values in ("vector", "matrix"):
-        return public.get("length", 3) if values == "vector" else math.prod(public.get("shape", (3, 3)))
+        return (public.length or 3) if values == "vector" else math.prod(public.shape or (3, 3))
     for plugin in plugins():
         size = getattr(plugin, "SIZES", {}).get(values)
         if size:

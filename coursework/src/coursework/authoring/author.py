@@ -22,32 +22,32 @@ import inspect
 import itertools
 import json
 import re
+from dataclasses import replace
 from typing import NamedTuple
 
 from ..checking import sealing
+from ..checking.catalogue import by_short_name
+from ..checking.catalogue import mistakes as catalogued_mistakes
 from ..checking.evaluate import MP
-from ..checking.kinds import (
-    PARTS,
-    Blank,
-    Fault,
+from ..checking.fields import Misread
+from ..checking.kinds import PARTS, Blank, Fault, Undecidable, sign_limit
+from ..checking.mistakes import GENERAL, Mistake, short_name
+from ..checking.plain import NotPlain, Plain, to_plain
+from ..checking.plugins import kind_of_values, kinds
+from ..checking.points import ANGLES
+from ..checking.question import OUTCOMES, KnownAnswer, Locker, Note, Question, Sealed
+from ..checking.questions import CODE_LETTERS, NEARLY, code_text, compare, rung_key
+from ..checking.reading import (
     Reading,
-    Undecidable,
     calls_for,
     canonical,
     edges_near,
     fingerprint,
     fingerprints,
     read,
-    sign_limit,
     tolerances,
     within,
 )
-from ..checking.mistakes import GENERAL, Mistake, by_short_name, short_name
-from ..checking.mistakes import mistakes as catalogued_mistakes
-from ..checking.plain import NotPlain, to_plain
-from ..checking.plugins import kind_of_values, kinds
-from ..checking.points import ANGLES
-from ..checking.questions import CODE_LETTERS, NEARLY, OUTCOMES, code_text, compare, rung_key
 from ..checking.units import UnknownUnit
 
 #: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
@@ -68,22 +68,21 @@ class AuthorError(ValueError):
 
 
 class Entry(NamedTuple):
-    """What one fingerprint stands for: as a rule one case, and one such answer.
+    """What one fingerprint stands for: as a rule one known answer; and one such answer as plain data.
 
-    A case is a dictionary: its outcome; its notes, each with details; its hints; and, where the fingerprint is
-    shared by several or the answer is the right one, its numbers.
+    Numbers are known where the fingerprint is shared by several or the answer is the right one.
     """
 
-    cases: list
-    plain: dict
+    answers: list[KnownAnswer]
+    plain: Plain
 
     @property
     def outcome(self):
-        return self.cases[0]["outcome"]
+        return self.answers[0].outcome
 
     @property
     def notes(self):
-        return self.cases[0]["notes"]
+        return self.answers[0].notes
 
 
 class _Known(NamedTuple):
@@ -98,7 +97,7 @@ class _Known(NamedTuple):
 
 def far_from_last_bits(question, reading):
     """An answer with a tolerance, rounded so that what is sealed of it is the same on every processor."""
-    if question.get("tolerance") is None or reading.text is not None:
+    if question.tolerance is None or reading.text is not None:
         return reading
     absolute, relative = tolerances(question)
 
@@ -113,13 +112,13 @@ def far_from_last_bits(question, reading):
     return Reading([[rounded(number) for number in numbers] for numbers in reading.numbers])
 
 
-class Question:
+class AuthoredQuestion:
     """A question with everything its author knows of it.
 
     Attributes
     ----------
     name : str
-    public : dict
+    public : Question
         What a student's computer may know.
     answer : object
         The right answer.
@@ -169,13 +168,10 @@ class Question:
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
         self.ladder = ladder_of(public, ladder, turns)
         self.turns, self.turned = list(turns), turned
-        if exam:
-            self.public["exam"] = True
         self.plain = self.to_plain(answer)
-        self.public.setdefault("salt", None)
         held = {node[1] for node in self.plain["nodes"] if node[0] == "symbol"}
-        if self.public.get("symbols") and held >= set(self.public["symbols"]):
-            self.public["every symbol"] = True
+        every_symbol = bool(public.symbols) and held >= set(public.symbols)
+        self.public = replace(public, exam=True if exam else None, every_symbol=every_symbol or None)
         self._settle_points()
         self._demand_turns()
         # What the author says of a mistake is closer to the question than what the catalogue says of it.
@@ -185,7 +181,12 @@ class Question:
         ]
         self._demand_notes()
         self.near, self.no_mistakes = [], []
-        self.entries = {} if kinds()[public["kind"]].by_a_person else self._entries()
+        self.entries = {} if kinds()[public.kind].by_a_person else self._entries()
+
+    @property
+    def number(self):
+        """That of the variant."""
+        return self.public.variant.number if self.public.variant else 0
 
     def to_plain(self, answer):
         return to_plain(answer, calls_for(self.public))
@@ -200,8 +201,8 @@ class Question:
     def find(self, text):
         """What is known of a fingerprint, as a locker holds it; or ``None``."""
         if text in self.entries:
-            return {"cases": self.entries[text].cases}
-        return {"cases": []} if text in self.near else None
+            return Locker(tuple(self.entries[text].answers))
+        return Locker() if text in self.near else None
 
     def reply_to(self, plain):
         """The reply to an answer, as plain data: the one that a student gets, found without the slow hash."""
@@ -214,11 +215,11 @@ class Question:
         choice tells nothing of the answer.
         """
         # Each variant has a salt of its own, so that a guess is worth nothing for the others.
-        number = self.public.get("variant", 0)
+        number = self.number
         seed = f"{self.name} variant {number}" if number else self.name
         varying = None
         for attempt in range(50):
-            self.public["salt"] = hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16]
+            self.public = replace(self.public, salt=hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16])
             try:
                 reading = self.read(self.plain)
                 numbers = canonical(self.public, reading) if reading.text is None else []
@@ -228,7 +229,7 @@ class Question:
                 raise AuthorError(f"{self.name}: the right answer cannot be read. {error}") from None
             if not varying <= _varying_in(reading.numbers):
                 continue
-            if self.public.get("either sign") and any(
+            if self.public.either_sign and any(
                 sign_limit(self.public) * 0.4 < abs(number) < sign_limit(self.public) * 1.6 for number in numbers
             ):
                 continue
@@ -238,17 +239,17 @@ class Question:
 
     def _varying(self):
         """Which entries of the answer take both signs at some values of the symbols."""
-        if not self.public.get("symbols"):
+        if not self.public.symbols:
             return set()
-        readings = (read({**self.public, "salt": f"{self.name} {number}"}, self.plain).numbers for number in range(8))
+        readings = (read(replace(self.public, salt=f"{self.name} {k}"), self.plain).numbers for k in range(8))
         return _varying_in([numbers for reading in readings for numbers in reading])
 
     def _demand_turns(self):
         if not self.turns:
             return
-        build = kinds()[self.public["kind"]].build
+        build = kinds()[self.public.kind].build
         if build is None:
-            raise AuthorError(f"{self.name}: an answer of the kind {self.public['kind']!r} is not made of turns.")
+            raise AuthorError(f"{self.name}: an answer of the kind {self.public.kind!r} is not made of turns.")
         built = self.to_plain(build(self.turns))
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
             raise AuthorError(f"{self.name}: the turns do not give the right answer.")
@@ -269,9 +270,9 @@ class Question:
                     )
 
     def _catalogued(self):
-        if self.public["kind"] != "function":
+        if self.public.kind != "function":
             return catalogued_mistakes(self.public, self.answer, self.turns, self.turned)
-        inner = {**self.public, "kind": self.public["result"]}
+        inner = replace(self.public, kind=self.public.kind_of_values)
         results = [self.answer(*arguments) for arguments in calls_for(self.public)]
         columns = [
             {(found.note, json.dumps(found.details)): found.answer for found in catalogued_mistakes(inner, result)}
@@ -288,15 +289,15 @@ class Question:
         right = known[0]
         by_text = {}
         for one in known:
-            exact = self.public.get("tolerance") is None
+            exact = self.public.tolerance is None
             reach = REACH if one is not right else 1 if exact else NEARLY
             for text in fingerprints(self.public, one.reading, reach, most=MOST_EDGES if one is right else 3):
                 by_text.setdefault(text, []).append(one)
         self.near = []
-        if right.numbers and self.public.get("tolerance") is None:
+        if right.numbers and self.public.tolerance is None:
             self.near = fingerprints(self.public, right.reading, near=True)
         return {
-            text: Entry([self._case(one, alone=len(ones) == 1) for one in ones], ones[0].plain)
+            text: Entry([self._known_answer(one, alone=len(ones) == 1) for one in ones], ones[0].plain)
             for text, ones in by_text.items()
         }
 
@@ -305,7 +306,7 @@ class Question:
         known, self.no_mistakes = [self._one("correct", [], self.plain)], []
         for mistake in self.mistakes:
             try:
-                one = self._one("mistake", [[mistake.note, mistake.details]], self.to_plain(mistake.answer))
+                one = self._one("mistake", [Note(mistake.note, mistake.details)], self.to_plain(mistake.answer))
             except (Fault, Undecidable, NotPlain):
                 continue  # such an answer is refused for its form, which is a message of its own
             same = next((other for other in known if self._same(one, other)), None)
@@ -328,8 +329,7 @@ class Question:
         # What differs from the right answer by no more than its tolerance is the right answer.
         return within(self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1)
 
-    def _case(self, one, alone):
-        case = {"outcome": one.outcome, "notes": one.notes}
+    def _known_answer(self, one, alone):
         steps = [
             step
             for note, details in one.notes
@@ -337,14 +337,12 @@ class Question:
             for key in dict.fromkeys((details.get("text") if note == "authored" else note, note))
             for step in self.hints.get(key, [])
         ]
-        if steps:
-            case["hints"] = steps
-        if self.public.get("tolerance") is not None and one.numbers and (one.outcome == "correct" or not alone):
-            case["numbers"] = [MP.nstr(number, 17) for number in one.numbers]
-        return case
+        needed = self.public.tolerance is not None and (one.outcome == "correct" or not alone)
+        numbers = [MP.nstr(number, 17) for number in one.numbers] if needed else []
+        return KnownAnswer(one.outcome, tuple(one.notes), tuple(steps), tuple(numbers))
 
     def sealed(self, code=None, first=None):
-        """What a student receives of the question: its public part, its lockers and its pages.
+        """What a student receives of the question, as :class:`Sealed`.
 
         Parameters
         ----------
@@ -356,26 +354,26 @@ class Question:
 
         Of a question of an exam nothing is sealed: what a student receives would be the same with another answer.
         """
-        if self.public.get("exam"):
+        answer = self.variable or ""
+        if self.public.exam:
             self.pages = first or Pages(b"")
-            told = {name: value for name, value in self.public.items() if name not in ("every symbol", "scale")}
-            salt = hashlib.sha256(f"{self.name} {self.public.get('variant', 0)}".encode()).hexdigest()[:16]
-            return {**told, "salt": salt, "lockers": "", "worth": self.worth}
+            salt = hashlib.sha256(f"{self.name} {self.number}".encode()).hexdigest()[:16]
+            return Sealed(replace(self.public, every_symbol=None, scale=None, salt=salt), "", self.worth, answer)
         pages = self.pages = Pages(
-            sealing.slow_key(self.public["salt"], f"pages {self.fingerprint_of(self.plain)}"), first
+            sealing.slow_key(self.public.salt, f"pages {self.fingerprint_of(self.plain)}"), first
         )
         catalogue = by_short_name(self.public)
-        solution = pages.add_solution(to_page(self.solution), self.public.get("variants")) if self.solution else None
+        solution = pages.add_solution(to_page(self.solution), self.public.variant) if self.solution else None
         wanted = []
         for text, entry in self.entries.items():
             names = [short_name(*found) for found in entry.notes[:2]]
             known = all(name in catalogue for name in names)  # what the author says of a mistake is not
-            plain = len(entry.cases) == 1 and set(entry.cases[0]) == {"outcome", "notes"} and known
-            about = {"cases": [{**case, "notes": case["notes"][:2]} for case in entry.cases]}
+            plain = len(entry.answers) == 1 and not entry.answers[0].hints and not entry.answers[0].numbers and known
+            shortened = tuple(replace(answer, notes=answer.notes[:2]) for answer in entry.answers)
+            locker = Locker(shortened, self.after if entry.outcome == "correct" else {})
             if entry.outcome == "correct":
                 plain = plain and not solution and not self.after
-                about |= {"after": self.after} if self.after else {}
-            wanted.append((text, entry.outcome, names if plain else [], None if plain else about))
+            wanted.append((text, entry.outcome, names if plain else [], None if plain else locker.as_json()))
         chosen = [
             (text, outcome, names, about and pages.add(about, solution if outcome == "correct" else None))
             for text, outcome, names, about in wanted
@@ -383,22 +381,14 @@ class Question:
         chosen += [(text, "mistake", [], None) for text in self.near]
         if solution and code:
             chosen.append((code_text(code), "mistake", [], solution))
-        sealed = {**self.public}
         places = pages.seal()
-        if pages.sealed:
-            sealed["pages"] = pages.sealed
         lockers = []
         for text, outcome, names, page in chosen:
             place = (places[page], page) if page else ()
-            key = sealing.slow_key(self.public["salt"], text)
+            key = sealing.slow_key(self.public.salt, text)
             lockers.append(sealing.locker(key, OUTCOMES.index(outcome), names, *place))
-        sealed["lockers"] = sealing.pack(lockers)
-        sealed["worth"] = self.worth
-        if self.ladder:
-            sealed["ladder"] = [
-                sealing.seal(step, rung_key(self.public, number)) for number, step in enumerate(self.ladder)
-            ]
-        return sealed
+        ladder = [sealing.seal(step, rung_key(self.public, number)) for number, step in enumerate(self.ladder)]
+        return Sealed(self.public, sealing.pack(lockers), self.worth, answer, tuple(pages.sealed), tuple(ladder))
 
 
 def ladder_of(public, authored, turns):
@@ -408,7 +398,7 @@ def ladder_of(public, authored, turns):
     """
     if authored is not None:
         return list(authored)
-    begin = (kinds()[public["kind"]].begin, kind_of_values(public).begin)
+    begin = (kinds()[public.kind].begin, kind_of_values(public).begin)
     steps = [step for step in dict.fromkeys(begin) if step]
     if len(turns) > 1:
         steps.append(f"It is built of {len(turns)} turns, one after another. Check each of them alone.")
@@ -517,7 +507,7 @@ def _demand_arguments(name, given):
     """What a question may say beside the arguments of :func:`question`."""
     known = [
         parameter.name
-        for function in (question, Question.__init__)
+        for function in (question, AuthoredQuestion.__init__)
         for parameter in inspect.signature(function).parameters.values()
         if parameter.kind is parameter.KEYWORD_ONLY
     ]
@@ -605,7 +595,7 @@ def question(
     variant=None,
     **rest,
 ):
-    """Build a :class:`Question` from what its author wrote.
+    """Build an :class:`AuthoredQuestion` from what its author wrote.
 
     Raises
     ------
@@ -620,7 +610,7 @@ def question(
     _demand_tolerance(name, tolerance, relative)
     _demand_calls(name, calls)
     try:
-        public = {"kind": kind, **(variant or {}), **(known.public(answer) if known.public else {})}
+        public = {"kind": kind, **(known.public(answer) if known.public else {})}
     except (TypeError, LookupError, AttributeError, UnknownUnit) as error:
         what = f"`{error}` is no unit that is known here." if isinstance(error, UnknownUnit) else f"This is {answer!r}."
         raise AuthorError(
@@ -659,4 +649,8 @@ def question(
     for needed in known.needs:
         if needed not in public:
             raise AuthorError(f"{name}: a question of kind {kind!r} needs {needed!r}.")
-    return Question(name, public, answer, authored=mistakes, **rest)
+    try:
+        public = replace(Question.from_json(public, name), variant=variant)
+    except Misread as error:
+        raise AuthorError(str(error)) from None
+    return AuthoredQuestion(name, public, answer, authored=mistakes, **rest)

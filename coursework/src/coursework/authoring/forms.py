@@ -2,6 +2,7 @@
 
 import itertools
 import random
+from dataclasses import replace
 
 import sympy
 from sympy import I, Rational, cos, exp, pi, sin, sqrt, tan
@@ -71,7 +72,7 @@ def flat(answer):
 
 def equivalent_forms(public, answer):
     """Give the same answer in several forms, as pairs (name of the form, answer)."""
-    kind, more = public["kind"], kinds()[public["kind"]].forms
+    kind, more = public.kind, kinds()[public.kind].forms
     found = _common_forms(public, kind, answer)
     return [*found, *more(public, answer)] if more else found
 
@@ -95,7 +96,7 @@ def _common_forms(public, kind, answer):
         number, text = answer
         found = unit(text)
         base = " ".join(f"{name}^{power}" for name, power in zip(BASE, found.exponents) if power) or "1"
-        forms = _common_forms({**public, "kind": "expression"}, "expression", number)
+        forms = _common_forms(replace(public, kind="expression"), "expression", number)
         forms = [(name, (form, text)) for name, form in forms]
         return [
             *forms,
@@ -162,7 +163,7 @@ def _forms_of_symbols(public, answer, entries, put):
             ("immutable", sympy.ImmutableMatrix(answer)),
             ("product", sympy.MatMul(sympy.ImmutableMatrix(answer), sympy.Identity(answer.cols))),
         ]
-    if public.get("either sign"):
+    if public.either_sign:
         add("other sign", lambda entry: -entry)
     return forms
 
@@ -187,14 +188,14 @@ def _forms_of_numbers(public, answer, entries, put):
             ("nested list", answer.tolist() if answer.cols > 1 else list(answer)),
             ("immutable", sympy.ImmutableMatrix(answer)),
         ]
-    if public.get("either sign"):
+    if public.either_sign:
         forms.append(("other sign", each(lambda entry: -entry)))
     return forms
 
 
 def _digits(public):
     """How many decimals are enough for the tolerance of a question."""
-    tolerance = public.get("tolerance")
+    tolerance = public.tolerance
     if tolerance is None:
         return None
     digits = 0
@@ -205,15 +206,15 @@ def _digits(public):
 
 def random_form(public, answer, chance):
     """Give the same answer in a form made up by chance, as one who simplifies nothing might write it."""
-    kind = public["kind"]
+    kind = public.kind
     if kind == "measurement":
-        return (random_form({**public, "kind": "expression"}, answer[0], chance), answer[1])
+        return (random_form(replace(public, kind="expression"), answer[0], chance), answer[1])
     if kinds()[kind].text or kind == "function":
         return chance.choice(equivalent_forms(public, answer))[1]
     entries, put = flat(answer)
     free = unknowns(entries)
     if not free:
-        tolerance = public.get("tolerance")
+        tolerance = public.tolerance
         if tolerance is not None and chance.random() < 0.6:
             result = put([float(entry) + chance.uniform(-0.9, 0.9) * tolerance for entry in entries])
         else:
@@ -272,24 +273,24 @@ def _shuffled_number(number, chance):
 def another_answer(public, answer, chance=None):
     """An answer of the right form that is neither right nor a mistake of the catalogue."""
     chance = chance or random.Random(1)
-    kind = public["kind"]
+    kind = public.kind
     if kind == "function":
         return lambda *arguments: another_answer(
-            {**public, "kind": public["result"]}, answer(*arguments), random.Random(1)
+            replace(public, kind=public.kind_of_values), answer(*arguments), random.Random(1)
         )
     if kinds()[kind].another:
         return kinds()[kind].another(public, answer)
     if kind == "choice":
-        return next(option for option in public["options"] if option.lower() != answer.lower())
+        return next(option for option in public.options if option.lower() != answer.lower())
     if kind == "truth values":
         changed = chance.randrange(len(answer))
         return [part != (order == changed) for order, part in enumerate(answer)]
     if kind == "order":
         return chance.sample(list(answer), len(answer))
     if kind == "measurement":
-        return (another_answer({**public, "kind": "expression"}, answer[0]), answer[1])
+        return (another_answer(replace(public, kind="expression"), answer[0]), answer[1])
     if kind == "words":
-        return [another_answer({**public, "kind": "choice"}, part) for part in answer]
+        return [another_answer(replace(public, kind="choice"), part) for part in answer]
     if hasattr(answer, "to_matrix"):
         return answer * Rational(17, 13)
     entries, put = flat(answer)

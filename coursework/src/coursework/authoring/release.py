@@ -15,13 +15,15 @@ import platform
 import re
 import shutil
 import tempfile
+from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
 
 from ..checking import sealing
 from ..checking.evaluate import MP
-from ..checking.kinds import canonical, read
-from ..checking.questions import FORMAT, MOVED, beside
+from ..checking.question import FORMAT
+from ..checking.questions import MOVED, beside
+from ..checking.reading import canonical, read
 from ..checking.variants import image
 from .author import AuthorError, solution_code
 from .selftest import secrets_of, told_openly, try_question
@@ -158,8 +160,7 @@ def sealed_file(source, first=None, pages=None):
     """
     code = solution_code(source.notebook)
     questions = {
-        name: {"answer": question.variable, **question.sealed(code, pages and pages[name])}
-        for name, question in source.questions.items()
+        name: question.sealed(code, pages and pages[name]).as_json() for name, question in source.questions.items()
     }
     if first:
         questions = {name: beside(one, first[name]) for name, one in questions.items()}
@@ -200,7 +201,7 @@ def _release_one(path, course):
 
 def _answer_of(question):
     """A short text that is the same for variants with one answer, whatever points each is compared at."""
-    public = {**question.public, "salt": question.name}
+    public = replace(question.public, salt=question.name)
     reading = read(public, question.plain)
     numbers = canonical(public, reading) if reading.text is None else []
     return reading.text or " ".join(MP.nstr(number, 9) for number in numbers)
@@ -233,7 +234,7 @@ def _release_variant(path, number, pages, course):
         for name, question in source.questions.items():
             faults = try_question(question, budget=0, against_sealed=False).faults
             if faults:
-                raise AuthorError(f"{name}, variant {number}, {question.public['given']}: {faults[0]}")
+                raise AuthorError(f"{name}, variant {number}, {dict(question.public.variant.given)}: {faults[0]}")
         kept.parent.mkdir(parents=True, exist_ok=True)
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()

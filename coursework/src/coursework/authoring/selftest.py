@@ -19,11 +19,12 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
+from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable
-from ..checking.mistakes import GENERAL, message
+from ..checking.mistakes import GENERAL
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
-from ..checking.questions import in_variant, judge, notebook_questions
+from ..checking.questions import judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from ..checking.variants import shown
 from .attack import BUDGET, CODE, Found, attack
@@ -102,7 +103,7 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
 
     Parameters
     ----------
-    question : Question
+    question : AuthoredQuestion
     text : str
         What is asked, in words.
     budget : int
@@ -116,20 +117,20 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
     """
     faults = []
-    if kinds()[question.public["kind"]].by_a_person:
+    if kinds()[question.public.kind].by_a_person:
         return _try_text(question)
     forms = equivalent_forms(question.public, question.answer)
     for form, answer in forms:
         reply = _judge(question, answer)
         if reply.outcome != "correct":
             faults.append(f'The right answer in the form "{form}" gets "{reply.outcome}": {reply.messages}')
-    words = kinds()[question.public["kind"]].text or question.public["kind"] == "function"
+    words = kinds()[question.public.kind].text or question.public.kind == "function"
     if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
         faults.append(f"The right answer was tried in {len(forms)} forms only.")
     there = against_sealed and question.name in notebook_questions(question.name.partition("/")[0])
-    sealed = in_variant(question.name, question.public.get("variant", 0)) if there else None
-    expected = "recorded" if question.public.get("exam") else "correct"
-    if sealed and judge(question.name, sealed, question.plain)[0].outcome != expected:
+    sealed = notebook_questions(question.name.partition("/")[0], question.number)[question.name] if there else None
+    expected = "recorded" if question.public.exam else "correct"
+    if sealed and judge(question.name, sealed, question.plain).outcome != expected:
         faults.append("The right answer does not open what is sealed: make the release anew.")
     named, unmoved = _try_mistakes(question, faults)
     blank = _judge(question, ...)
@@ -143,10 +144,10 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
     if found is None:
-        found = NOTHING if question.public.get("exam") else attack(question, text, budget)
+        found = NOTHING if question.public.exam else attack(question, text, budget)
     return Finding(
         question.name,
-        question.public["kind"],
+        question.public.kind,
         [form for form, _ in forms],
         named,
         unmoved,
@@ -162,7 +163,7 @@ def _try_text(question):
     faults = [] if outcomes == ["not attempted", "not attempted", "undecided"] else [f"Its answers get {outcomes}."]
     if not question.rubric:
         faults.append("Nothing says what a person looks for: give a `rubric`.")
-    name, kind = question.name, question.public["kind"]
+    name, kind = question.name, question.public.kind
     return Finding(name, kind, [], [], [], NOTHING, question.worth, faults)
 
 
@@ -192,9 +193,9 @@ def _try_mistakes(question, faults):
         except KeyError:
             faults.append(f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not known: {reply.messages}')
             continue
-        known = [note for case in entry.cases for note in case["notes"]]
+        known = [note for answer in entry.answers for note in answer.notes]
         covered = mistake.note in GENERAL and known
-        if reply.outcome != "wrong" or not covered and [mistake.note, mistake.details] not in known:
+        if reply.outcome != "wrong" or not covered and (mistake.note, mistake.details) not in known:
             faults.append(
                 f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its own message.'
             )
@@ -221,7 +222,7 @@ def secrets_of(source):
             found.append((f"the worked solution of {name}", line))
         for step in [step for steps in [*question.hints.values(), *question.after.values()] for step in steps]:
             found.append((f"a hint of {name}", step))
-        if kinds()[question.public["kind"]].entries:
+        if kinds()[question.public.kind].entries:
             found += [(f"the answer of {name}", text) for text in _writings(question.answer)]
     given = {
         _dense(line)
@@ -237,7 +238,7 @@ def secrets_of(source):
         for line in blank(region, owners).splitlines()
     }
     # The arguments that a function is tried with are public: whoever checks it must call it.
-    given |= {_dense(json.dumps(question.public.get("calls", ""))) for question in source.questions.values()}
+    given |= {_dense(json.dumps(question.public.calls or "")) for question in source.questions.values()}
     seen = {}
     for what, text in found:
         dense = _dense(text)
@@ -253,7 +254,7 @@ def told_openly(question, secrets):
 
     Parameters
     ----------
-    question : Question
+    question : AuthoredQuestion
     secrets : dict
         What :func:`secrets_of` gives.
     """
@@ -271,7 +272,7 @@ def _judge_code(question, code):
     """The outcome of a piece of code as the answer to a question; empty where it gives none."""
     import sympy
 
-    symbols = {name.rstrip("'"): sympy.Symbol(name.rstrip("'")) for name in question.public.get("symbols", ())}
+    symbols = {name.rstrip("'"): sympy.Symbol(name.rstrip("'")) for name in question.public.symbols}
     with contextlib.suppress(Exception):  # whatever is wrong with it, it is no answer then
         names = {**vars(sympy), "sm": sympy, **symbols}
         return _judge(question, eval(code.partition("=")[2] or code, names)).outcome
@@ -444,7 +445,7 @@ def weakest(source, course, budget=BUDGET, numbers=(0,)):
     for number in numbers:
         one_variant = read_source(course.sources / f"{source.name}.ipynb", number, course.edition) if number else source
         for name, question in one_variant.questions.items():
-            if question.public.get("exam") or kinds()[question.public["kind"]].by_a_person:
+            if question.public.exam or kinds()[question.public.kind].by_a_person:
                 found[name] = NOTHING
                 continue
             one = attack_kept(question, text_of(one_variant, question), budget, kept)
@@ -472,7 +473,7 @@ def _numbers_attacked(source):
 def attack_kept(question, text, budget, folder):
     """The attack on a question; what came of it is kept in a folder, for the same question and the same attack."""
     known = {known: entry.outcome for known, entry in question.entries.items()}
-    asked = json.dumps([question.public, known, text, budget, digest_of_code()], sort_keys=True)
+    asked = json.dumps([question.public.as_json(), known, text, budget, digest_of_code()], sort_keys=True)
     place = Path(folder, f"{hashlib.sha256(asked.encode()).hexdigest()[:24]}.json")
     if not place.exists():
         found = attack(question, text, budget)
@@ -492,8 +493,8 @@ def text_of(source, question):
         elif f"check({question.name!r}" in cell.source.replace('"', "'"):
             text = above
             break
-    if "text" in question.public:
-        text = shown(question.public["text"], question.public["shown"])
+    if question.public.variant:
+        text = shown(question.public.variant.text, question.public.variant.shown)
     return f"{text}{CODE}{_open_code(source, question)}"
 
 

@@ -12,11 +12,13 @@ import itertools
 import json
 import re
 import textwrap
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
+from coursework.checking.question import Variant
 from coursework.checking.variants import Given, image, names_of_variants, packed, shown
 
 from . import author
@@ -188,20 +190,15 @@ def read_source(path, variant=0, edition="", only=None, pictures=None):
             if not variant:
                 questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
         elif variant < rules[name].count:
-            about["variant"] = {
-                "variant": variant,
-                "variants": rules[name].count,
-                "text": texts[name],
-                **_said(given[name], texts[name]),
-            } | ({"edition": edition} if edition else {})
-            _demand_few_digits(name, about["variant"]["shown"])
+            own = variant_drawn(given[name], texts[name], variant, rules[name].count, edition=edition)
+            _demand_few_digits(name, own.shown)
             if by_name:
                 drawn = (rules[name].parameters(number, edition) for number in range(rules[name].count))
-                about["variant"]["names"] = names_of_variants(_said(one, texts[name]) for one in drawn)
+                own = replace(own, names=tuple(names_of_variants(variant_drawn(one, texts[name]) for one in drawn)))
             if rules[name].picture and (only is None if pictures is None else pictures):
                 drawing = rules[name].picture(given[name])
-                about["variant"]["picture"] = packed(drawing.picture(), drawing.alt)
-            questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
+                own = replace(own, picture=packed(drawing.picture(), drawing.alt))
+            questions[name] = author.question(name, about.pop("kind"), answers[name], variant=own, **about)
 
     def record_identity(identity=""):
         identities.append(identity)
@@ -342,12 +339,16 @@ def _texts_of_variants(notebook):
     return texts
 
 
-def _said(drawn, text):
+def variant_drawn(drawn, text, number=0, count=1, edition=""):
     """What is shown and given of what was drawn for a variant."""
-    return {
-        "shown": {key: shown for key, shown in written(drawn).items() if f"{{{{{key}}}}}" in text},
-        "given": {key: value for key, value in drawn.items() if _is_given(value)},
-    }
+    return Variant(
+        number,
+        count,
+        given={key: value for key, value in drawn.items() if _is_given(value)},
+        shown={key: shown for key, shown in written(drawn).items() if f"{{{{{key}}}}}" in text},
+        text=text,
+        edition=edition,
+    )
 
 
 def texts_of_questions(notebook, figures=None):

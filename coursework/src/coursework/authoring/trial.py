@@ -64,7 +64,7 @@ def _with_mathematics(page):
 def _text(source, question):
     """All that stands above a question as students meet it: the heading, the text and the pictures."""
     return "\n\n".join(
-        [*_above(source, question), *([whole_text(question.public)] if "text" in question.public else [])]
+        [*_above(source, question), *([whole_text(question.public.variant)] if question.public.variant else [])]
     )
 
 

@@ -7,9 +7,9 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from .identity import forgotten
-from .kinds import calls_for
+from .identity import forgotten, identity
 from .plain import NotPlain, to_plain
+from .question import Locker, Place
 from .questions import (
     code_text,
     find_question,
@@ -21,6 +21,7 @@ from .questions import (
     rung_key,
     solution_on,
 )
+from .reading import calls_for
 from .reply import HELP, Reply
 from .sealing import unseal
 from .variants import siblings_of, without_sibling
@@ -66,21 +67,22 @@ def check(name: str, answer: object) -> Reply:
     NoSuchQuestion
         If the name is misspelt.
     """
-    question = find_question(name)
+    student = identity()
+    sealed = find_question(name, student)
     try:
-        reply, content = judge(name, question, to_plain(answer, calls_for(question), raise_missing=True))
+        reply = judge(name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True))
     except NotPlain as error:
-        reply, content = Reply(name, "invalid", "unreadable", [str(error)]), {}
-    if reply.outcome == "correct" and "solution" in content:
-        reply.solution = solution_on(question, open_page(question, *content["solution"]))
-    entry = _remember(name, reply, content)
+        reply = Reply(name, "invalid", "unreadable", [str(error)])
+    if reply.outcome == "correct" and reply.opened and reply.opened.solution:
+        reply.solution = solution_on(sealed, reply.opened.solution)
+    entry = _remember(name, student, reply)
     if reply.outcome == "wrong" and entry:
-        _show_next_hint(question, reply, entry)
+        _show_next_hint(sealed, student, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
-        _offer_sibling(reply, question, reply.help)
-    if reply.outcome != "not attempted" and forgotten(question):
-        reply.messages.append(forgotten(question))
+        _offer_sibling(reply, sealed.question, reply.help)
+    if reply.outcome != "not attempted" and forgotten(student, sealed.question):
+        reply.messages.append(forgotten(student, sealed.question))
     reply.tries = len(entry.get("answers", [])) + (entry.get("outcome") == "correct")
     if isinstance(entry.get("answers"), list):
         reply.tried = [str(answer)[:DIGITS] for answer in entry["answers"][-MOST_TOLD:]]
@@ -94,15 +96,16 @@ def check(name: str, answer: object) -> Reply:
 
 def hint(name: str) -> Reply:
     """Show the hints that you have earned for a question: each different answer that is wrong earns one more."""
-    question = find_question(name)
-    entry = _entry(_read_progress(), name)
-    steps, earned = _steps(question, entry), _earned(entry)
+    student = identity()
+    entry = _entry(_read_progress(), name, student)
+    steps, earned = _steps(find_question(name, student), entry), _earned(entry)
     if steps[:earned]:
-        _note_help(name, "hint")
+        _note_help(name, student, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
     for other, page, key in entry.get("after", []):
         with suppress(ValueError, LookupError, TypeError):  # of an earlier release of that question
-            lines += [f"Hint: {step}" for step in open_page(find_question(other), page, key)["after"].get(name, [])]
+            locker = Locker.from_json(open_page(find_question(other, student), Place(page, key)), other)
+            lines += [f"Hint: {step}" for step in locker.after.get(name, ())]
     left = len(steps) - min(earned, len(steps))
     if not lines:
         lines = ["There is no hint yet."]
@@ -116,24 +119,25 @@ def hint(name: str) -> Reply:
 
 def worked_solution(name: str, code: str) -> Reply:
     """Show the worked solution of a question to one who gives up, with the code that the instructor gave out."""
-    question = find_question(name)
-    content = opened(question, code_text(str(code)))
-    if content is None or "solution" not in content:
+    student = identity()
+    sealed = find_question(name, student)
+    locker = opened(sealed, code_text(str(code)))
+    if locker is None or locker.solution is None:
         return Reply(
             name, "hints", "", ["This code opens no solution. Your instructor gives the code out when it is time."]
         )
-    _note_help(name, "solution")
-    entry = _entry(_read_progress(), name)
+    _note_help(name, student, "solution")
+    entry = _entry(_read_progress(), name, student)
     said = ["Read it, close it, and write it out for yourself."]
-    reply = Reply(name, "hints", "", said, solution_on(question, content))
-    _offer_sibling(reply, question, entry.get("help", ""))
+    reply = Reply(name, "hints", "", said, solution_on(sealed, locker.solution))
+    _offer_sibling(reply, sealed.question, entry.get("help", ""))
     return reply
 
 
-def _note_help(name, kind):
+def _note_help(name, student, kind):
     """Write down that somebody had help; after the right answer it is none."""
     record = _read_progress()
-    entry = record[name] = _entry(record, name)
+    entry = record[name] = _entry(record, name, student)
     if entry.get("outcome") != "correct":
         kinds = list(HELP)
         entry["help"] = max(kind, entry.get("help", kind), key=lambda one: kinds.index(one) if one in kinds else -1)
@@ -143,7 +147,7 @@ def _note_help(name, kind):
 def _offer_sibling(reply, question, help_had):
     """Say of the siblings of a question what concerns one who had help, or who has solved one without."""
     asked, order = without_sibling(reply.question)
-    siblings = siblings_of(asked, question.get("variants", 1))
+    siblings = siblings_of(asked, question.variants)
     if not help_had:
         reply.messages += (
             [f"Solved without help: with a right answer to `{asked}` itself, it counts in full."] if order else []
@@ -160,16 +164,14 @@ def _offer_sibling(reply, question, help_had):
         )
 
 
-def _steps(question, entry):
+def _steps(sealed, entry):
     """All hints of a question: those of the last mistake, and then the ladder."""
     steps = []
     if entry.get("page"):
-        try:
-            cases = open_page(question, *entry["page"])["cases"]
-        except (ValueError, LookupError, TypeError):
-            cases = []  # the page is of an earlier release of the question
-        steps = next((case["hints"] for case in cases if "hints" in case), [])
-    return steps + [unseal(step, rung_key(question, number)) for number, step in enumerate(question.get("ladder", ()))]
+        with suppress(ValueError, LookupError, TypeError):  # the page is of an earlier release of the question
+            locker = Locker.from_json(open_page(sealed, Place(*entry["page"])), "A page")
+            steps = next((list(known.hints) for known in locker.answers if known.hints), [])
+    return steps + [unseal(step, rung_key(sealed.question, number)) for number, step in enumerate(sealed.ladder)]
 
 
 def _earned(entry):
@@ -177,10 +179,10 @@ def _earned(entry):
     return max(0, len(entry.get("answers", [])) - 1)
 
 
-def _show_next_hint(question, reply, entry):
-    steps, earned = _steps(question, entry), _earned(entry)
+def _show_next_hint(sealed, student, reply, entry):
+    steps, earned = _steps(sealed, entry), _earned(entry)
     if steps[:earned]:
-        _note_help(reply.question, "hint")
+        _note_help(reply.question, student, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
     if len(steps) > earned:
         # In words, and not as a call of `hint`, which few notebooks import.
@@ -193,8 +195,8 @@ def _show_next_hint(question, reply, entry):
 
 def progress() -> Reply:
     """Show how far you are, by chapter, and what is worth another look; from the record beside this notebook."""
-    record = _read_progress()
-    known = {name: entry for name in record if "outcome" in (entry := _entry(record, name))}
+    record, student = _read_progress(), identity()
+    known = {name: entry for name in record if "outcome" in (entry := _entry(record, name, student))}
     record = {name: entry for name, entry in known.items() if not without_sibling(name)[1]}
     if not record:
         return Reply("progress", "hints", "", ["Nothing has been checked in this folder yet."])
@@ -204,7 +206,7 @@ def progress() -> Reply:
         lines = [f"The one question that you have tried is {'right' if right else 'not right yet'}."]
     for notebook in sorted({name.partition("/")[0] for name in record}):
         lines.append(_of_notebook(notebook, record, right))
-    lines += _right_with_help(known, right)
+    lines += _right_with_help(known, right, student)
     lines += _worth_another_look(record)
     return Reply("progress", "correct" if len(right) == len(record) else "hints", "", lines)
 
@@ -214,9 +216,10 @@ def _of_notebook(notebook, record, right):
         questions = notebook_questions(notebook)
     except RuntimeError:
         questions = {}
-    questions = questions or {name: {} for name in record if name.startswith(f"{notebook}/")}
-    points = sum(about.get("worth", 1) for about in questions.values())
-    earned = sum(about.get("worth", 1) for name, about in questions.items() if name in right)
+    worths = {name: sealed.worth for name, sealed in questions.items()}
+    questions = worths or {name: 1 for name in record if name.startswith(f"{notebook}/")}
+    points = sum(questions.values())
+    earned = sum(worth for name, worth in questions.items() if name in right)
     taken_down = {name for name in questions if record.get(name, {}).get("outcome") == "recorded"}
     open_ = [name for name in questions if name not in right and name not in taken_down]
     # What was begun comes before what is new.
@@ -227,13 +230,13 @@ def _of_notebook(notebook, record, right):
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
 
 
-def _right_with_help(known, right):
+def _right_with_help(known, right, student):
     """The questions whose points are not all earned, since they were right with help and no sibling without."""
     alone = {without_sibling(name)[0] for name, entry in known.items() if _is_alone(name, entry)}
     found = []
     for name in sorted(right - alone):
         try:
-            count = find_question(name).get("variants", 1)
+            count = find_question(name, student).question.variants
         except (LookupError, RuntimeError):
             continue  # a question of another release
         if known[name].get("help") and count > 1:
@@ -255,9 +258,9 @@ def _worth_another_look(record):
     return [f"Worth another look, since you made a mistake there: {', '.join(found)}."] if found else []
 
 
-def _entry(record, name):
-    """What the record knows of a question in the variant of whoever works here; that of others stays beside it."""
-    entry, own = record.get(name), _own_number(name)
+def _entry(record, name, student):
+    """What the record knows of a question in a student's variant; that of others stays beside it."""
+    entry, own = record.get(name), _own_number(name, student)
     entry = dict(entry) if isinstance(entry, dict) else {}
     if not entry or entry.get("variant", 0) == own:
         return {**entry, "variant": own} if own else entry
@@ -269,9 +272,9 @@ def _entry(record, name):
     return {**found, **({"variant": own} if own else {}), OTHERS: others}
 
 
-def _own_number(name):
+def _own_number(name, student):
     try:
-        return own_number(name)
+        return own_number(name, student)
     except (LookupError, RuntimeError):
         return 0  # a question of another release
 
@@ -295,10 +298,10 @@ def _write_progress(record):
         pass
 
 
-def _remember(name, reply, content):
+def _remember(name, student, reply):
     """Write down the outcome, and where hints can be read again: never the hints themselves."""
     record = _read_progress()
-    entry = _entry(record, name)
+    entry = _entry(record, name, student)
     if reply.outcome == "not attempted":
         return entry
     # What was right once stays right: another try in the same cell takes nothing away.
@@ -311,14 +314,20 @@ def _remember(name, reply, content):
         answers = entry.setdefault("answers", [])
         if isinstance(answers, list) and reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers.append(reply.answer)
-        entry["page"] = content.get("page") if content.get("hints") else None
+        has_hints = reply.known is not None and reply.known.hints
+        entry["page"] = _page_of(reply.opened) if has_hints else None
         entry["mistake"], entry["mistake at"] = reply.note or "another value", int(time.time())
     elif reply.outcome == "correct" and entry.get("mistake at", 0) < time.time() - REVIEW_AFTER * DAY:
         entry.pop("mistake", None)  # looked at again, and right
     record[name] = entry
-    for other in content.get("after", {}) if reply.outcome == "correct" else ():
+    for other in reply.opened.after if reply.opened and reply.outcome == "correct" else ():
         known = record.setdefault(other, {}).setdefault("after", [])
-        if [name, *content["page"]] not in known:
-            known.append([name, *content["page"]])
+        if [name, *_page_of(reply.opened)] not in known:
+            known.append([name, *_page_of(reply.opened)])
     _write_progress(record)
     return entry
+
+
+def _page_of(locker):
+    """Where it is read again what an answer opened."""
+    return list(locker.place[:2])

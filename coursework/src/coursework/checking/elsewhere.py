@@ -1,7 +1,9 @@
 """Sealed variants that lie where the pages lie: only a browser's Python asks for them, one by one."""
 
+from importlib.resources.abc import Traversable
 
-def fetched(file, name):
+
+def fetched(file: Traversable, name: str) -> str:
     """A file from where the pages lie, whose address follows upon that of Python's packages."""
     import js
     import pyodide_js
@@ -12,7 +14,7 @@ def fetched(file, name):
         request.open("GET", address, False)
         request.send()
         if request.status == 200:
-            return request.responseText
+            return str(request.responseText)
         why = f"the server says {request.status}"
     except Exception as error:  # what the browser throws where there is no network
         why = str(error)

@@ -8,6 +8,9 @@ This reads the plain data of :mod:`coursework.checking.plain` only. It never bui
 whatever the data holds, its work is bounded.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 import mpmath
 
 MP = mpmath.MPContext()
@@ -43,7 +46,7 @@ class UnknownSymbol(ValueError):
     """An expression holds a symbol that the question does not have; its name is the argument."""
 
 
-def values(nodes, point):
+def values(nodes: list[Any], point: Mapping[str, Any]) -> list[Any]:
     """Give the value of every node: real or complex numbers, truth values, or the error each has.
 
     Parameters
@@ -81,7 +84,7 @@ def number(result):
     return result
 
 
-def real(result, rest=0):
+def real(result: Any, rest: Any = 0) -> Any:
     """The real number that a result is; raises ``ValueError`` where its imaginary part is more than ``rest``."""
     result = number(result)
     if result in (MP.inf, -MP.inf):

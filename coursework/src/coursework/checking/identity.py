@@ -6,6 +6,8 @@ from the grader that they earn nothing: so it is said beside every such question
 
 from pathlib import Path
 
+from .question import Question
+
 #: Where it is kept who works in this folder; the pages of a book keep it under the same name.
 KEPT = Path(".coursework", "me.txt")
 #: What is said where nobody has said who works here.
@@ -47,7 +49,7 @@ me = student
 
 
 def identity() -> str:
-    """Who works here, or an empty text."""
+    """Who works here, or an empty text: what a student calls asks for it, and hands it on."""
     return _identity
 
 
@@ -56,6 +58,6 @@ def plain_identity(identity: str) -> str:
     return " ".join(str(identity).split()).casefold()
 
 
-def forgotten(question: dict) -> str:
+def forgotten(student: str, question: Question) -> str:
     """What is said beside a question with other numbers for each student, while nobody has said who works here."""
-    return FORGOTTEN if question.get("variants", 1) > 1 and not _identity else ""
+    return FORGOTTEN if question.variants > 1 and not student else ""

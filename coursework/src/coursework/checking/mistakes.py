@@ -7,14 +7,13 @@ right answer is needed where the student works. Mistakes that lead to the same a
 The messages are no secret; which of them a question knows, and for what answers, is.
 """
 
-import functools
 import hashlib
-import inspect
 import itertools
 import json
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from .plugins import kind_of_values, kinds
+from .fields import Json
 from .sealing import MISTAKE
 
 #: Factors that are forgotten or put in twice, as they are said.
@@ -35,17 +34,11 @@ class Mistake(NamedTuple):
     answer: object
 
 
-def message(question, note, details):
-    """What a student is told of a mistake."""
-    said = kind_of_values(question).messages.get(note) or MESSAGES[note]
-    return said(question, **details)
-
-
 def _only_the_transpose(question):
     return "This is the transpose of what the question asks for."
 
 
-MESSAGES = {
+MESSAGES: dict[str, Callable[..., str]] = {
     "transposed": _only_the_transpose,
     "in degrees": lambda question: "Your answer is in degrees; angles here are in radians.",
     "in radians": lambda question: "Your answer is in radians; the question asks for degrees.",
@@ -80,7 +73,7 @@ OF_ORDERS = {
 }
 
 
-def short_name(note, details):
+def short_name(note: str, details: Mapping[str, Json]) -> bytes:
     """The name that a mistake has in a locker: it follows from its note and details, and from nothing else.
 
     So files that were sealed before keep their meaning, whatever is added to the catalogue.
@@ -92,63 +85,7 @@ def short_name(note, details):
     return hashlib.sha256(text.encode("utf8")).digest()[:MISTAKE]
 
 
-def by_short_name(question):
-    """Every mistake that the messages can name for a question, with its details, by its short name.
-
-    It is the same for all questions of a kind, and so tells nothing.
-
-    Raises
-    ------
-    RuntimeError
-        Two mistakes have the same short name: one of them needs another note.
-    """
-    values = question["result"] if question["kind"] == "function" else question["kind"]
-    return _by_short_name(values, tuple(sorted(question.get("symbols", ()))))
-
-
-@functools.lru_cache(64)
-def _by_short_name(kind, symbols):
-    kind = kinds()[kind]
-    details = {
-        "symbol": symbols,
-        "first": symbols,
-        "second": symbols,
-        "factor": [name for name, _ in FACTORS],
-        "number": range(len(NUMBERS)),
-    }
-    found = {}
-    for messages, own in ((MESSAGES, {}), (kind.messages, kind.details)):
-        for note, words in messages.items():
-            needed = list(inspect.signature(words).parameters)[1:]
-            if note != "authored":
-                choices = ((own or details).get(name, ()) for name in needed)
-                for values in itertools.product(*choices):
-                    one = [note, dict(zip(needed, values, strict=True))]
-                    if found.setdefault(short_name(*one), one) != one:
-                        raise RuntimeError(f"{one} and {found[short_name(*one)]} have one short name: rename a note.")
-    return found
-
-
 # --- what each mistake does to an answer --------------------------------------------------------
-
-
-def mistakes(question, answer, turns=(), turned=None):
-    """Give every mistake of the catalogue that applies to an answer, as :class:`Mistake`.
-
-    Parameters
-    ----------
-    question : dict
-        The public part of the question.
-    answer : SymPy object, nested list or number
-        The right answer, as its author wrote it.
-    turns : list of tuples (axis, angle)
-        The successive turns, each about an axis of the frame that the turns before it have reached, of which
-        the answer is the direction cosine matrix or the quaternion.
-    turned : tuple (matrix, components)
-        For components that a matrix turned: the matrix and what it was applied to.
-    """
-    find = kinds()[question["kind"]].mistakes
-    return list(find(question, answer, list(turns), turned)) if find else []
 
 
 def as_matrix(answer):
@@ -211,7 +148,7 @@ def of_parts(question, answer, turns, turned):
     if not 3 <= len(answer) < len(NUMBERS):
         return
     for place, right in enumerate(answer):
-        for option in question.get("options") or [True, False]:
+        for option in question.options or [True, False]:
             if option != right:
                 yield Mistake("one wrong", {"number": len(answer)}, answer[:place] + [option] + answer[place + 1 :])
 
@@ -257,7 +194,7 @@ def of_vector(question, answer, turns, turned):
         matrix, components = (sympy.Matrix(part) for part in turned)
         yield Mistake("turned the wrong way", {}, matrix.T * components)
         yield Mistake("not turned", {}, components)
-    if not question.get("unit vector"):
+    if not question.unit_vector:
         yield from of_factors(answer)
     yield from of_symbols(question, answer)
 
@@ -267,11 +204,11 @@ def of_expression(question, answer, turns, turned):
 
     answer = sympy.sympify(answer)
     yield Mistake("opposite", {}, -answer)
-    if question.get("quantity") == "angle":
+    if question.quantity == "angle":
         yield Mistake("in degrees", {}, answer * 180 / sympy.pi)
         yield Mistake("supplement", {}, sympy.pi - answer)
         yield Mistake("complement", {}, sympy.pi / 2 - answer)
-    elif question.get("quantity") == "angle in degrees":
+    elif question.quantity == "angle in degrees":
         yield Mistake("in radians", {}, answer * sympy.pi / 180)
         yield Mistake("supplement", {}, 180 - answer)
         yield Mistake("complement", {}, 90 - answer)
@@ -279,6 +216,6 @@ def of_expression(question, answer, turns, turned):
         yield Mistake("reciprocal", {}, 1 / answer)
     yield Mistake("half", {}, answer / 2)
     yield Mistake("double", {}, 2 * answer)
-    if "quantity" not in question:
+    if question.quantity is None:
         yield from of_factors(answer)
     yield from of_symbols(question, answer)

@@ -28,6 +28,8 @@ import numbers
 import re
 import sys
 import unicodedata
+from collections.abc import Sequence
+from typing import Any
 
 import sympy
 from mpmath import libmp
@@ -63,6 +65,10 @@ VALUES = (
 )
 
 
+#: An answer as plain data: its ``"value"`` and the ``"nodes"`` that this is made of.
+Plain = dict[str, list[Any]]
+
+
 class NotPlain(ValueError):
     """An answer cannot be read; the message says why, in the student's terms."""
 
@@ -95,7 +101,7 @@ def limited_work(most=MOST_CALLS):
         sys.settrace(before)
 
 
-def to_plain(answer, calls=None, raise_missing=False):
+def to_plain(answer: object, calls: Sequence[Sequence[object]] | None = None, raise_missing: bool = False) -> Plain:
     """Give an answer as plain data.
 
     Parameters
@@ -115,7 +121,7 @@ def to_plain(answer, calls=None, raise_missing=False):
         The answer is of a kind that no question asks for, or too large to read.
     """
     try:
-        return _to_plain(answer, calls, raise_missing)
+        return _Writer(raise_missing).plain(answer, calls)
     except NotPlain:
         raise
     except RecursionError:
@@ -127,21 +133,6 @@ def to_plain(answer, calls=None, raise_missing=False):
             f"An answer of type `{type(answer).__name__[:40]}` could not be read ({type(error).__name__}). "
             "Give a SymPy expression, a matrix, a list of numbers or a text."
         ) from None
-
-
-def _to_plain(answer, calls, raise_missing):
-    writer = _Writer()
-    if calls is None or _is_blank(answer):
-        value = writer.value(answer, 0)
-    elif not callable(answer):
-        raise NotPlain("The question asks for a function: give its name, without calling it.")
-    else:
-        value = [
-            "function",
-            [writer.result(answer, arguments, raise_missing) for arguments in calls],
-            _works_something_out(answer),
-        ]
-    return {"value": value, "nodes": writer.nodes}
 
 
 #: What the body of a function that is still blank is compiled to.
@@ -160,11 +151,25 @@ def _is_blank(answer):
 class _Writer:
     """Writes one answer; the memory of what was written already is what keeps shared parts shared."""
 
-    def __init__(self):
+    def __init__(self, raise_missing):
+        self.raise_missing = raise_missing
         self.nodes = []
         self.written = {}
         self.put_off = set()
         self.gave_up = 0
+
+    def plain(self, answer, calls):
+        if calls is None or _is_blank(answer):
+            value = self.value(answer, 0)
+        elif not callable(answer):
+            raise NotPlain("The question asks for a function: give its name, without calling it.")
+        else:
+            value = [
+                "function",
+                [self.result(answer, arguments) for arguments in calls],
+                _works_something_out(answer),
+            ]
+        return {"value": value, "nodes": self.nodes}
 
     def value(self, answer, depth):
         if depth > DEEPEST:
@@ -290,7 +295,7 @@ class _Writer:
             return ["expression", self.expression(answer)]
         raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
 
-    def result(self, function, arguments, raise_missing):
+    def result(self, function, arguments):
         printed = io.StringIO()
         try:
             with contextlib.redirect_stdout(printed):
@@ -301,7 +306,7 @@ class _Writer:
         except NotPlain:
             raise
         except (Exception, SystemExit) as error:
-            if raise_missing and isinstance(error, ModuleNotFoundError):
+            if self.raise_missing and isinstance(error, ModuleNotFoundError):
                 raise
             return ["raised", _text(f"{type(error).__name__}: {error}"[:300])]
 
@@ -617,7 +622,7 @@ _FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]
 _NAME = re.compile(r"\w{1,60}", re.ASCII)
 
 
-def read_plain(data):
+def read_plain(data: Any) -> Plain:
     """Check data that came out of a student's process, and give it back.
 
     Raises

@@ -7,8 +7,11 @@ import functools
 import hashlib
 import json
 import math
+from collections.abc import Callable
+from typing import Any
 
 from .evaluate import MP
+from .question import Question
 
 #: So many that each angle has been in all four quadrants, and no two signs of sines and cosines always agree.
 POINTS = 5
@@ -23,7 +26,7 @@ RATES = ("{}dot", "{}_dot", "dot_{}", "d{}", r"\dot{{{}}}", r"\dot{{\{}}}")
 MOST_TRIES = 200
 
 
-def spellings(name):
+def spellings(name: str) -> list[str]:
     """Other names of the symbol of this name."""
     if name.endswith("'"):
         letter = name.rstrip("'")
@@ -34,17 +37,16 @@ def spellings(name):
     return [TWINS[name]] if name in TWINS else []
 
 
-def points(question):
+def points(question: Question) -> list[dict[str, Any]]:
     """Give the points of a question: dictionaries from the names of its symbols to numbers."""
-    symbols = question.get("symbols", {})
-    if not symbols:
+    if not question.symbols:
         return [{}]
-    asked = json.dumps([question["salt"], sorted(symbols.items()), question.get("unit", ())])
+    asked = json.dumps([question.salt, sorted(question.symbols.items()), question.unit])
     return [dict(point) for point in _points(asked)]
 
 
 @functools.lru_cache(256)
-def _points(asked):
+def _points(asked: str) -> list[dict[str, Any]]:
     salt, symbols, unit = json.loads(asked)
     placed = _placed(salt, [limits for _, limits in symbols])
     found = []
@@ -60,9 +62,10 @@ def _points(asked):
     return found
 
 
-def _placed(salt, ranges):
+def _placed(salt: str, ranges: list[tuple[float, float]]) -> list[tuple[Any, ...]]:
     """Rows of values, one for each point, such that no two signs of sines and cosines agree at all of them."""
-    best, most = None, -1
+    best: list[list[Any]] = []
+    most = -1
     for attempt in range(MOST_TRIES):
         columns = [_column(f"{salt} {attempt} {order}", *limits) for order, limits in enumerate(ranges)]
         signs = [_signs(function, column) for column in columns for function in (math.sin, math.cos)]
@@ -75,21 +78,21 @@ def _placed(salt, ranges):
     return list(zip(*best))
 
 
-def _signs(function, column):
+def _signs(function: Callable[[Any], float], column: list[Any]) -> tuple[bool, ...]:
     signs = [function(value) >= 0 for value in column]
     # A sign and its opposite are one: the product of the two never changes.
     return tuple(sign == signs[0] for sign in signs)
 
 
-def _column(seed, low, high):
+def _column(seed: str, low: float, high: float) -> list[Any]:
     """One value for each point, in every quadrant that the range has a part in."""
-    low, high = MP.mpf(low), MP.mpf(high)
+    first, last = MP.mpf(low), MP.mpf(high)
     quarter = MP.pi / 2
-    inner = [number * quarter for number in range(int(MP.ceil(low / quarter)), int(MP.floor(high / quarter)) + 1)]
-    edges = [low, *(edge for edge in inner if low < edge < high), high]
+    inner = [number * quarter for number in range(int(MP.ceil(first / quarter)), int(MP.floor(last / quarter)) + 1)]
+    edges = [first, *(edge for edge in inner if first < edge < last), last]
     parts = list(zip(edges, edges[1:]))
     parts.sort(key=lambda part: _share(f"{seed} part {MP.nstr(part[0], 8)}"))
-    kinds = {}
+    kinds: dict[int, tuple[Any, Any]] = {}
     for part in parts:
         kinds.setdefault(int(MP.floor((part[0] + part[1]) / 2 / quarter)) % 4, part)
     chosen = [*kinds.values(), *parts, *parts, *parts, *parts, *parts][:POINTS]
@@ -101,5 +104,5 @@ def _column(seed, low, high):
     ]
 
 
-def _share(seed):
+def _share(seed: str) -> Any:
     return int.from_bytes(hashlib.sha256(seed.encode()).digest()[:12], "big") / MP.mpf(2) ** 96

@@ -9,30 +9,34 @@ import functools
 import hashlib
 import json
 import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from . import format_3, sealing
+from .catalogue import by_short_name, message
 from .evaluate import MP
-from .kinds import Blank, Fault, Reading, Undecidable, canonical, distance, fault, fingerprint, read, tolerances
-from .mistakes import by_short_name, message
+from .fields import Fields, Json, Misread, anything, by_name, text, whole
+from .identity import identity
+from .kinds import Blank, Fault, Number, Undecidable
+from .plain import Plain
 from .plugins import kind_of_values, kinds, sealed_folders
 from .points import spellings
+from .question import FORMAT, OUTCOMES, KnownAnswer, Locker, Note, Place, Question, Sealed, Variant
+from .reading import Reading, canonical, distance, fault, fingerprint, read, tolerances
 from .reply import Reply
-from .variants import own_variant, siblings_of, without_sibling
+from .variants import Given, own_variant, siblings_of, text_of, without_sibling
 
-#: Of the files with sealed questions. Format 3, which called a mistake by its place in a catalogue, is read, too.
-FORMAT = 4
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
 #: In a folder of sealed questions: the names that questions had in earlier editions.
 MOVED = "moved.json"
 #: Letters and digits of a code that opens worked solutions: none that looks like another.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
-#: The outcomes that a locker may hold, by their number in it.
-OUTCOMES = ("correct", "mistake")
 NOT_IN_THIS_CATALOGUE = (
     "This is a mistake that others have made, too, and this version of coursework has no words for it: install the "
     "package that came with the notebook."
@@ -49,51 +53,80 @@ COARSE = 0.005
 SMALL, LARGE = 64, 1000
 
 
+#: What is known of a fingerprint, or nothing.
+Find = Callable[[str], Locker | None]
+
+
 class NoSuchQuestion(KeyError):
     """There is no question of that name; the message names the nearest one."""
 
-    def __str__(self):
-        return self.args[0]
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 @functools.cache
-def notebook_questions(notebook, variant=0):
-    """The public parts and the lockers of the questions of a notebook, by full name.
+def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
+    """The questions of a notebook, by full name; of another variant than 0 those that have it.
 
-    Those of variant 0 are all questions; those of another are the questions that have it.
+    Raises
+    ------
+    RuntimeError
+        The file is of another format, or is not what it should be.
     """
+    found = {}
+    try:
+        format, questions = _file(notebook)
+        chosen = questions
+        if variant:
+            format, chosen = _file(notebook, variant)
+        for name, about in chosen.items():
+            about = _on_the_first(questions[name], about) if variant else about
+            found[name] = Sealed.from_json(about, f"The sealed question {name}", format)
+    except Misread as error:
+        raise RuntimeError(f"{error} Unpack the exercises again; what you have written is kept.") from None
+    return found
+
+
+def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Json]]]:
+    """The format of a file of sealed questions, and what it says of each, by name."""
     if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
-        return {}
+        return FORMAT, {}
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
-    text = next((file.read_text("utf8") for folder in places() if (file := folder / name).is_file()), None)
-    if text is None and variant:
+    content = next((file.read_text("utf8") for folder in places() if (file := folder / name).is_file()), None)
+    if content is None and variant:
         from .elsewhere import fetched
 
-        text = next((fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()), None)
-    if text is None:
-        return {}
-    data = json.loads(text)
-    if data["format"] not in (3, FORMAT):
+        content = next((fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()), None)
+    if content is None:
+        return FORMAT, {}
+    about = Fields(json.loads(content), f"The sealed questions of {notebook}")
+    format = about.get("format", whole)
+    if format not in (3, FORMAT):
         from .. import __version__
 
         raise RuntimeError(
-            f"The sealed questions of {notebook} are of format {data['format']}, and this is coursework {__version__}, "
+            f"The sealed questions of {notebook} are of format {format}, and this is coursework {__version__}, "
             f"which reads formats 3 and {FORMAT}. Install the package that came with the notebook: "
             "`python -m coursework update exercises.zip` says how."
         )
-    if data["format"] == 3:
-        return {name: {**about, "format": 3} for name, about in data["questions"].items()}
-    return data["questions"]
+    return format, about.get("questions", by_name(by_name(anything)))
 
 
-def places():
+def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[str, Json]:
+    """A variant, of which only what differs from the first one is kept, as :func:`beside` does."""
+    pages = [page for one in (first, own) if isinstance(found := one.get("pages"), list) for page in found]
+    whole_of_it = {**first, **own, "pages": pages or None}
+    return {name: value for name, value in whole_of_it.items() if value is not None}
+
+
+def places() -> list[Traversable]:
     """Where sealed questions may lie: the folder ``sealed`` beside the notebook, and those of plug-ins."""
     beside = Path("sealed")
     return [*([beside] if beside.is_dir() else []), *sealed_folders()]
 
 
-def find_question(name):
-    """Give a question by its full name, in the variant of whoever works here; a sibling by its own name.
+def find_question(name: str, student: str) -> Sealed:
+    """Give a question by its full name, in the variant of a student; a sibling by its own name.
 
     Raises
     ------
@@ -108,11 +141,12 @@ def find_question(name):
     questions = notebook_questions(notebook)
     asked, order = without_sibling(name)
     if asked in questions:
-        siblings = siblings_of(asked, questions[asked].get("variants", 1))
+        siblings = siblings_of(asked, questions[asked].question.variants)
         if order > len(siblings):
             there = f"its siblings are {' and '.join(siblings)}" if siblings else "it has no other numbers"
             raise NoSuchQuestion(f"There is no '{name[:80]}': of '{asked}', {there}.")
-        return in_variant(asked, own_variant(asked, questions[asked], order))
+        number = own_variant(student, asked, questions[asked].question, order)
+        return notebook_questions(notebook, number)[asked]
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(
@@ -130,22 +164,44 @@ def find_question(name):
     raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
 
 
-def _moved():
+def _moved() -> dict[str, str]:
     """The names that questions have now, by those that they had in earlier editions."""
-    files = (folder / MOVED for folder in places())
-    return {
-        old: new for file in files if file.is_file() for old, new in json.loads(file.read_text("utf8"))["moved"].items()
-    }
+    now: dict[str, str] = {}
+    for file in (folder / MOVED for folder in places()):
+        if file.is_file():
+            now |= Fields(json.loads(file.read_text("utf8")), MOVED).get("moved", by_name(text))
+    return now
 
 
-def own_number(name):
-    """The number of the variant in which a question, or a sibling of one, is found here; 0 where there is only one."""
+def variant(name: str) -> Given:
+    """Show your variant of a question, and give its numbers.
+
+    Parameters
+    ----------
+    name : str
+        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
+
+    Returns
+    -------
+    Given
+
+    Raises
+    ------
+    NoSuchQuestion
+        If the name is misspelt.
+    """
+    found = find_question(name, identity()).question.variant or Variant()
+    return Given(text_of(found), found.given)
+
+
+def own_number(name: str, student: str) -> int:
+    """The number of the variant in which a student finds a question, or a sibling; 0 where there is only one."""
     asked, order = without_sibling(name)
     questions = notebook_questions(name.partition("/")[0])
-    return own_variant(asked, questions[asked], order) if asked in questions else 0
+    return own_variant(student, asked, questions[asked].question, order) if asked in questions else 0
 
 
-def beside(question, first):
+def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str, Json]:
     """What of a sealed variant differs from the first one: that is all that is kept of it.
 
     Its pages are those that the first one has not, and follow upon them.
@@ -156,91 +212,74 @@ def beside(question, first):
     return {name: question.get(name) for name in {**question, **first} if question.get(name) != first.get(name)}
 
 
-def in_variant(name, number):
-    """A sealed question in a variant: the first one, with what :func:`beside` kept of the variant."""
-    notebook, _, _ = name.partition("/")
-    whole = dict(notebook_questions(notebook)[name])
-    if number:
-        own = notebook_questions(notebook, number)[name]
-        whole |= {**own, "pages": [*whole.get("pages", []), *(own.get("pages") or [])]}
-    return {part: about for part, about in whole.items() if about is not None}
+def judge(name: str, sealed: Sealed, plain: Plain) -> Reply:
+    """Compare an answer, as plain data, with what is sealed; the reply holds what it opened."""
+    find = None if sealed.question.exam else lambda fingerprint: opened(sealed, fingerprint)
+    return compare(name, sealed.question, plain, find)
 
 
-def judge(name, question, plain):
-    """Compare an answer, as plain data, with what is sealed.
-
-    Returns
-    -------
-    tuple (Reply, dict)
-        The reply, and what the answer opened: hints, the worked solution, hints for another question.
-    """
-    reply = compare(name, question, plain, None if question.get("exam") else lambda text: opened(question, text))
-    return reply, reply.opened
-
-
-def code_text(code):
+def code_text(code: str) -> str:
     """What is hashed of a code that opens worked solutions, however it is typed."""
     return "code " + "".join(letter for letter in code.upper() if letter in CODE_LETTERS)
 
 
-def rung_key(question, number):
+def rung_key(question: Question, number: int) -> bytes:
     """The key of a step of the ladder of hints: no secret, it only keeps the step from being read in passing."""
-    seed = f"step {number} for {question['kind']}"
+    seed = f"step {number} for {question.kind}"
     return hashlib.sha256(seed.encode()).digest()[: sealing.PAGE_KEY]
 
 
-def opened(question, text):
+def opened(sealed: Sealed, fingerprint: str) -> Locker | None:
     """What the locker of a fingerprint holds, or ``None``."""
-    key = sealing.slow_key(question["salt"], text)
-    found = sealing.open_locker(question["lockers"], key)
+    found = sealing.open_locker(sealed.lockers, sealing.slow_key(sealed.question.salt, fingerprint))
     if found is None:
         return None
     outcome, page, inside = found
     if page is not None:
-        return {**open_page(question, page, inside), "page": [page, inside.hex()]}
-    if question.get("format") == 3:
-        notes = format_3.mistakes_in(inside, question)
+        place = Place(page, inside.hex())
+        return Locker.from_json(open_page(sealed, place), f"Page {page}", place)
+    if sealed.format == 3:
+        notes = format_3.mistakes_in(inside, sealed.question)
     else:
-        known, unknown = by_short_name(question), ["authored", {"text": NOT_IN_THIS_CATALOGUE}]
+        known, unknown = by_short_name(sealed.question), Note("authored", {"text": NOT_IN_THIS_CATALOGUE})
         notes = [known.get(name, unknown) for name in sealing.mistakes_in(inside)]
-    return {"cases": [{"outcome": OUTCOMES[outcome], "notes": notes}]}
+    return Locker((KnownAnswer(OUTCOMES[outcome], tuple(notes)),))
 
 
-def open_page(question, page, key):
-    """What stands on a page; ``key`` as bytes or as the digits that another page holds."""
-    return sealing.unseal(question["pages"][page], bytes.fromhex(key) if isinstance(key, str) else key)
+def open_page(sealed: Sealed, place: Place) -> object:
+    """What stands on a page, as JSON."""
+    return sealing.unseal(sealed.pages[place.page], bytes.fromhex(place.key))
 
 
-def solution_on(question, content):
-    """The worked solution that a page holds, as HTML.
+def solution_on(sealed: Sealed, solution: Place | str) -> str:
+    """The worked solution as HTML, from where it stands.
 
     That of a variant is what differs from words that all variants have in common, on a page of their own.
     """
-    solution = content["solution"]
     if isinstance(solution, str):
         return solution
-    *place, short = solution
-    return sealing.lengthen(short, open_page(question, *place)["words"])
+    page = open_page(sealed, solution)
+    if solution.short:
+        return sealing.lengthen(solution.short, Fields(page, "A page").get("words", text))
+    return solution_on(sealed, Locker.from_json(page, "A page").solution or "")
 
 
-def compare(name, question, plain, find):
+def compare(name: str, question: Question, plain: Plain, find: Find | None) -> Reply:
     """Compare an answer, as plain data, with what is known of a question. Gives the reply.
 
     Parameters
     ----------
     name : str
-    question : dict
-        The public part of the question.
+    question : Question
     plain : dict
     find : function or None
         ``None`` where there is nothing to compare with, as in an exam: then only the form of the answer is looked at.
-        It gives what is known of a fingerprint, or ``None``: a dictionary whose ``"cases"`` are each an outcome with
-        its notes and, where answers have a tolerance, the numbers that it is meant for.
+        It gives the locker of a fingerprint, or ``None``.
     """
     try:
         reading = read(question, plain)
-        if kinds()[question["kind"]].by_a_person:
-            words = len(reading.text.split())
+        if kinds()[question.kind].by_a_person:
+            words = len((reading.text or "").split())
             said = f"A person will read this text of {words} {'word' if words == 1 else 'words'} and decide."
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
@@ -257,7 +296,7 @@ def compare(name, question, plain, find):
         )
 
 
-def _taken_down(name, question, reading):
+def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
     found = fault(question, reading)
     if found:
         return Reply(name, "invalid", found.note, [found.message])
@@ -272,30 +311,30 @@ def _taken_down(name, question, reading):
     )
 
 
-def _compare(name, question, plain, reading, text, find):
-    content = find(text)
-    case = _case_of(question, reading, content)
-    found = fault(question, reading) if case is None or case["outcome"] == "correct" else None
-    if found and (case is None or found.note in ALWAYS_WRONG):
+def _compare(name: str, question: Question, plain: Plain, reading: Reading, fingerprint: str, find: Find) -> Reply:
+    locker = find(fingerprint)
+    known = _known_in(question, reading, locker)
+    wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
+    if wrong_form and (known is None or wrong_form.note in ALWAYS_WRONG):
         # What comes of rounding is not called a fault of geometry.
-        said = "" if found.note == "stray symbol" else _decimals(question, plain, reading) or _coarse(question, reading)
-        return Reply(name, "invalid", found.note, [said, found.message] if said else [found.message])
-    if case is None:
-        reply = _not_known(name, question, plain, reading, find, content)
+        said = ""
+        if wrong_form.note != "stray symbol":
+            said = _decimals(question, plain, reading) or _coarse(question, reading)
+        return Reply(name, "invalid", wrong_form.note, [said, wrong_form.message] if said else [wrong_form.message])
+    if known is None:
+        reply = _not_known(name, question, plain, reading, find, locker)
         slip, _, mistake = reply.note.partition(", and ")
         # What is right once a slip is undone twice is the right answer itself, but for the last digits.
         return _close(name, question) if mistake and slip == mistake else reply
-    if case["outcome"] == "correct":
-        return Reply(name, "correct", opened=content)
-    reply = Reply(name, "wrong", case["notes"][0][0], _messages(question, case), opened=case)
-    reply.opened = {**case, "page": content.get("page")}
-    reply.details = case["notes"][0][1]
-    return reply
+    if known.outcome == "correct":
+        return Reply(name, "correct", opened=locker)
+    note, details = known.notes[0]
+    return Reply(name, "wrong", note, [message(question, note, details)], opened=locker, known=known, details=details)
 
 
-def _close(name, question):
+def _close(name: str, question: Question) -> Reply:
     """The reply to an answer that rounding has made wrong, or seems to have."""
-    allowed = "" if question.get("tolerance") is None else f" the {question['tolerance']:g} that is"
+    allowed = "" if question.tolerance is None else f" the {question.tolerance:g} that is"
     said = (
         f"This is close, but off by more than{allowed} allowed. Was it rounded too far, here or on the way? "
         "Keep all digits until the end."
@@ -303,34 +342,27 @@ def _close(name, question):
     return Reply(name, "wrong", "rounded too far", [said])
 
 
-def _messages(question, case):
-    """What is said of a mistake: of several that lead to one answer the first, since each of them is true of it."""
-    note, details = case["notes"][0]
-    return [message(question, note, details)]
-
-
-def _case_of(question, reading, content):
-    """Which of the cases in a locker an answer is: the nearest, if that is near enough; or ``None``."""
-    if content is None:
+def _known_in(question: Question, reading: Reading, locker: Locker | None) -> KnownAnswer | None:
+    """Which of the answers of a locker this is: the nearest, if that is near enough; or ``None``."""
+    if locker is None or not locker.answers:
         return None
-    nearest, least = None, None
-    for case in content["cases"]:
-        far = _far(question, reading, case)
-        if least is None or far < least:
-            nearest, least = case, far
-    return nearest if least <= 1 else None
+    far = [_far(question, reading, known) for known in locker.answers]
+    least = min(far)
+    return locker.answers[far.index(least)] if least <= 1 else None
 
 
-def _far(question, reading, case):
-    if not case.get("numbers"):
-        return 0
-    return distance(question, canonical(question, reading), [MP.mpf(number) for number in case["numbers"]])
+def _far(question: Question, reading: Reading, known: KnownAnswer) -> Number:
+    if not known.numbers:
+        return MP.zero
+    return distance(question, canonical(question, reading), [MP.mpf(number) for number in known.numbers])
 
 
-def _not_known(name, question, plain, reading, find, content):
+def _not_known(
+    name: str, question: Question, plain: Plain, reading: Reading, find: Find, locker: Locker | None
+) -> Reply:
     """The reply to an answer that is neither right nor a mistake of the catalogue."""
-    if content is not None and any(
-        case["outcome"] == "correct" and _far(question, reading, case) <= CLOSE for case in content["cases"]
+    if locker is not None and any(
+        known.outcome == "correct" and _far(question, reading, known) <= CLOSE for known in locker.answers
     ):
         return _close(name, question)
     decimals = _decimals(question, plain, reading)
@@ -338,8 +370,8 @@ def _not_known(name, question, plain, reading, find, content):
     precise, rounded = _precision(plain) if decimals else (True, False)
     near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
     others = [] if rounded else list(other_readings(question, reading))
-    found = _each(find, near + [fingerprint(question, turned) for _, _, turned in others])
-    if near and found.pop(0) is not None:
+    lockers = _each(find, near + [fingerprint(question, turned) for _, _, turned in others])
+    if near and lockers.pop(0) is not None:
         return Reply(
             name,
             "wrong",
@@ -349,21 +381,20 @@ def _not_known(name, question, plain, reading, find, content):
                 decimals,
             ],
         )
-    for (slip, why, turned), content in zip(others, found):
-        case = _case_of(question, turned, content)
-        if case and case["outcome"] != "correct":
-            said = _messages(question, case)[0]
-            reply = Reply(name, "wrong", f"{slip}, and {case['notes'][0][0]}", [f"Two things at once: {why} {said}"])
-            reply.details = case["notes"][0][1]
-            return reply
+    for (slip, why, turned), of_slip in zip(others, lockers):
+        known = _known_in(question, turned, of_slip)
+        if known and known.outcome != "correct":
+            note, details = known.notes[0]
+            said = f"Two things at once: {why} {message(question, note, details)}"
+            return Reply(name, "wrong", f"{slip}, and {note}", [said], details=details)
     # Whoever has rounded right work hears of that first, and not that the value is wrong.
     few = "" if decimals else _few_digits(question, plain)
     right = what_can_be_said(question, plain)
-    said = [decimals, few, f"If not: {right[:1].lower()}{right[1:]}" if few and right else right]
-    return Reply(name, "wrong", "", [" ".join(filter(None, said))])
+    lines = [decimals, few, f"If not: {right[:1].lower()}{right[1:]}" if few and right else right]
+    return Reply(name, "wrong", "", [" ".join(filter(None, lines))])
 
 
-def _each(find, texts):
+def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
     """What is known of each fingerprint. The slow hash lets other threads run: they are looked up at once."""
     if len(texts) > 1:
         with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
@@ -371,7 +402,7 @@ def _each(find, texts):
     return [find(text) for text in texts]
 
 
-def other_readings(question, reading):
+def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:
     """The answer with one common slip undone, by what is said of the slip: it may be a known mistake then."""
     if reading.text is None:
         for name, (said, undo) in kind_of_values(question).slips.items():
@@ -380,20 +411,20 @@ def other_readings(question, reading):
                 yield name, said, Reading(numbers)
 
 
-def _decimals(question, plain, reading):
-    exact = question.get("tolerance") is None and reading.text is None
+def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
+    exact = question.tolerance is None and reading.text is None
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
     exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
     return f"It holds decimal fractions, but the question asks for an exact answer: write {exact_forms}."
 
 
-def _few_digits(question, plain):
+def _few_digits(question: Question, plain: Plain) -> str:
     """What is said of numbers that are given to fewer places than the answer may be off by: they may be rounded.
 
     It follows from what the student wrote and from the tolerance alone, so it tells nothing of the right answer.
     """
-    if question.get("tolerance") is None:
+    if question.tolerance is None:
         return ""
     absolute, relative = (float(part) for part in tolerances(question))
     for node in plain["nodes"]:
@@ -409,14 +440,14 @@ def _few_digits(question, plain):
     return ""
 
 
-def _coarse(question, reading):
+def _coarse(question: Question, reading: Reading) -> str:
     """What is said of numbers that do not fit together, and would if fewer of their digits counted."""
-    if question.get("tolerance") is None or fault({**question, "tolerance": COARSE}, reading):
+    if question.tolerance is None or fault(replace(question, tolerance=COARSE), reading):
         return ""
     return "The numbers nearly fit together. Were they rounded too far? Keep all digits until the end."
 
 
-def _precision(plain):
+def _precision(plain: Plain) -> tuple[bool, bool]:
     """Of the decimal fractions of an answer: whether each is plainly exact, and whether one of them is plainly rounded.
 
     >>> numbers = lambda *texts: {"nodes": [["float", text] for text in texts]}
@@ -435,11 +466,11 @@ def _precision(plain):
     return precise, rounded
 
 
-def what_can_be_said(question, plain):
+def what_can_be_said(question: Question, plain: Plain) -> str:
     """What a wrong answer has right, so that its author does not look for the fault there."""
     said = kind_of_values(question).wrong
     named = {node[1] for node in plain["nodes"] if node[0] == "symbol"}
-    missing = [symbol for symbol in question.get("symbols", {}) if not {symbol, *spellings(symbol)} & named]
-    if question.get("every symbol") and named and missing:
+    missing = [symbol for symbol in question.symbols if not {symbol, *spellings(symbol)} & named]
+    if question.every_symbol and named and missing:
         said += f" It holds no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
     return said

@@ -4,7 +4,10 @@ import html
 import os
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
+
+from .fields import Json
+from .question import KnownAnswer, Locker
 
 #: Each outcome with its sign and its word: the word is for those who do not see the sign or its colour.
 OUTCOMES = {
@@ -52,8 +55,10 @@ class Reply:
         What the message of the mistake needed to know.
     sibling : str
         The sibling of the question that earns the rest of its points; empty where there is none.
-    opened : dict
-        What else the answer opened: hints, the place of the worked solution.
+    opened : Locker or None
+        What else the answer opened: the place of the worked solution, hints for other questions.
+    known : KnownAnswer or None
+        The mistake of the question that it is, with its hints.
     """
 
     def __init__(
@@ -63,7 +68,9 @@ class Reply:
         note: str = "",
         messages: Iterable[str] = (),
         solution: str = "",
-        opened: dict | None = None,
+        opened: Locker | None = None,
+        known: KnownAnswer | None = None,
+        details: Mapping[str, Json] | None = None,
     ) -> None:
         self.question = question
         self.outcome = outcome
@@ -75,17 +82,17 @@ class Reply:
         self.tried: list[str] = []
         self.help = ""
         self.sibling = ""
-        self.details: dict = {}
-        self.opened = opened or {}
+        self.details = details or {}
+        self.opened, self.known = opened, known
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         _, word, _ = OUTCOMES[self.outcome]
         lines = [f"{word}: {self.question}", *map(plain_text, self.messages)]
         if self.solution:
             lines.append("The worked solution is shown where HTML can be.")
         return "\n".join(lines)
 
-    def _repr_html_(self):
+    def _repr_html_(self) -> str:
         sign, word, colour = OUTCOMES[self.outcome]
         name = html.escape(self.question)
         tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
@@ -113,12 +120,12 @@ class Reply:
 # --- mathematics --------------------------------------------------------------------------------
 
 
-def tex_is_typeset():
+def tex_is_typeset() -> bool:
     """Whether whatever shows this notebook typesets TeX in HTML: VS Code, Colab and marimo do not."""
     return not ("VSCODE_PID" in os.environ or {"google.colab", "marimo"} & set(sys.modules))
 
 
-def mathml(source, display="inline"):
+def mathml(source: str, display: str = "inline") -> str:
     """A formula as MathML, which every browser shows by itself; TeX in a box where there is no converter.
 
     >>> mathml("x_1")[:40], "TeX" in mathml("x_1")
@@ -127,12 +134,12 @@ def mathml(source, display="inline"):
     try:
         from latex2mathml.converter import convert
 
-        return convert(source, display=display)
+        return str(convert(source, display=display))
     except Exception:  # no converter, or one that does not know a command: a reply is never lost for that
         return f"<code>{html.escape(source)}</code>"
 
 
-def for_this_front_end(page):
+def for_this_front_end(page: str) -> str:
     """The HTML of a worked solution, with its formulas in the way in which they will be seen."""
     if tex_is_typeset():
         return page
@@ -144,7 +151,9 @@ def for_this_front_end(page):
 MARKED = re.compile(r"`([^`]+)`|\$([^$]+)\$|(?<![\w)])\*([^*\s][^*]*)\*(?!\w)")
 
 
-def to_html(message, formula=lambda source: f'<span class="math">${html.escape(source)}$</span>'):
+def to_html(
+    message: str, formula: Callable[[str], str] = lambda source: f'<span class="math">${html.escape(source)}$</span>'
+) -> str:
     """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed.
 
     Parameters
@@ -170,7 +179,7 @@ def to_html(message, formula=lambda source: f'<span class="math">${html.escape(s
     return "".join([*pieces, html.escape(message[place:])])
 
 
-def plain_text(message):
+def plain_text(message: str) -> str:
     """The message for a terminal: a direction cosine matrix is written as in code, ``A_C_N``.
 
     >>> plain_text(r'This is ${}^{N}\\mathbf{C}^{A}$: *transpose* it.')
@@ -179,7 +188,7 @@ def plain_text(message):
     return MARKED.sub(lambda found: found[1] or found[3] or _formula_as_text(found[2]), message)
 
 
-def _formula_as_text(source):
+def _formula_as_text(source: str) -> str:
     source = re.sub(r"\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?", r"\1_C_\2", source)
     source = re.sub(r"\\hat\{(\w)\}_(\w)", r"\1_\2", source)
     return re.sub(r"\\math\w+\{(\w+)\}", r"\1", source).replace("\\", "")

@@ -16,6 +16,8 @@ import hashlib
 import hmac
 import json
 import zlib
+from collections.abc import Iterable
+from typing import Any
 
 #: Rounds of the slow hash (PBKDF2 with HMAC-SHA-256, RFC 8018).
 ROUNDS = 40_000
@@ -30,12 +32,12 @@ MISTAKE = 4
 NO_PAGE = 0xFF
 
 
-def slow_key(salt, fingerprint):
+def slow_key(salt: str, fingerprint: str) -> bytes:
     """Stretch a fingerprint into a key of 32 bytes."""
     return pbkdf2(fingerprint.encode("utf8"), salt.encode("ascii"), ROUNDS)
 
 
-def portable_pbkdf2(password, salt, rounds):
+def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
     """PBKDF2 with HMAC-SHA-256, one block, for a Python that was built without OpenSSL.
 
     In a browser's Python the standard library has no ``pbkdf2_hmac``.
@@ -45,7 +47,7 @@ def portable_pbkdf2(password, salt, rounds):
     """
     inner, outer = (hashlib.sha256(bytes(byte ^ pad for byte in _block(password))) for pad in (0x36, 0x5C))
 
-    def authenticate(message):
+    def authenticate(message: bytes) -> bytes:
         first, second = inner.copy(), outer.copy()
         first.update(message)
         second.update(first.digest())
@@ -59,13 +61,13 @@ def portable_pbkdf2(password, salt, rounds):
     return total.to_bytes(32, "big")
 
 
-def _block(password):
+def _block(password: bytes) -> bytes:
     return (hashlib.sha256(password).digest() if len(password) > 64 else password).ljust(64, b"\0")
 
 
 if hasattr(hashlib, "pbkdf2_hmac"):
 
-    def pbkdf2(password, salt, rounds):
+    def pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
         return hashlib.pbkdf2_hmac("sha256", password, salt, rounds)
 else:
     pbkdf2 = portable_pbkdf2
@@ -74,24 +76,26 @@ else:
 # --- lockers: 16 bytes each, 20 characters in the file ------------------------------------------
 
 
-def locker(key, outcome, mistakes=(), page=NO_PAGE, page_key=b""):
+def locker(
+    key: bytes, outcome: int, mistakes: Iterable[bytes] = (), page: int = NO_PAGE, page_key: bytes = b""
+) -> bytes:
     """Make a locker: one of two outcomes, and up to two short names of mistakes, or a page with its key."""
     inside = bytes([outcome, page]) + (b"".join(mistakes).ljust(PAGE_KEY, b"\0") if page == NO_PAGE else page_key)
     hidden = _mask(inside, key, "locker")
     return _name(key) + hidden + _tag(hidden, key, "locker")[:TAG]
 
 
-def pack(lockers):
+def pack(lockers: Iterable[bytes]) -> str:
     """The text of some lockers, in an order that tells nothing."""
     return _text(b"".join(sorted(lockers)))
 
 
-def count_of(lockers):
+def count_of(lockers: str) -> int:
     """How many lockers there are in the text of some."""
     return len(base64.b85decode(lockers)) // LOCKER
 
 
-def filled_up(lockers, count, secret):
+def filled_up(lockers: str, count: int, secret: str) -> str:
     """The text of some lockers with empty ones among them, ``count`` in all: only the secret tells them apart.
 
     >>> few = pack([locker(bytes(32), 0)])
@@ -105,7 +109,7 @@ def filled_up(lockers, count, secret):
     return pack(full + empty)
 
 
-def open_locker(lockers, key):
+def open_locker(lockers: str, key: bytes) -> tuple[int, int | None, bytes] | None:
     """Open the locker of a key: its outcome, its page, and the key of that; or give ``None``.
 
     A page tells the mistakes itself. Where there is none, it is ``None``, and what stands in place of its key says
@@ -127,7 +131,7 @@ def open_locker(lockers, key):
     return None
 
 
-def mistakes_in(inside):
+def mistakes_in(inside: bytes) -> list[bytes]:
     """The short names of the mistakes in a locker without a page.
 
     >>> mistakes_in(b"abcd" + bytes(4)), mistakes_in(bytes(8))
@@ -137,14 +141,14 @@ def mistakes_in(inside):
     return [name for name in names if any(name)]
 
 
-def _name(key):
+def _name(key: bytes) -> bytes:
     return _derive(key, "name of the locker")[:NAME]
 
 
 # --- pages --------------------------------------------------------------------------------------
 
 
-def seal(content, key):
+def seal(content: object, key: bytes) -> str:
     """Lock up JSON content as a page."""
     data = zlib.compress(json.dumps(content, ensure_ascii=False, sort_keys=True).encode("utf8"), 9)
     data = len(data).to_bytes(4, "big") + data
@@ -153,7 +157,7 @@ def seal(content, key):
     return _text(hidden + _tag(hidden, key, "page")[:PAGE_TAG])
 
 
-def unseal(sealed, key):
+def unseal(sealed: str, key: bytes) -> Any:
     """Open what :func:`seal` locked.
 
     Raises
@@ -169,7 +173,7 @@ def unseal(sealed, key):
     return json.loads(zlib.decompress(data[4 : 4 + int.from_bytes(data[:4], "big")]))
 
 
-def shorten(text, words):
+def shorten(text: str, words: str) -> str:
     """A text as what differs from some words that its reader has, too.
 
     >>> words = "It is twice the force times the arm."
@@ -180,24 +184,24 @@ def shorten(text, words):
     return _text(packer.compress(text.encode("utf8")) + packer.flush())
 
 
-def lengthen(short, words):
+def lengthen(short: str, words: str) -> str:
     """The text of which :func:`shorten` made a short one."""
     unpacker = zlib.decompressobj(-15, zdict=words.encode("utf8"))
     return (unpacker.decompress(base64.b85decode(short)) + unpacker.flush()).decode("utf8")
 
 
-def _derive(key, purpose):
+def _derive(key: bytes, purpose: str) -> bytes:
     return hmac.digest(key, purpose.encode("utf8"), "sha256")
 
 
-def _mask(data, key, purpose):
+def _mask(data: bytes, key: bytes, purpose: str) -> bytes:
     stream = hashlib.shake_256(_derive(key, f"mask of the {purpose}")).digest(len(data))
     return bytes(a ^ b for a, b in zip(data, stream))
 
 
-def _tag(hidden, key, purpose):
+def _tag(hidden: bytes, key: bytes, purpose: str) -> bytes:
     return hmac.digest(_derive(key, f"tag of the {purpose}"), hidden, "sha256")[:16]
 
 
-def _text(data):
+def _text(data: bytes) -> str:
     return base64.b85encode(data).decode("ascii")

@@ -6,7 +6,7 @@ edition, tables 1 to 8).
 
 import re
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .evaluate import MP
 
@@ -45,7 +45,7 @@ class Unit(NamedTuple):
     exponents: tuple
 
 
-def unit(text):
+def unit(text: str) -> Any:
     """Read a unit.
 
     Raises

@@ -9,8 +9,11 @@ import json
 import re
 import sys
 import zipfile
+from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+
+from .fields import Fields, by_name, text, whole
 
 #: The file of a package: its name and its version.
 WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
@@ -28,7 +31,7 @@ class ArchiveRefused(ValueError):
     """The archive is older than the folder, or the folder is of a newer coursework; the message says which."""
 
 
-def manifest(files):
+def manifest(files: Mapping[str, bytes]) -> str:
     """The manifest of files by name, as text.
 
     >>> json.loads(manifest({"README.txt": b"Answer in place of the dots."}))
@@ -37,11 +40,11 @@ def manifest(files):
     return _as_text({name: digest_of(name, data) for name, data in files.items()})
 
 
-def _as_text(digests):
+def _as_text(digests: Mapping[str, str]) -> str:
     return json.dumps({"format": FORMAT, "files": digests}, indent=0, sort_keys=True) + "\n"
 
 
-def digest_of(name, data):
+def digest_of(name: str, data: bytes) -> str:
     """A digest of what stands in a file; of a notebook, of what its cells say: to run it is not to change it."""
     if name.endswith(".ipynb"):
         try:
@@ -52,7 +55,7 @@ def digest_of(name, data):
     return hashlib.sha256(data).hexdigest()[:32]
 
 
-def update(archive_file, folder="."):
+def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     """Unpack a newer archive of exercises beside a student's work.
 
     What nobody has changed since it was handed out is replaced. What somebody has changed is left as it is, and what
@@ -120,7 +123,7 @@ def update(archive_file, folder="."):
     return said
 
 
-def _place(entry):
+def _place(entry: str) -> str:
     """Where an entry of the archive goes: sealed questions into a folder of their own, other files into the folder."""
     path = Path(entry)
     if path.parent.name == "variants":
@@ -128,46 +131,52 @@ def _place(entry):
     return f"{SEALED}{path.name}" if path.parent.name == "sealed" else path.name
 
 
-def _is_installed(name):
-    wheel = WHEEL.fullmatch(name)
+def _package_in(file: str) -> tuple[str, str]:
+    """The package and its version, from the name of its wheel."""
+    name, number, *_ = file.split("-")
+    return name, number
+
+
+def _is_installed(file: str) -> bool:
+    name, number = _package_in(file)
     try:
-        return version(wheel["name"]) == wheel["version"]
+        return version(name) == number
     except PackageNotFoundError:
         return False
 
 
-def _order(number):
+def _order(number: str) -> list[int]:
     """Versions in their order: those of our packages are numbers, and ``post`` with a number."""
     return [int(part) for part in re.findall(r"\d+", number)]
 
 
-def _older(folder, name):
+def _older(folder: Path, name: str) -> list[Path]:
     """The files of ``folder`` that hold another version of the package in the file ``name``."""
-    new = WHEEL.fullmatch(name)
+    package, new = _package_in(name)
     found = []
     for path in sorted(folder.glob("*.whl")):
-        present = WHEEL.fullmatch(path.name)
-        if present and present["name"] == new["name"] and path.name != name:
-            if _order(present["version"]) > _order(new["version"]):
+        if WHEEL.fullmatch(path.name) and _package_in(path.name)[0] == package and path.name != name:
+            present = _package_in(path.name)[1]
+            if _order(present) > _order(new):
                 raise ArchiveRefused(
-                    f"The archive is older than this folder: it has version {new['version']} of the package, "
-                    f"and here is {present['version']}. Nothing was changed."
+                    f"The archive is older than this folder: it has version {new} of the package, "
+                    f"and here is {present}. Nothing was changed."
                 )
             found.append(path)
     return found
 
 
-def _with_new_packages(text, wheels):
+def _with_new_packages(text: str, wheels: Iterable[str]) -> str:
     """A list of requirements that names the new files; other lines are the student's and stay."""
     for name in wheels:
-        package = re.escape(WHEEL.fullmatch(name)["name"])
+        package = re.escape(_package_in(name)[0])
         text, count = re.subn(rf"^(\./)?{package}-[^-]+-\S+\.whl", f"./{name}", text, flags=re.M)
         if not count:
             text = f"./{name}\n{text}"
     return text
 
 
-def _put_beside(place, data, before):
+def _put_beside(place: Path, data: bytes, before: Mapping[str, str]) -> str:
     """Write a new file beside the one that a student has changed, and give its name."""
     number = 1
     while (beside := place.with_name(f"{place.stem}-new-{number}{place.suffix}")).exists():
@@ -179,16 +188,16 @@ def _put_beside(place, data, before):
     return beside.name
 
 
-def _handed_out(folder):
+def _handed_out(folder: Path) -> dict[str, str]:
     """What was handed out into a folder, by name: the digest of each file. Nothing, if that was before manifests."""
     try:
-        found = json.loads((folder / MANIFEST).read_text("utf8"))
-        number, files = found["format"], dict(found["files"])
-    except (OSError, ValueError, KeyError, TypeError):
+        about = Fields(json.loads((folder / MANIFEST).read_text("utf8")), MANIFEST)
+        format, files = about.get("format", whole), about.get("files", by_name(text))
+    except (OSError, ValueError):
         return {}  # what is not known to be as it was handed out is the student's
-    if number != FORMAT:
+    if format != FORMAT:
         raise ArchiveRefused(
-            f"{MANIFEST} in this folder is of format {number}, and the coursework that is installed reads {FORMAT}: "
+            f"{MANIFEST} in this folder is of format {format}, and the coursework that is installed reads {FORMAT}: "
             "install the package that lies in this folder, and run this again. Nothing was changed."
         )
     return files

@@ -15,9 +15,10 @@ import json
 import re
 import zlib
 from collections.abc import Iterable, Mapping
-from typing import Any
 
-from .identity import identity, plain_identity
+from .fields import Json, pair, text
+from .identity import plain_identity
+from .question import Question, Variant
 
 #: So many siblings of a question count: with all of them, somebody else's answer would count, too.
 SIBLINGS = 2
@@ -40,21 +41,21 @@ def variant_of(student: str, name: str, count: int, edition: str = "") -> int:
     return int.from_bytes(digest[:8], "big") % count
 
 
-def names_of_variants(questions: Iterable[Mapping[str, Any]]) -> list[str]:
+def names_of_variants(variants: Iterable[Variant]) -> list[str]:
     """What variants are called, whatever their numbers: it follows from what is given and shown in each.
 
     Parameters
     ----------
-    questions : iterable of dict
-        The public parts of all variants of a question, in their order.
+    variants : iterable of Variant
+        All variants of a question, in their order.
 
-    >>> names_of_variants([{"given": {"arm": 2}}, {"given": {"arm": 3}}]) == names_of_variants(
-    ...     [{"given": {"arm": 3}}, {"given": {"arm": 2}}])[::-1]
+    >>> short, long = Variant(given={"arm": 2}), Variant(given={"arm": 3})
+    >>> names_of_variants([short, long]) == names_of_variants([long, short])[::-1]
     True
     """
     names: list[str] = []
-    for question in questions:
-        said = {**question.get("shown", {}), **question.get("given", {})}
+    for one in variants:
+        said = {**one.shown, **one.given}
         name = hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:12]
         while name in names:  # two that differ in nothing that is shown
             name += "+"
@@ -62,10 +63,10 @@ def names_of_variants(questions: Iterable[Mapping[str, Any]]) -> list[str]:
     return names
 
 
-def numbers_of_variants(student: str, name: str, question: Mapping[str, Any], count: int) -> list[int]:
+def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -> list[int]:
     """The numbers of all variants in a student's own order: first the student's own, then its siblings.
 
-    A question that names its variants gives them by these names (rendezvous hashing): each student has an order of all
+    A course that names its variants gives them by these names (rendezvous hashing): each student has an order of all
     names that there could be, so that one that is taken out moves only those who had it, to the one that came next.
     Without names the number follows from how many there are, and all others from it.
 
@@ -74,11 +75,11 @@ def numbers_of_variants(student: str, name: str, question: Mapping[str, Any], co
     student : str
         Who one is; nobody in particular has the order in which the variants stand.
     name : str
-    question : dict
-        The public part of the question.
+    variant : Variant
+        One of them.
     count : int
     """
-    edition, names = question.get("edition", ""), question.get("names")
+    edition, names = variant.edition, variant.names
     student = plain_identity(student)
     if not names or not student:
         first = variant_of(student, name, count, edition)
@@ -90,10 +91,10 @@ def numbers_of_variants(student: str, name: str, question: Mapping[str, Any], co
     return sorted(range(count), key=rank)
 
 
-def own_variant(name, question, order=0):
-    """The number of the variant of whoever works here, or of one of its siblings."""
-    count = question.get("variants", 1)
-    return numbers_of_variants(identity(), name, question, count)[order % count]
+def own_variant(student: str, name: str, question: Question, order: int = 0) -> int:
+    """The number of a student's variant, or of one of its siblings."""
+    variant = question.variant or Variant()
+    return numbers_of_variants(student, name, variant, variant.count)[order % variant.count]
 
 
 def siblings_of(name: str, count: int) -> list[str]:
@@ -105,7 +106,7 @@ def siblings_of(name: str, count: int) -> list[str]:
     return [f"{name}/sibling" + (f"-{order}" if order > 1 else "") for order in range(1, min(SIBLINGS + 1, count))]
 
 
-def without_sibling(name):
+def without_sibling(name: str) -> tuple[str, int]:
     """The question that a name means, and which of its siblings: 0 is the student's own variant.
 
     >>> without_sibling('levers/see-saw/sibling-2'), without_sibling('levers/see-saw')
@@ -115,7 +116,7 @@ def without_sibling(name):
     return (found["question"], int(found["order"] or 1)) if found else (name, 0)
 
 
-def shown(text, written):
+def shown(text: str, written: Mapping[str, str]) -> str:
     """The text of a question with what is given in its places.
 
     >>> shown("A force of {{force}} N", {"force": "20"})
@@ -126,30 +127,31 @@ def shown(text, written):
     return text
 
 
-def image(picture, alt):
+def image(picture: str, alt: str) -> str:
     """A picture, given as SVG, as Markdown: on white paper of its own, with its text for those who do not see it."""
-    width = re.search(r'width="(\S+)"', picture)[1]
+    (width,) = re.findall(r'width="(\S+)"', picture)[:1]
     data = base64.b64encode(picture.encode("utf8")).decode("ascii")
     # As HTML: Markdown readers that are careful refuse this kind of address in an image of their own.
     return f'<p><img alt="{html.escape(alt)}" width="{width}" src="data:image/svg+xml;base64,{data}"></p>'
 
 
-def packed(picture, alt):
+def packed(picture: str, alt: str) -> str:
     """A picture as short text: pictures are most of what the variants of a question differ in."""
     return base64.b85encode(zlib.compress(json.dumps([picture, alt]).encode("utf8"), 9)).decode("ascii")
 
 
-def text_of(question):
-    """The whole text of a sealed question that has variants, with its picture.
+def text_of(variant: Variant) -> str:
+    """The whole text of a question that has variants, with its picture.
 
-    >>> lever = {"text": "{{picture}} Give {{arm}}.", "shown": {"arm": "2"}, "picture": packed('<svg width="9">', "Up")}
-    >>> print(text_of(lever))
+    >>> picture = packed('<svg width="9">', "Up")
+    >>> print(text_of(Variant(text="{{picture}} Give {{arm}}.", shown={"arm": "2"}, picture=picture)))
     <p><img alt="Up" width="9" src="data:image/svg+xml;base64,PHN2ZyB3aWR0aD0iOSI+"></p> Give 2.
     """
-    written = dict(question.get("shown", {}))
-    if "picture" in question:
-        written["picture"] = image(*json.loads(zlib.decompress(base64.b85decode(question["picture"]))))
-    return shown(question.get("text", ""), written)
+    written = dict(variant.shown)
+    if variant.picture:
+        picture, alt = pair(text)(json.loads(zlib.decompress(base64.b85decode(variant.picture))), "A picture")
+        written["picture"] = image(picture, alt)
+    return shown(variant.text, written)
 
 
 class Given:
@@ -160,45 +162,22 @@ class Given:
     (20, 20)
     """
 
-    def __init__(self, text, parameters):
+    def __init__(self, text: str, parameters: Mapping[str, Json]) -> None:
         self._text, self._parameters = text, dict(parameters)
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Json:
         return self._parameters[name]
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Json:
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._parameters:
             raise AttributeError(f"This question gives {', '.join(self._parameters)}, and no {name}.")
         return self._parameters[name]
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         text = re.sub(r'<p><img alt="([^"]*)"[^>]*></p>', lambda found: html.unescape(found[1]), self._text)
         return re.sub(r"[*`$]", "", text)
 
-    def _repr_markdown_(self):
+    def _repr_markdown_(self) -> str:
         return self._text
-
-
-def variant(name: str) -> Given:
-    """Show your variant of a question, and give its numbers.
-
-    Parameters
-    ----------
-    name : str
-        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
-
-    Returns
-    -------
-    Given
-
-    Raises
-    ------
-    NoSuchQuestion
-        If the name is misspelt.
-    """
-    from .questions import find_question
-
-    question = find_question(name)
-    return Given(text_of(question), question.get("given", {}))

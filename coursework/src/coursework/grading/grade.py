@@ -14,6 +14,7 @@ import json
 import platform
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,15 +23,15 @@ from ..checking.identity import plain_identity
 from ..checking.plugins import kinds
 from .execution.cluster_keys import demand_keys
 from .judging import marking
-from .judging import secret as in_secret
-from .judging.cases import Contracts, changed_since, variants_of
+from .judging.cases import Contracts, answered, changed_since, variants_of
 from .judging.judge import Judge
 from .judging.ledger import APPEALS, DECISIONS, Ledger, Standing, appeals_open, with_decisions
 from .judging.secret import secret_beside
+from .record import FORMAT, Answer, Cell, Record, Remembered, RunNotebook, Superseded
 from .reporting.laboratory import Laboratory, Policies
-from .store import FORMAT, REFUSED, Store, as_text, write
+from .store import REFUSED, Store, as_text, write
 from .submissions import intake
-from .submissions.identity import BadRoster, Roster
+from .submissions.roster import BadRoster, Roster
 from .tables import in_a_line, lines, number
 from .versions import software
 from .workers import processors, side_by_side
@@ -276,11 +277,14 @@ def grade(
             of_student, cases = marking.of_student(asked, one.student, old, contracts)
             record = record_of(one, results, key(one), of_student, limits)
             # By whose mending nobody is to lose, nobody loses who handed the same answer in again.
-            marks = old["marks"] if old else {}
-            record["marks"] = {name: mark for name, mark in marks.items() if _is_same(old, record, name)}
-            record["cases"] = {name: case.answered(of_student[name]).as_json() for name, case in cases.items()}
+            marks = old.marks if old else {}
+            record = replace(
+                record,
+                marks={name: mark for name, mark in marks.items() if _is_same(old, record, name)},
+                cases={name: answered(case, of_student[name]) for name, case in cases.items()},
+            )
             store.save(marked(record, judge, standing, policies))
-            return order, record["notebooks"][0]["isolation"]
+            return order, record.notebooks[0].isolation
 
         progress = _Progress(len(waiting), show)
         finished = (
@@ -371,7 +375,7 @@ FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
 
 def _demand_own_numbers(work, questions, foreign, roster):
     """Numbers follow from who one is: where many say to be somebody else, all would be judged by wrong numbers."""
-    varied = {name for name, asked in questions.items() if any("others" in one for one in asked.values())}
+    varied = {name for name, asked in questions.items() if any(len(variants) > 1 for variants in asked.values())}
     saying = sum(bool(notebook.says) for one in work if one.assignment in varied for notebook in one.notebooks)
     wrong = [(one, notebook) for one, notebook in foreign if one.assignment in varied]
     if len(wrong) <= max(FEW_FOREIGN, SHARE_FOREIGN * saying):
@@ -398,13 +402,13 @@ MANY_OTHER_NUMBERS = 0.1
 def _say_other_numbers(store, work, questions, show):
     """Say it where many answers are right for other numbers than those that their authors are believed to have had."""
     for assignment, asked in questions.items():
-        varied = {name for name, question in asked.items() if "others" in question}
+        varied = {name for name, variants in asked.items() if len(variants) > 1}
         given = other = 0
         for one in work:
             record = store.read(one.student, assignment) if varied and one.assignment == assignment else None
-            for name, mark in record["marks"].items() if record else ():
-                given += name in varied and mark["outcome"] != "not attempted"
-                other += mark["note"] == "other numbers"
+            for name, mark in record.marks.items() if record else ():
+                given += name in varied and mark.outcome != "not attempted"
+                other += mark.note == "other numbers"
         if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
             print(
                 f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for other numbers than "
@@ -435,10 +439,10 @@ def _put_renamed_aside(store, work, ledger, dry_run=False):
     present = {(one.student, one.assignment) for one in work}
     known, absent = set(), []
     for record in store.all():
-        known.add((record["student"], record["assignment"]))
-        if (record["student"], record["assignment"]) not in present:
-            files = {(notebook["file"], notebook["sha256"]) for notebook in record["notebooks"]}
-            absent.append((record["student"], record["assignment"], files))
+        known.add((record.student, record.assignment))
+        if (record.student, record.assignment) not in present:
+            files = {(notebook.file, notebook.sha256) for notebook in record.notebooks}
+            absent.append((record.student, record.assignment, files))
     owners = {}
     for one in work if absent else ():
         if (one.student, one.assignment) not in known:
@@ -478,11 +482,11 @@ def said_of_people(store, standing):
     """What waits for people beside undecided answers: appeals, and decisions on what has changed since."""
     contracts, appeals, changed = Contracts(store.folder), [], []
     for record in store.all():
-        appeals += [record["student"]] * len(appeals_open(record))
-        for name in record["marks"]:
-            decided = standing.decisions.get((record["student"], record["assignment"], name))
+        appeals += [record.student] * len(appeals_open(record))
+        for name in record.marks:
+            decided = standing.decisions.get((record.student, record.assignment, name))
             if changed_since(decided, record, contracts):
-                changed.append(record["student"])
+                changed.append(record.student)
     for names, what, shown in (
         (appeals, ("appeal is open", "appeals are open"), "with an open appeal"),
         (
@@ -500,12 +504,12 @@ def said_of_people(store, standing):
 def _say_guessable(questions, show):
     """Say which points a script could have guessed: whoever tries answers in the check earns them."""
     for assignment, asked in questions.items():
-        worth = sum(question["worth"] for question in asked.values())
-        cheap = {name: question for name, question in asked.items() if question["guessable"] is not None}
+        worth = sum(first.worth for first, *_ in asked.values())
+        cheap = {name: first for name, (first, *_) in asked.items() if first.guessable is not None}
         if cheap:
-            tries = ", ".join(f"{name} after {question['guessable']} tries" for name, question in sorted(cheap.items()))
+            tries = ", ".join(f"{name} after {contract.guessable} tries" for name, contract in sorted(cheap.items()))
             print(
-                f"{assignment}: {number(sum(question['worth'] for question in cheap.values()))} of {number(worth)} "
+                f"{assignment}: {number(sum(contract.worth for contract in cheap.values()))} of {number(worth)} "
                 f"points were guessed by a script that tries answers ({tries}).",
                 file=show,
             )
@@ -520,15 +524,14 @@ def _is_done(store, one, key):
     # A notebook that this machine could not run is tried again.
     return (
         record is not None
-        and record["key"] == key
-        and not any("given up" in notebook["isolation"] for notebook in record["notebooks"])
+        and record.key == key
+        and not any("given up" in notebook.isolation for notebook in record.notebooks)
     )
 
 
 def _is_same(record, other, name):
     """Whether two records hold the same answer, in whatever cell."""
-    first, second = (one["answers"].get(name, {}).get("plain") for one in (record, other))
-    return first == second
+    return record.answer(name).plain == other.answer(name).plain
 
 
 def key_of(work, asked, limits, weak):
@@ -580,7 +583,7 @@ class _Jobs:
         named = {name for notebook in one.notebooks for name in notebook.named}
         own, _ = marking.of_student(self.questions[one.assignment], one.student, self.before(one), self.contracts)
         asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
-        for_a_person = any(kinds()[question["public"]["kind"]].by_a_person for question in own.values())
+        for_a_person = any(kinds()[asked.contract.question.kind].by_a_person for asked in own.values())
         for part, notebook in enumerate(one.notebooks):
             cells = notebook.cells
             self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
@@ -668,77 +671,80 @@ def record_of(work, results, key, questions, limits):
     notebooks = []
     for notebook, result in zip(work.notebooks, results, strict=True):
         notebooks.append(
-            {
-                "file": notebook.file,
-                "sha256": notebook.digest,
-                "finished": result["finished"],
-                "cells": result["cells"],
-                "notes": result["notes"],
-                "tried": result.get("tried", []),
-                "beside": [one.name for one in notebook.beside],
-                "unknown questions": result["unknown questions"],
-                "runs": result["runs"],
-                "seed": result["seed"],
-                "isolation": result["isolation"],
-                "late": notebook.late,
-                "handed in": notebook.handed_in,
-            }
+            RunNotebook(
+                notebook.file,
+                notebook.digest,
+                result["finished"],
+                tuple(Cell.from_json(cell, notebook.file) for cell in result["cells"]),
+                tuple(result["notes"]),
+                tuple(result.get("tried", ())),
+                tuple(one.name for one in notebook.beside),
+                tuple(result["unknown questions"]),
+                result["runs"],
+                result["seed"],
+                result["isolation"],
+                notebook.late,
+                notebook.handed_in,
+            )
         )
     known = marking.with_second_chances(questions)
     answers, finished = {}, all(result["finished"] for result in results)
     for name in results[0]["answers"]:
-        given = [result["answers"][name] for result in results]
+        given = [Answer.from_json(result["answers"][name], name) for result in results]
         # Of several notebooks the one that says something; they have no question in common.
-        answers[name] = min(given, key=_says_little)
-        if "secret" in answers[name]:
-            answers[name]["secret"]["calls"] = in_secret.digest(known[name]["secret"])
-    return {
-        "format": FORMAT,
-        "key": key,
-        "student": work.student,
-        "assignment": work.assignment,
-        "identity": work.notebooks[0].identity,
-        "says": sorted({notebook.says for notebook in work.notebooks if notebook.says}),
-        "reply": reply_of(work),
-        "notebooks": notebooks,
-        "superseded": [{"file": notebook.file, "sha256": notebook.digest} for notebook in work.superseded],
-        "software": software(),
-        "limits": vars(limits),
-        "finished": finished,
-        "answers": answers,
-        "remembered": {name: about for notebook in work.notebooks for name, about in notebook.remembered.items()},
-    }
+        answer = min(given, key=_says_little)
+        if answer.secret is not None:
+            answer = replace(answer, secret={**answer.secret, "calls": known[name].secret.digest})
+        answers[name] = answer
+    return Record(
+        work.student,
+        work.assignment,
+        key,
+        work.notebooks[0].identity,
+        tuple(sorted({notebook.says for notebook in work.notebooks if notebook.says})),
+        reply_of(work),
+        tuple(notebooks),
+        tuple(Superseded(notebook.file, notebook.digest) for notebook in work.superseded),
+        software(),
+        vars(limits),
+        finished,
+        answers,
+        {
+            name: Remembered.from_json(about, notebook.file)
+            for notebook in work.notebooks
+            for name, about in notebook.remembered.items()
+        },
+    )
 
 
 def _says_little(answer):
-    blank = answer["outcome"] == "recorded" and answer["plain"]["value"] == ["blank"]
+    blank = answer.outcome == "recorded" and answer.plain["value"] == ["blank"]
     return (
-        ("recorded", "unreadable").index(answer["outcome"]) + 3 * blank
-        if answer["outcome"] in ("recorded", "unreadable")
-        else 2 + 2 * (answer["outcome"] == "missing")
+        ("recorded", "unreadable").index(answer.outcome) + 3 * blank
+        if answer.outcome in ("recorded", "unreadable")
+        else 2 + 2 * (answer.outcome == "missing")
     )
 
 
 def marked(record, judge, standing=None, policies=None):
     """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
-    questions = judge.questions[record["assignment"]]
-    own, cases = marking.of_student(judge.questions[record["assignment"]], record["student"], record, judge.contracts)
-    for question in own.values():
-        for one in (question, question.get("contract"), *question.get("second chances", {}).values()):
+    questions = judge.questions[record.assignment]
+    own, cases = marking.of_student(judge.questions[record.assignment], record.student, record, judge.contracts)
+    for asked in own.values():
+        for one in (asked.contract, asked.before, *asked.second_chances.values()):
             if one is not None:
                 judge.contracts.keep(one)
     found = judge.marks(record)
     marks = {}
-    for name, question in own.items():
-        old = record.get("marks", {}).get(name)
-        old = old and {**old, **old.get("before", {})}
+    for name, asked in own.items():
+        old = record.marks.get(name)
+        old = old and old.judged
         taken_out = cases[name].own.variant not in variants_of(questions[name])
         mark = (policies or Policies()).applied(name, found[name], old, cases[name], taken_out)
         # What the lines of a rubric are worth, where its author said so.
-        rubric = {"rubric": question["rubric"]} if isinstance(question.get("rubric"), dict) else {}
-        marks[name] = {**mark, "title": question["title"], **rubric}
-    cases = {name: case.as_json() for name, case in cases.items()}
-    return with_decisions({**record, "format": FORMAT, "cases": cases, "marks": marks}, standing or Standing())
+        rubric = asked.contract.rubric if isinstance(asked.contract.rubric, dict) else None
+        marks[name] = replace(mark, title=asked.contract.title, rubric=rubric)
+    return with_decisions(replace(record, format=FORMAT, cases=cases, marks=marks), standing or Standing())
 
 
 class _Progress:
@@ -813,7 +819,7 @@ def regrade(out, *, solutions=None, policies=None, dry_run=False, show=None):
     store = Store(out)
     with contextlib.ExitStack() as closing:
         closing.enter_context(store.locked())
-        names = sorted({record["assignment"] for record in store.all()})
+        names = sorted({record.assignment for record in store.all()})
         if not names:
             raise NothingToGrade(f"There are no records in {store.folder}.")
         known = _read(store.folder / COURSE)
@@ -859,17 +865,17 @@ def changed_in(record, again):
     """The questions of which points or outcome are others in a second record."""
     return [
         name
-        for name in again["marks"]
-        if (again["marks"][name]["points"], again["marks"][name]["outcome"])
-        != (record["marks"].get(name, {}).get("points"), record["marks"].get(name, {}).get("outcome"))
+        for name, mark in again.marks.items()
+        if name not in record.marks
+        or (mark.points, mark.outcome) != (record.marks[name].points, record.marks[name].outcome)
     ]
 
 
 def moved_in(record, again):
     """What moved from one record to another, if anything did."""
     changed = changed_in(record, again)
-    points = record["points"], again["points"]
-    return [Moved(record["student"], record["assignment"], *points, changed)] if changed else []
+    points = record.points, again.points
+    return [Moved(record.student, record.assignment, *points, changed)] if changed else []
 
 
 def bring_in_decisions(out, *, show=None):

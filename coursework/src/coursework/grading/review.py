@@ -21,7 +21,7 @@ from tornado import httpserver, ioloop, netutil, web
 from ..authoring.author import to_page
 from ..checking.identity import plain_identity
 from ..checking.variants import text_of
-from .judging.cases import Contracts, changed_since
+from .judging.cases import Contracts, changed_since, questions_in
 from .judging.ledger import (
     LONGEST_WORDS,
     REJECTED,
@@ -95,11 +95,11 @@ class Cluster(NamedTuple):
 
     @property
     def mark(self):
-        return self.members[0]["marks"][self.question]
+        return self.members[0].marks[self.question]
 
     @property
     def answer(self):
-        return self.members[0]["answers"].get(self.question, {"outcome": "missing"})
+        return self.members[0].answer(self.question)
 
 
 class Class:
@@ -122,7 +122,7 @@ class Class:
             for path in sorted(
                 (self.store.folder / "questions").glob("*.json"), key=lambda path: path.stat().st_mtime_ns
             )
-            for name, about in self.store.json_in(path).items()
+            for name, (about, *_) in questions_in(path).items()
         }
         self.contracts = Contracts(self.store.folder)
         self.records = list(self.store.all())
@@ -131,24 +131,22 @@ class Class:
         hints = hints_of(self.records, self.store.work)
         groups = defaultdict(list)
         for record in self.records:
-            for question, mark in record["marks"].items():
-                judged = mark.get("before", mark)
+            for question, mark in record.marks.items():
+                judged = mark.judged
                 # An answer that has a fingerprint is equal to those that share it; another one to its very copies.
-                same = mark["group"] or digest_of_answer(record, question)
+                same = mark.group or digest_of_answer(record, question)
                 # Equal words to other numbers are another answer: each variant has a right answer of its own.
-                groups[record["assignment"], question, mark["version"], judged["outcome"], judged["note"], same].append(
-                    record
-                )
+                groups[record.assignment, question, mark.version, judged.outcome, judged.note, same].append(record)
         self.clusters = {}
         for key, members in groups.items():
             name = hashlib.sha256("\n".join(key).encode()).hexdigest()[:16]
             if int(name, 16) % share[1] == share[0] - 1:
-                found = [(one["student"], said) for one in members for said in hints.get((one["student"], key[1]), ())]
+                found = [(one.student, said) for one in members for said in hints.get((one.student, key[1]), ())]
                 self.clusters[name] = Cluster(name, key[0], key[1], members, found)
 
     def contract(self, cluster):
         """The question by which the answers of a cluster were judged: these students' own variant; or nothing."""
-        return self.contracts.of(cluster.mark["version"]) or {}
+        return self.contracts.of(cluster.mark.version)
 
     def without_names(self, text):
         """A text in which who wrote it, and everybody else in the class, is called by a number."""
@@ -164,17 +162,17 @@ class Class:
         """All that students are called, in records and by themselves."""
         self._known, parts = {}, {}
         for record in self.records:
-            identity = record["identity"]
+            identity = record.identity
             email = identity.get("email", "")
-            called = [record["student"], *(identity.get(kind, "") for kind in ("name", "canvas", "moodle"))]
-            called += [email, email.partition("@")[0], *identity.get("own", ()), *record.get("says", ())]
+            called = [record.student, *(identity.get(kind, "") for kind in ("name", "canvas", "moodle"))]
+            called += [email, email.partition("@")[0], *identity.get("own", ()), *record.says]
             for name in called:
                 if len(name) >= SHORTEST_NAME:
-                    self._known.setdefault(plain_identity(name), self.aliases[record["student"]])
+                    self._known.setdefault(plain_identity(name), self.aliases[record.student])
             # A first name alone, written as a name: `mark` is a word, and Mark is somebody.
             for part in re.findall(r"\w+", identity.get("name", "")):
                 if len(part) >= SHORTEST_NAME and part[0].isupper():
-                    parts.setdefault(part, self.aliases[record["student"]])
+                    parts.setdefault(part, self.aliases[record.student])
 
         def any_of(names):
             longest_first = sorted(names, key=len, reverse=True)
@@ -186,7 +184,7 @@ class Class:
 
     def _shuffled(self):
         """The students in an order that follows from their names, and does not tell them."""
-        students = {record["student"] for record in self.records}
+        students = {record.student for record in self.records}
         return sorted(students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest())
 
     def read(self):
@@ -199,11 +197,11 @@ class Class:
         decided = [self.standing.decision(record, cluster.question) for record in cluster.members]
         if all(decided):
             return "decided", sorted({one.who for one in decided})
-        return cluster.mark.get("before", cluster.mark)["outcome"], []
+        return cluster.mark.judged.outcome, []
 
     def decision_on(self, cluster, record):
         """What was decided last, be it on this answer or on one that was handed in before it."""
-        return self.standing.decisions.get((record["student"], cluster.assignment, cluster.question))
+        return self.standing.decisions.get((record.student, cluster.assignment, cluster.question))
 
     def earlier(self, cluster, record):
         """What has changed since a person decided: ``"answer"``, ``"question"`` or nothing."""
@@ -211,11 +209,11 @@ class Class:
 
     def appeals(self, cluster, record):
         """The appeals against a mark, the first one first."""
-        return self.standing.appeals.get((record["student"], cluster.assignment, cluster.question), ())
+        return self.standing.appeals.get((record.student, cluster.assignment, cluster.question), ())
 
     def waits(self, cluster):
         """How many of a cluster wait for a person: of an open appeal, too."""
-        undecided = cluster.mark.get("before", cluster.mark)["outcome"] == "undecided"
+        undecided = cluster.mark.judged.outcome == "undecided"
         return sum(
             undecided
             and not self.standing.decision(record, cluster.question)
@@ -235,8 +233,8 @@ class Class:
 
     def lines(self, cluster, record):
         """The lines of the rubric of a question: what each is worth now, what the source says, how many used it."""
-        source = record["marks"][cluster.question].get("rubric", {})
-        found = dict.fromkeys(self.questions.get(cluster.question, {}).get("rubric", ()))
+        source = record.marks[cluster.question].rubric or {}
+        found = dict.fromkeys(self.questions[cluster.question].rubric if cluster.question in self.questions else ())
         found |= dict.fromkeys(source)
         used = Counter()
         for one in self.ledger.decisions:
@@ -268,12 +266,10 @@ class Class:
 
     def searchable(self, cluster, hide_names=False):
         names = self.aliases if hide_names else {}
-        students = " ".join(names.get(record["student"], record["student"]) for record in cluster.members)
-        said = " ".join(cluster.mark["messages"])
-        answer = pages.answer_as_text(cluster.answer.get("plain"), 2_000)
-        return (
-            f"{students} {cluster.question} {cluster.mark['title']} {cluster.mark['note']} {said} {answer}".casefold()
-        )
+        students = " ".join(names.get(record.student, record.student) for record in cluster.members)
+        said = " ".join(cluster.mark.messages)
+        answer = pages.answer_as_text(cluster.answer.plain, 2_000)
+        return f"{students} {cluster.question} {cluster.mark.title} {cluster.mark.note} {said} {answer}".casefold()
 
     def cells(self, cluster, record):
         """The code of one student's notebook, which of its cells come first, and the pictures that it keeps.
@@ -281,8 +277,8 @@ class Class:
         First come the cell of the answer and those above it, up to the check of another; of several notebooks the one
         in which it is asked.
         """
-        cell = record["answers"].get(cluster.question, {}).get("cell")
-        kept = [(notebook["sha256"], self.store.work(notebook["sha256"])) for notebook in record["notebooks"]]
+        cell = record.answer(cluster.question).cell
+        kept = [(notebook.sha256, self.store.work(notebook.sha256)) for notebook in record.notebooks]
         kept = [(digest, cells) for digest, cells in kept if cells]
         kept.sort(key=lambda one: not any(cluster.question in source for source in one[1]))
         for digest, cells in kept:
@@ -302,24 +298,24 @@ def hints_of(records, work):
     notebook tried that no exercise needs.
     """
     found = defaultdict(list)
-    students = len({record["student"] for record in records})
+    students = len({record.student for record in records})
     few = max(2, int(FEW * students))
     wrong, code, tried = defaultdict(set), defaultdict(set), defaultdict(set)
     for record in records:
-        for question, about in record.get("remembered", {}).items():
-            for one in about.get("tried", ()):
-                tried[question, one].add(record["student"])
-        for question, mark in record["marks"].items():
-            judged = mark.get("before", mark)
-            if judged["outcome"] == "wrong" and not judged["note"] and mark["group"]:
-                wrong[question, mark["group"]].add(record["student"])
-            cell = record["answers"].get(question, {}).get("cell")
-            for notebook in record["notebooks"]:
-                cells = work(notebook["sha256"])
+        for question, about in record.remembered.items():
+            for one in about.tried:
+                tried[question, one].add(record.student)
+        for question, mark in record.marks.items():
+            judged = mark.judged
+            if judged.outcome == "wrong" and not judged.note and mark.group:
+                wrong[question, mark.group].add(record.student)
+            cell = record.answer(question).cell
+            for notebook in record.notebooks:
+                cells = work(notebook.sha256)
                 if cells and isinstance(cell, int) and cell < len(cells):
                     written = "".join(map(_bare, cells[max(0, cell - 1) : cell + 1]))
                     if len(written) >= SHORTEST_CODE:
-                        code[question, written].add(record["student"])
+                        code[question, written].add(record.student)
     together = Counter()
     for same in wrong.values():
         if 2 <= len(same) <= few:
@@ -336,9 +332,9 @@ def hints_of(records, work):
                 found[one, question].append(f"the same code, sign by sign, as {len(same) - 1} other")
     _note_shared_tries(found, {key: same for key, same in tried.items() if 2 <= len(same) <= few})
     for record in records:
-        for said in dict.fromkeys(said for notebook in record["notebooks"] for said in notebook.get("tried", ())):
-            for question in record["marks"]:
-                found[record["student"], question].append(f"the notebook {said}")
+        for said in dict.fromkeys(said for notebook in record.notebooks for said in notebook.tried):
+            for question in record.marks:
+                found[record.student, question].append(f"the notebook {said}")
     return found
 
 
@@ -424,8 +420,8 @@ class _Overview(_Page):
         graded.read()
         found = graded.chosen(filters, self.settings["hide_names"])
         outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
-        guessable = {name: about for name, about in graded.questions.items() if about["guessable"] is not None}
-        guessed, clusters = sum(about["worth"] for about in guessable.values()), graded.clusters.values()
+        guessable = {name: about for name, about in graded.questions.items() if about.guessable is not None}
+        guessed, clusters = sum(about.worth for about in guessable.values()), graded.clusters.values()
         self.show(
             "overview.html",
             filters=filters,
@@ -434,10 +430,10 @@ class _Overview(_Page):
             left=sum(map(graded.waits, clusters)),
             appeals={one.id for one in clusters if graded.is_shown(one, "appeals")},
             earlier=sum(graded.is_shown(one, "earlier") for one in clusters),
-            titles={one.question: one.mark["title"] for one in graded.clusters.values()},
-            text=lambda cluster: pages.answer_as_text(cluster.answer.get("plain"), 120),
+            titles={one.question: one.mark.title for one in graded.clusters.values()},
+            text=lambda cluster: pages.answer_as_text(cluster.answer.plain, 120),
             guessable=guessable,
-            beyond=1 - guessed / max(1, sum(about["worth"] for about in graded.questions.values())),
+            beyond=1 - guessed / max(1, sum(about.worth for about in graded.questions.values())),
         )
 
 
@@ -454,14 +450,15 @@ class _Answer(_Page):
         graded.read()
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         place = order.index(name) if name in order else None
-        about = graded.contract(cluster)
+        contract = graded.contract(cluster)
+        right = contract.plain if contract else None
         chosen = self.get_argument("member", "")
         number = int(chosen) if chosen.isdecimal() and int(chosen) < len(cluster.members) else 0
         record = cluster.members[number]
         seen = [graded.decision_on(cluster, one) for one in cluster.members]
         cells, near, pictures = graded.cells(cluster, record)
-        judged = cluster.mark.get("before", cluster.mark)
-        students = {member["student"] for member in cluster.members}
+        judged = cluster.mark.judged
+        students = {member.student for member in cluster.members}
         lines = graded.lines(cluster, record)
         worths = graded.standing.worths
         self.show(
@@ -471,9 +468,7 @@ class _Answer(_Page):
             mark=cluster.mark,
             judged=judged,
             # What an author says stands below, word for word.
-            deed=deed({**cluster.mark, **judged})
-            if judged["outcome"] == "wrong" and judged["note"] not in ("", "authored")
-            else "",
+            deed=deed(judged) if judged.outcome == "wrong" and judged.note not in ("", "authored") else "",
             record=record,
             number=number,
             cells=cells,
@@ -483,27 +478,27 @@ class _Answer(_Page):
             seen=" ".join(one.id if one else NONE for one in seen),
             typed={one: self.get_body_argument(one, "") for one in TYPED},
             ticked=self.get_body_arguments("rubric"),
-            decisions={one["student"]: graded.standing.decision(one, cluster.question) for one in cluster.members},
+            decisions={one.student: graded.standing.decision(one, cluster.question) for one in cluster.members},
             points_of=lambda one: graded.standing.points(one, cluster.mark),
-            earlier={one["student"]: graded.earlier(cluster, one) for one in cluster.members},
-            before={one["student"]: graded.decision_on(cluster, one) for one in cluster.members},
+            earlier={one.student: graded.earlier(cluster, one) for one in cluster.members},
+            before={one.student: graded.decision_on(cluster, one) for one in cluster.members},
             appeals=[
                 (place, one, appeal)
                 for place, one in enumerate(cluster.members)
                 for appeal in graded.appeals(cluster, one)
             ],
             history=_history(graded.ledger.events, cluster, students),
-            asked=Markup(_as_asked(about)),
-            given=about.get("public", {}).get("given", {}),
-            calls=about.get("public", {}).get("calls") or [],
-            case=record.get("cases", {}).get(cluster.question),
-            right=Markup(answer_as_mathematics(about.get("plain"))),
-            right_text=pages.answer_as_text(about.get("plain"), 2_000),
-            answer=Markup(answer_as_mathematics(cluster.answer.get("plain"))),
-            answer_text=pages.answer_as_text(cluster.answer.get("plain"), 2_000),
-            right_prose=_prose(about.get("plain")),
-            answer_prose=_prose(cluster.answer.get("plain")),
-            by_a_person=judged["note"] == "for a person",
+            asked=Markup(_as_asked(contract)),
+            given=contract.variant.given if contract else {},
+            calls=contract.question.calls if contract else (),
+            case=(record.cases or {}).get(cluster.question),
+            right=Markup(answer_as_mathematics(right)),
+            right_text=pages.answer_as_text(right, 2_000),
+            answer=Markup(answer_as_mathematics(cluster.answer.plain)),
+            answer_text=pages.answer_as_text(cluster.answer.plain, 2_000),
+            right_prose=_prose(right),
+            answer_prose=_prose(cluster.answer.plain),
+            by_a_person=judged.note == "for a person",
             place=place,
             total=len(order),
             following=order[place + 1] if place is not None and place + 1 < len(order) else None,
@@ -545,7 +540,7 @@ class _Answer(_Page):
     def decide(self, cluster, comment, why):
         """Enter a decision on all of a cluster or one of it, or take it back; say whether to stay at it."""
         graded, who, said = self.graded, self.settings["grader"], self.get_argument("credit")
-        worth, only = cluster.mark["worth"], self.get_argument("only", "")
+        worth, only = cluster.mark.worth, self.get_argument("only", "")
         seen = dict(zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False))
         members = [(place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))]
         if not members:
@@ -614,7 +609,7 @@ class _Answer(_Page):
             if line not in now:
                 raise web.HTTPError(400, "no such line")
             if said.strip():
-                points = self.points_said(said, cluster.mark["worth"])
+                points = self.points_said(said, cluster.mark.worth)
                 if points != now[line]:
                     changes[line] = points, step.removeprefix(NONE)
         if changes:
@@ -640,7 +635,7 @@ class _Answer(_Page):
 
     @staticmethod
     def source_of(cluster):
-        return {line: points for line, points in cluster.mark.get("rubric", {}).items() if points is not None}
+        return {line: points for line, points in (cluster.mark.rubric or {}).items() if points is not None}
 
 
 def _history(events, cluster, students):
@@ -657,7 +652,7 @@ def _history(events, cluster, students):
                 words = "took an own decision back" if one.undoes else "taken back"
                 said.append((one.when, one.who, one.student, words, one.why))
             else:
-                words = f"{number(one.credit * cluster.mark['worth'])} points"
+                words = f"{number(one.credit * cluster.mark.worth)} points"
                 words += " by the rubric" * (one.points is not None) + ", appeal accepted" * bool(one.appeal)
                 said.append((one.when, one.who, one.student, words, one.why))
     return said
@@ -669,11 +664,11 @@ TYPED = ("comment", "why", "words", "new", "new_points", "of")
 NONE = "-"
 
 
-def _as_asked(about):
+def _as_asked(contract):
     """The text of a question as these students saw it, with their numbers; its author is trusted."""
-    if not about:
+    if not contract:
         return ""
-    return to_page("\n\n".join([about.get("text", ""), text_of(about["public"])]), pages.formula)
+    return to_page("\n\n".join([contract.text, text_of(contract.variant)]), pages.formula)
 
 
 def _prose(plain):

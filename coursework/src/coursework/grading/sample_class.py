@@ -20,6 +20,7 @@ from typing import NamedTuple
 from ..authoring.course import edition_of, find_course
 from ..authoring.release import KERNEL, exercise_notebook, shows_variants
 from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
+from ..checking.question import Variant
 from ..checking.variants import numbers_of_variants
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
@@ -94,7 +95,7 @@ class _Exercise:
     def variant(self, name, identity):
         """The number of a student's variant of a question."""
         variants = self.questions[name]
-        return numbers_of_variants(identity, name, variants[0].public, len(variants))[0]
+        return numbers_of_variants(identity, name, variants[0].public.variant or Variant(), len(variants))[0]
 
     def notebook(self, cells):
         made = copy.deepcopy(self.metadata)
@@ -182,7 +183,7 @@ def _forms(question):
         if answer.free_symbols:
             yield each(lambda entry: entry.rewrite(sympy.exp))
             yield each(sympy.expand)
-        elif question.public.get("tolerance") is not None:
+        elif question.public.tolerance is not None:
             yield each(lambda entry: sympy.N(entry, 9))
         if isinstance(answer, sympy.MatrixBase) and 1 not in answer.shape:
             yield answer.tolist()
@@ -202,7 +203,7 @@ def _slip(question):
     if isinstance(answer, (sympy.Expr, int, float)) and not isinstance(answer, bool):
         return answer / 3 + sympy.Rational(1, 7)
     if isinstance(answer, (list, tuple)) and answer and isinstance(answer[0], str):
-        options = question.public.get("options") or answer
+        options = question.public.options or answer
         return [
             next(option for option in options if option != answer[0]) if len(set(options)) > 1 else answer[0],
             *answer[1:],
@@ -216,14 +217,15 @@ class _Answers:
     """Code for right and wrong answers to every question, with what is to come of each; worked out once."""
 
     def __init__(self, exercise, dice):
-        from .judging.marking import about
+        from .judging.contract import Asked
+        from .judging.marking import contract_of
 
         self.right, self.wrong = {}, {}
         for name, variants in exercise.questions.items():
-            known = [about(question, b"any secret: the class is the same with all") for question in variants]
+            known = [contract_of(question, b"any secret: the class is the same with all") for question in variants]
             order = dice.random()
             for number, question in enumerate(variants):
-                judged = {**known[number], "siblings": known[:number] + known[number + 1 :]}
+                judged = Asked(known[number], siblings=(*known[:number], *known[number + 1 :]))
                 self.right[name, number] = self._with_code(exercise, question, judged, _forms(question))
                 mistaken = list(
                     {
@@ -236,14 +238,15 @@ class _Answers:
 
     def _with_code(self, exercise, question, judged, answers):
         from .judging.marking import mark
+        from .record import Answer
 
         found = []
         for answer in answers:
             code = code_of(answer, exercise.names) if not callable(answer) else None
             if code is not None and len(code) < 1500:
-                given = {"outcome": "recorded", "plain": question.to_plain(answer)}
+                given = Answer("recorded", question.to_plain(answer))
                 expected = mark(question.name, judged, given)
-                found.append((f"{question.variable} = {code}", (expected["outcome"], expected["note"])))
+                found.append((f"{question.variable} = {code}", (expected.outcome, expected.note)))
         return found
 
 

@@ -10,13 +10,13 @@ import json
 import os
 import re
 import secrets
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from .locks import lock
+from .record import Record
 
-FORMAT = 3
 REFUSED = "refused.json"
 
 
@@ -32,12 +32,12 @@ class Store:
     folder : path
     """
 
-    def __init__(self, folder):
+    def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder)
         self.records = self.folder / "records"
 
     @contextlib.contextmanager
-    def locked(self):
+    def locked(self) -> Iterator[None]:
         """Keep other runs away; what a run that was killed left half done is removed."""
         self.records.mkdir(parents=True, exist_ok=True)
         with open(self.folder / "lock", "w") as self.lock:
@@ -49,56 +49,56 @@ class Store:
                 path.unlink()
             yield
 
-    def in_copy_of_process(self):
+    def in_copy_of_process(self) -> None:
         """Leave the lock to the process that has it: when that one ends, nobody is kept away any more."""
         self.lock.close()
 
-    def place(self, student, assignment):
+    def place(self, student: str, assignment: str) -> Path:
         return self.records / file_name(student) / f"{file_name(assignment)}.json"
 
-    def read(self, student, assignment):
+    def read(self, student: str, assignment: str) -> Record | None:
         """A student's record, or ``None``."""
         try:
-            return json.loads(self.place(student, assignment).read_text("utf8"))
+            return record_in(self.place(student, assignment))
         except FileNotFoundError:
             return None
 
-    def save(self, record):
-        write(self.place(record["student"], record["assignment"]), as_text(record))
+    def save(self, record: Record) -> None:
+        write(self.place(record.student, record.assignment), as_text(record.as_json()))
 
-    def keep_work(self, digest, sources):
+    def keep_work(self, digest: str, sources: list[str]) -> None:
         """Keep the code of a notebook, for people to look at beside its answers."""
         self._keep_beside(f"{digest}.json", sources)
 
-    def keep_pictures(self, digest, pictures):
+    def keep_pictures(self, digest: str, pictures: Mapping[int, Any]) -> None:
         """Keep the pictures of a notebook, by the numbers of their cells, for people to judge."""
         if pictures:
             self._keep_beside(f"{digest}.pictures.json", pictures)
 
-    def pictures(self, digest):
+    def pictures(self, digest: str) -> dict[int, Any]:
         """The pictures of a notebook, by the number of the cell that drew them."""
         kept = self._kept_beside(f"{digest}.pictures.json")
         return {int(number): shown for number, shown in kept.items()} if kept else {}
 
-    def work(self, digest):
+    def work(self, digest: str) -> list[str]:
         """The code cells of a notebook, or nothing if they were not kept."""
         return self._kept_beside(f"{digest}.json") or []
 
-    def _keep_beside(self, name, value):
+    def _keep_beside(self, name: str, value: object) -> None:
         """Keep for people what nothing that is graded depends on; what is there already stays."""
         place = self.folder / "work" / name
         if not place.exists():
             write(place, json.dumps(value, ensure_ascii=False), lasting=False)
 
-    def _kept_beside(self, name):
+    def _kept_beside(self, name: str) -> Any:
         place = self.folder / "work" / name
         return self.json_in(place) if place.exists() else None
 
     @staticmethod
-    def json_in(path):
+    def json_in(path: Path) -> Any:
         return json.loads(path.read_text("utf8"))
 
-    def put_aside(self, student, assignment):
+    def put_aside(self, student: str, assignment: str) -> Path:
         """Move a record, and the page made of it, to where it counts no more; give its new place."""
         place = self.place(student, assignment)
         aside = self.folder / "put-aside" / place.relative_to(self.records)
@@ -108,23 +108,33 @@ class Store:
         page.unlink(missing_ok=True)
         return aside
 
-    def all(self):
+    def all(self) -> Iterator[Record]:
         """All records, by student and assignment, one at a time."""
         # Names of folders alone, and not all paths: a class may have a hundred thousand.
         for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
             for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
-                record = json.loads(path.read_text("utf8"))
+                record = record_in(path)
                 # Not what lies where it would not be written: a copy, or what another version called so.
-                if path == self.place(record["student"], record["assignment"]):
+                if path == self.place(record.student, record.assignment):
                     yield record
 
-    def log(self, line):
+    def log(self, line: str) -> None:
         """Write a line of what happened, with its time; nothing that is graded depends on it."""
         import datetime
 
         now = datetime.datetime.now().isoformat(" ", "milliseconds")
         with open(self.folder / "run.log", "a", encoding="utf8") as file:
             file.write(f"{now}  {line}\n")
+
+
+def record_in(path: Path) -> Record:
+    """The record that a file holds.
+
+    Raises
+    ------
+    Misread
+    """
+    return Record.from_json(json.loads(path.read_text("utf8")), str(path))
 
 
 def as_text(value: Any) -> str:
@@ -142,7 +152,7 @@ def as_text(value: Any) -> str:
 RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")
 
 
-def file_name(name):
+def file_name(name: str) -> str:
     """A name for a file that a student's name cannot lead astray; different names stay different."""
     plain = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip(".-")[:60]
     # The letter's case counts too: some file systems do not tell a from A. And what looks like a name with a

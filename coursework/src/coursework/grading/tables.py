@@ -4,12 +4,12 @@ import csv
 import io
 import itertools
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 STARTS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
-def as_cell(value):
+def as_cell(value: object) -> str:
     """A value as the text of a cell: text that a spreadsheet would work out is marked as text.
 
     >>> as_cell('=1+1'), as_cell('\\uff1d1'), as_cell(2.0), as_cell('one\\ntwo')
@@ -39,7 +39,7 @@ def table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
     return "".join(lines(header, rows))
 
 
-def lines(header, rows):
+def lines(header: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[str]:
     """The lines of a table as CSV, one after another, for a table that no memory need hold."""
     file = io.StringIO()
     writer = csv.writer(file, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
@@ -50,12 +50,12 @@ def lines(header, rows):
         file.truncate()
 
 
-def in_a_line(text, most):
+def in_a_line(text: str, most: int) -> str:
     """Text of strangers as part of one line: it cannot begin another, which would seem to be ours."""
     return " ".join(readable(text, most).split())
 
 
-def readable(text, most=2_000):
+def readable(text: str, most: int = 2_000) -> str:
     """Text that shows what it holds: without signs that are not seen, or that turn the rest round."""
     if len(text) <= most and text.isascii() and text.isprintable():
         return text

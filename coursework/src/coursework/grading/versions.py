@@ -3,13 +3,14 @@
 import functools
 import hashlib
 import platform
+from collections.abc import Iterable
 from importlib import metadata
 from pathlib import Path
 
 from ..checking.plugins import folders_of, packages
 
 
-def folders():
+def folders() -> list[Path]:
     """The folders of this package and of those that a course brings.
 
     A changed line in any changes how somebody is judged, and then everybody is judged again.
@@ -18,7 +19,7 @@ def folders():
 
 
 @functools.cache
-def software():
+def software() -> dict[str, str]:
     """The versions, by name; this package and those of the course are told by all their code."""
     return {
         "python": platform.python_version(),
@@ -27,7 +28,7 @@ def software():
     }
 
 
-def digest_of_packages(of=()):
+def digest_of_packages(of: Iterable[Path] = ()) -> str:
     """A short text that follows from every line of code of the packages."""
     digest = hashlib.sha256()
     for package in of or folders():

@@ -1,6 +1,6 @@
 import { AXES, IDENTITY, SEQUENCES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, dcmFromSpaceFixed, gimbalLockMargin, length, nearestDcm, quaternionFromDcm, reversed, scale,
-  spaceFixedFromDcm, transpose, unit } from './mathematics.js';
+  dcmFromQuaternion, dcmFromSpaceFixed, determinant, dot, gimbalLockMargin, length, multiply, nearestDcm, quaternionFromDcm,
+  reversed, scale, spaceFixedFromDcm, transpose, unit } from './mathematics.js';
 import { Sheet, button, change, choice, degrees, element, fixed, follow, group, hats, liveText, numberTable, onceAFrame,
   open, put, radians, readout, stage, write } from './shared.js';
 import { canTakeAway, languageChoice, textBox, textOf, textsIn } from './take_away.js';
@@ -14,6 +14,11 @@ const ROUNDED = 0.02, EXACT = 1e-6;
 const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi;
 const MINUS = /[\u2212\u2013]/g;
 
+// What the table of programs calls these forms.
+const KINDS = { quaternion: 'quaternion', [ANGLES[0]]: 'Euler angles', [ANGLES[1]]: 'Euler angles', 'axis times angle': 'rotation vector' };
+// Where axes point to, along forward, left and up.
+const WAYS = { forward: [1, 0, 0], left: [0, 1, 0], up: [0, 0, 1], back: [-1, 0, 0], right: [0, -1, 0], down: [0, 0, -1] };
+
 // ---- what a side means ---------------------------------------------------------------------------------
 
 // The side with the convention of its program in place of what the reader might have chosen.
@@ -21,7 +26,8 @@ export function settled(side, programs) {
   const facts = programs[side.program];
   if (!facts) return side;
   const sequences = sequencesOf(side, programs);
-  return { ...side, matrix: side.form === 'matrix' ? facts.matrix : 'as here', scalar: facts.scalar || 'first', unit: facts.unit,
+  const inverse = side.form === 'matrix' ? facts.matrix === 'transposed' : facts.inverse?.includes(KINDS[side.form]);
+  return { ...side, matrix: inverse ? 'transposed' : 'as here', scalar: facts.scalar || 'first', unit: facts.unit,
     sequence: sequences.includes(side.sequence) ? side.sequence : sequences[0] };
 }
 
@@ -72,6 +78,18 @@ export function told(side, orientation) {
   return side.unit === 'degrees' ? values.map(degrees) : values;
 }
 
+// The orientation by the target's axes, where both manuals say where the axes of a thing, or of its world, point to. One
+// triad of the other hand makes no orientation: then nothing is exchanged.
+export function byAxesOf(source, target, programs, dcm) {
+  const [one, other] = [source, target].map(({ program }) => programs[program] ?? {});
+  const [body, world] = ['body', 'world'].map((whose) => (one[whose] && other[whose]
+    ? other[whose].map((way) => one[whose].map((from) => dot(WAYS[way], WAYS[from]))) : IDENTITY));
+  if (determinant(body) !== determinant(world)) return { dcm, said: `One hand for another: of the world of ${one.world ? target.program : source.program} no manual says where its axes point to, so none are exchanged.` };
+  const same = [body, world].every((rows) => rows.every((row, k) => row[k] === 1));
+  const told = [source, target].map(({ program }) => `of ${program} ${programs[program]?.body?.join(', ')}`).join(', ');
+  return { dcm: multiply(multiply(body, dcm), transpose(world)), said: same ? '' : `The axes are exchanged: x, y, z ${told}.` };
+}
+
 // Twelve digits after the point: with nine, a program that looks at the length of a quaternion would refuse it.
 const short = (value) => String(Number(value.toFixed(12)) + 0);
 
@@ -80,14 +98,17 @@ export function line(side, numbers, programs) {
   const template = programs[side.program]?.lines[side.form];
   if (!template) return '';
   const texts = numbers.map(short), letters = [...side.sequence], values = { s: side.sequence, S: side.sequence.toUpperCase() };
-  if (side.form === 'matrix') values.m = `[${[0, 3, 6].map((k) => `[${texts.slice(k, k + 3).join(', ')}]`).join(', ')}]`;
+  if (side.form === 'matrix') {
+    const columns = [0, 1, 2].flatMap((column) => [0, 3, 6].map((row) => texts[row + column]));
+    Object.assign(values, { m: `[${[0, 3, 6].map((k) => `[${texts.slice(k, k + 3).join(', ')}]`).join(', ')}]`, n: texts.join(', '), t: columns.join(', ') });
+  }
   if (side.form === 'quaternion') (side.scalar === 'last' ? 'xyzw' : 'wxyz').split('').forEach((name, k) => { values[name] = texts[k]; });
   if (side.form === 'axis times angle') AXES.forEach((name, k) => { values[name] = texts[k]; });
   if (ANGLES.includes(side.form)) {
-    letters.forEach((letter, k) => Object.assign(values, { ['abc'[k]]: texts[k], ['ABC'[k]]: letter.toUpperCase(),
+    letters.forEach((letter, k) => Object.assign(values, { ['abc'[k]]: texts[k], [`-${'abc'[k]}`]: short(-numbers[k]), ['ABC'[k]]: letter.toUpperCase(),
       ['ijk'[k]]: String(AXES.indexOf(letter)), [`a${letter}`]: texts[k] }));
   }
-  return template.replace(/\{(\w+)\}/g, (_, name) => values[name]);
+  return template.replace(/\{(-?\w+)\}/g, (_, name) => values[name]);
 }
 
 // The formulas that convert: from the source to the matrix of this book, and from that to the target.
@@ -215,7 +236,8 @@ export function render({ model, el }) {
       language.element, box.element)] : []));
 
   function draw() {
-    const dcm = dcmFromQuaternion(model.get('quaternion')), to = side('target'), numbers = told(to, dcm);
+    const dcm = dcmFromQuaternion(model.get('quaternion')), to = side('target'), exchanged = byAxesOf(side('source'), to, programs, dcm);
+    const numbers = told(to, exchanged.dcm);
     for (const one of panels) one.show();
     matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
     quaternion.show([quaternionFromDcm(dcm).map((entry) => fixed(entry))]);
@@ -228,7 +250,7 @@ export function render({ model, el }) {
       sheet.triad('N', IDENTITY, { reach: REACH });
       sheet.triad('A', dcm);
     });
-    words.say(fault || [said, note(to, numbers, programs)].filter(Boolean).join(' '));
+    words.say(fault || [said, exchanged.said, note(to, numbers, programs)].filter(Boolean).join(' '));
   }
 
   draw();
@@ -246,5 +268,6 @@ function note(to, numbers, programs) {
   }
   const version = programs[to.program]?.version;
   const means = { matrix: `the matrix is ${to.matrix}`, quaternion: `the scalar stands ${to.scalar}` }[to.form] ?? `the numbers are in ${to.unit}`;
-  return `For ${to.program}${version ? ` (tried: ${version})` : ''} ${means}.`;
+  const inverse = to.form !== 'matrix' && to.matrix === 'transposed' ? ', and they are of the inverse' : '';
+  return `For ${to.program}${version ? ` (tried: ${version})` : ''} ${means}${inverse}.`;
 }

@@ -155,16 +155,17 @@ function picture(sheet, gimbal, close, lit) {
   ring(normals[1], INNER, 'C', 3);
   for (const side of [1, -1]) {
     pin(scale(side, axes[1]), INNER, OUTER, 'B', 4);
-    pin(scale(side, axes[2]), 0.2, INNER, 'C', 2);
+    // Not before the lens.
+    if (side < 0 || at[2] !== 1) pin(scale(side, axes[2]), 0.2, INNER, 'C', 2);
   }
-  // The lens looks along d_x.
+  // The lens looks along d_y, as in the essay.
   sheet.layer = 0;
   sheet.box(D, CAMERA, 'D');
-  sheet.layer = 0.5 * near(D[0]);
-  sheet.cylinder(scale(CAMERA[0] / 2, D[0]), scale(0.5, D[0]), 0.15, 'D');
-  if (near(D[0]) > 0) {
+  sheet.layer = 0.5 * near(D[1]);
+  sheet.cylinder(scale(CAMERA[1] / 2, D[1]), scale(0.5, D[1]), 0.15, 'D');
+  if (near(D[1]) > 0) {
     sheet.layer = 0.6;
-    sheet.circle(D[0], { radius: 0.09, origin: scale(0.5, D[0]), colour: 'D', kind: 'fill-38' });
+    sheet.circle(D[1], { radius: 0.09, origin: scale(0.5, D[1]), colour: 'D', kind: 'fill-38' });
   }
 
   // The axes, outside of what they carry.

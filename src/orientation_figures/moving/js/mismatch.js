@@ -19,7 +19,8 @@ function spellingOf(table) {
     const pairs = (entries) => entries.map(([pattern, replacement]) => [made(pattern), replacement]);
     READY.set(table, { ...Object.fromEntries(Object.entries(said).filter(([, pattern]) => typeof pattern === 'string')
       .map(([name, pattern]) => [name, made(pattern)])), cleaning: pairs(said.cleaning), signs: pairs(said['signs of a sum']),
-    orders: said['orders of angles'].map(([pattern, more]) => [made(pattern, 'im'), more]), value: made(said['not turns'] + said.value),
+    orders: said['orders of angles'].map(([pattern, more]) => [made(pattern, 'im'), more]),
+    parts: said['orders of parts'].map(([pattern, more]) => [made(pattern, 'im'), more]), value: made(said['not turns'] + said.value),
     names: [[{ w: 0, x: 1, y: 2, z: 3 }, { order: 'wxyz' }], [PLACE_OF_ANGLE, said['yaw pitch roll']], [{ y: 0, p: 1, r: 2 }, said['yaw pitch roll']],
       [{ x: 0, y: 1, z: 2 }, {}]] });
   }
@@ -41,7 +42,10 @@ export function readPoses(given, name, table, kind = null, noise = 0) {
 }
 
 function rowsOf(given, name, spelling) {
+  const columns = columnsOf(given, spelling);
+  if (columns) return columns;
   let text = spelling.cleaning.reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given);
+  const parts = spelling.parts.filter(([pattern]) => pattern.test(text));
   const bare = text.replace(spelling.comment, '');
   if (has(spelling.number, bare)) text = bare;   // what stands in comments alone was meant
   text = withoutPlaces(decimalPoints(text), spelling);
@@ -55,13 +59,57 @@ function rowsOf(given, name, spelling) {
     throw new Error(start ? `the ${name} side holds no numbers: '${start}'` : `the ${name} side is empty: paste its numbers`);
   }
   const declared = has(spelling.degrees, text) ? { unit: 'degrees' } : has(spelling.radians, text) ? { unit: 'radians' } : {};
-  const half = halfUnit(found), named = labelled(text, spelling);
-  if (named) return { rows: named.rows, half, declared: { ...declared, ...named.more } };
+  const named = labelled(text, spelling);
+  if (named) return { rows: named.rows, half: named.half, declared: { ...declared, ...named.more } };
+  const half = halfUnit(found);
   let rows = [...text.matchAll(spelling.innermost)].map(([, group]) => (group.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
   const inBrackets = [3, 4, 9, 12, 16].includes(rows[0]?.length) && rows.every((row) => row.length === rows[0].length);
   if (!inBrackets || rows.flat().length !== found.length) rows = rowsOfLines(text, spelling);
   const said = rows.every((row) => row.length === 3) && spelling.orders.find(([pattern]) => pattern.test(text));
-  return { rows, half, declared: said ? { ...declared, ...said[1] } : declared };
+  const ordered = parts.length === 1 && rows.every((row) => row.length === 4) ? parts[0][1] : {};
+  return { rows, half, declared: { ...declared, ...(said ? said[1] : {}), ...ordered } };
+}
+
+// What stands between the marks of a line of a table, or between its spaces.
+function fieldsOf(line, spelling) {
+  const bare = line.trim().replace(/^\|+|\|+$/g, ''), parted = has(spelling.parting, bare) ? bare.trim().split(spelling.parting) : bare.trim().split(/\s+/);
+  const fields = parted.filter((field, k) => field || k || parted.length > 1).map((field) => field.replace(spelling['around a field'], ''));
+  return fields.length && !fields.at(-1) ? fields.slice(0, -1) : fields;
+}
+
+// The rows of a table under a line that names its columns; null where none does.
+function columnsOf(given, spelling) {
+  const lines = spelling.cleaning.slice(0, 2).reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given).split('\n');
+  for (const [place, line] of lines.entries()) {
+    const names = has(spelling.number, line) ? [] : fieldsOf(line.replace(spelling['around a field'], ''), spelling).map((field) => field.toLowerCase());
+    if (names.length < 3) continue;
+    const table = lines.slice(place + 1).filter((below) => !has(spelling['no row'], below)).map((below) => fieldsOf(below, spelling));
+    const found = table.length && table.every((row) => row.length === names.length) ? namedColumns(names, spelling) : null;
+    const kept = found ? table.map((row) => found.which.map((column) => row[column])) : [];
+    if (!found || !kept.flat().every((field) => has(spelling['whole number'], field))) continue;
+    const said = line.replaceAll('_', ' '), unit = has(spelling.degrees, said) ? { unit: 'degrees' } : has(spelling.radians, said) ? { unit: 'radians' } : {};
+    return { rows: kept.map((row) => row.map(Number)), half: halfUnit(kept.flat()), declared: { ...found.more, ...unit } };
+  }
+  return null;
+}
+
+// Which columns hold an orientation, in the order in which they are read, and what their names say of them.
+function namedColumns(names, spelling) {
+  const bare = names.map((name) => name.replace(spelling['unit of a column'], ''));
+  const entries = bare.map((name, column) => [[...name.matchAll(spelling['entry of a matrix'])][0], column]).filter(([found]) => found);
+  if (entries.length === 9) return { which: entries.map(([[, row, column], at]) => [row + column, at]).sort((one, other) => one[0] - other[0]).map(([, at]) => at), more: {} };
+  for (const own of [bare.map((name) => has(spelling['of a quaternion'], name)), bare.map(() => true)]) {
+    const keys = bare.map((name, k) => (own[k] ? name.replace(/^(.*[_.])?q?_*/, '') : ''));
+    for (const [place, more] of spelling.names.slice(0, 2)) {
+      const each = Array.from({ length: Math.max(...Object.values(place)) + 1 }, (_, at) => keys.flatMap((key, column) => (Object.hasOwn(place, key) && place[key] === at ? [column] : [])));
+      if (each.every((columns) => columns.length === 1)) {
+        // As they stand, so that what is said of the numbers holds for the reader's own.
+        const order = each.map((_, at) => at).sort((one, other) => each[one][0] - each[other][0]), [name, letters] = more.order ? ['order', 'wxyz'] : ['places', '123'];
+        return { which: order.map((at) => each[at][0]), more: { ...more, [name]: order.map((at) => letters[at]).join('') } };
+      }
+    }
+  }
+  return null;
 }
 
 function rowsOfLines(text, spelling) {
@@ -98,19 +146,21 @@ function withoutPlaces(text, spelling) {
 }
 
 function labelled(text, spelling) {
-  const pairs = [];
+  const all = [];
   for (const match of text.matchAll(spelling.named)) {
     const behind = new RegExp(spelling.number.source, 'yi');
     behind.lastIndex = match.index + match[0].length;
     const number = behind.exec(text);
-    if (number) pairs.push([match[1].toLowerCase().replace(/^(.*[_.])?q?_*/, ''), Number.parseFloat(number[0])]);
+    if (number) all.push([match[1].toLowerCase(), number[0]]);
   }
+  const parts = all.filter(([key]) => has(spelling['part of a quaternion'], key));
+  const pairs = (parts.length ? parts : all).map(([key, number]) => [key.replace(/^(.*[_.])?q?_*/, ''), number]);
   for (const [place, more] of spelling.names) {
     const size = Math.max(...Object.values(place)) + 1, kept = pairs.filter(([key]) => Object.hasOwn(place, key));
     if (!kept.length || kept.length % size || (size === 3 && 'x' in place && pairs.some(([key]) => key === 'w'))) continue;
     const rows = blocks(Array(kept.length).fill(null), size);
-    kept.forEach(([key, value], which) => { rows[Math.floor(which / size)][place[key]] = value; });
-    if (!rows.flat().includes(null)) return { rows, more };
+    kept.forEach(([key, value], which) => { rows[Math.floor(which / size)][place[key]] = Number(value); });
+    if (!rows.flat().includes(null)) return { rows, half: halfUnit(kept.map(([, value]) => value)), more };
   }
   return null;
 }
@@ -600,7 +650,7 @@ export function drawnDcms(explanation, table, pose) {
   });
 }
 
-// For each of the words of a chain the section of the book that teaches it and a question on it, each [address, title].
+// For each of the words of a chain the section of the book that teaches it and the questions on it, each [address, title].
 export function taughtBy({ first, second, relation: whole }, table) {
   const links = [], relation = whole.said ?? whole;
   for (const { kind, words, shared } of [first, second]) {
@@ -610,9 +660,11 @@ export function taughtBy({ first, second, relation: whole }, table) {
       links.push(table.taught[own?.group] ?? null);
     }
   }
-  if (relation.inverse) links.push(table.taught.inverse);
+  if (relation.inverse) links.push(table.taught[`inverse ${second.kind}`]);
   for (const whose of ['body', 'world']) if (relation[`${whose} turn`]) links.push(table.taught.turn);
-  return [...links, table.taught.axes, table.taught.axes];
+  if (relation.hand) return [...links, table.taught.hand];
+  const swapped = relation.swapped ?? relation.inverse, named = { body: relation[swapped ? 'world' : 'body'], world: relation[swapped ? 'body' : 'world'] };
+  return [...links, ...['body', 'world'].filter((whose) => named[whose] !== SAME_AXES).map((whose) => table.taught[whose])];
 }
 
 // ---- the line that mends it: as orientation_workbench.mismatch.mend ----------------------------------------

@@ -5,7 +5,7 @@ import { AXES, IDENTITY, add, cross, dcmFromRotationVector, dot, length, multipl
   transpose, unit } from './mathematics.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
-import { carriedBy } from './address.js';
+import { carriedBy, fragmentOf } from './address.js';
 
 // ---- elements and words --------------------------------------------------------------------------------
 
@@ -676,15 +676,42 @@ function alike(value, known) {
   return typeof known === 'boolean' || value.length <= 200;
 }
 
-// How a figure stands by the address of its page, which names it by its label, or by its kind where it is alone.
+// How a figure stands by the address of its page, which names it by its label or its kind; where it is alone, any name will do.
 function carriedTo(figure, name, state) {
   try {
     const carried = carriedBy(location.hash), label = figure.parentElement?.closest('figure[id], div[id]')?.id;
-    if (!carried || ![name, label].includes(carried.place)) return {};
+    if (!carried || (label && ![name, label].includes(carried.place))) return {};
     return Object.fromEntries(Object.entries(carried.content).filter(([key, value]) => key in state && alike(value, state[key])));
   } catch {
     return {};   // an address that is not whole opens the figure as it is at first
   }
+}
+
+// Once a figure has been moved, the link at the end of its caption shows, leads to the figure as it stands, and copies
+// that address.
+function offerAddress(figure, first) {
+  const whole = figure.parentElement?.closest('figure[id]'), link = whole?.querySelector('figcaption a.headerlink');
+  if (!link) return;
+  const mark = link.textContent;
+  const renew = () => {
+    const moved = Object.keys(first).filter((name) => JSON.stringify(figure.model.get(name)) !== JSON.stringify(first[name]));
+    link.toggleAttribute('data-moved', moved.length > 0);
+    if (!moved.length) return;
+    put(link, 'title', 'Copy the address of the figure as it stands');
+    put(link, 'aria-label', link.title);
+    try {
+      put(link, 'href', fragmentOf(whole.id, Object.fromEntries(moved.map((name) => [name, figure.model.get(name)]))));
+    } catch { /* too much for an address: the link leads to the figure */ }
+  };
+  for (const type of ['pointerup', 'keyup', 'change', 'click']) figure.addEventListener(type, renew);
+  for (const type of ['pointerenter', 'focus']) link.addEventListener(type, renew);
+  link.addEventListener('click', async () => {
+    renew();   // where nothing may be copied, the address stands in the bar
+    if (!link.matches('[data-moved]') || !await navigator.clipboard?.writeText(link.href).then(() => true, () => false)) return;
+    link.textContent = 'copied';
+    setTimeout(() => { link.textContent = mark; }, 2000);
+  });
+  renew();
 }
 
 export function start(name, render) {
@@ -702,6 +729,8 @@ export function start(name, render) {
       figure.querySelector('.live')?.remove();
       begin(state);
     }
+    offerAddress(figure, state);
+    if (Object.keys(carried).length) figure.scrollIntoView({ block: 'nearest' });
     figure.dataset.ready = '';
   }
 }

@@ -178,9 +178,10 @@ export function render({ model, el }) {
 const headingOf = ({ verdict, asTheirManualsSay }) => (asTheirManualsSay && AS_THE_MANUALS_SAY[verdict]) || HEADINGS[verdict];
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
-// Where the book teaches it, and a question to try it by.
-const linked = ([[section, title], [question, itsTitle]]) => [element('a', { href: section }, title), ', and a question: ',
-  element('a', { href: question }, itsTitle), '.'];
+// Where the book teaches it, and questions to try it by.
+const linked = ([[section, title], ...questions]) => [element('a', { href: section }, title),
+  ...questions.flatMap(([question, itsTitle], k) => [k ? ' and ' : `, and ${questions.length > 1 ? 'questions' : 'a question'}: `,
+    element('a', { href: question }, itsTitle)]), '.'];
 
 // What the numbers of one side were taken for.
 function wasRead(found, k, table) {

@@ -62,11 +62,12 @@ def drawing(figure):
         marks += [(-layer, ring, (normal, radius, colour, False)), (layer, ring, (normal, radius, colour, True))]
     for axis, start, end, colour, layer in ((axes[1], INNER, OUTER, "B", 4), (axes[2], 0.2, INNER, "C", 2)):
         for arm in (axis, -axis):
-            add(layer, arm, drawing.line, [start * arm, end * arm], colour, "thick")
+            if colour == "B" or arm is not axis or third != 1:  # not before the lens
+                add(layer, arm, drawing.line, [start * arm, end * arm], colour, "thick")
     marks.append((0, drawing.box, (D, CAMERA, (0, 0, 0), "D")))
-    add(0.5, D[0], drawing.cylinder, CAMERA[0] / 2 * D[0], 0.5 * D[0], 0.15, "D")
-    if D[0] @ toward > 0:
-        marks.append((0.6, drawing.circle, (D[0], 0.09, 0.5 * D[0], "D", "fill-38")))
+    add(0.5, D[1], drawing.cylinder, CAMERA[1] / 2 * D[1], 0.5 * D[1], 0.15, "D")
+    if D[1] @ toward > 0:
+        marks.append((0.6, drawing.circle, (D[1], 0.09, 0.5 * D[1], "D", "fill-38")))
     for axis, start in zip(axes, (OUTER, OUTER, INNER)):
         for arm in (axis, -axis):
             add(7, arm, drawing.line, [(start + 0.1) * arm, END * arm], "ink", "guide")

@@ -15,7 +15,7 @@ export const deg = (angle) => angle * PI / 180;
 export const SEQUENCE = 'zxy';
 export const GROUND = -2.2, RIM = 1.42;   // where the ground lies, and how far it reaches
 export const LIGHT = unit([0.55, 0.1, 1]);
-export const DISTANCE = 8.5, TARGET = [0, 0, -0.42], HALF = 2.36;   // of the eye; what it looks at; half of what it sees there
+export const DISTANCE = 8.5, TARGET = [0, 0, -0.42], HALF = 2.46;   // of the eye; what it looks at; half of what it sees there
 const REACH = 1.62;
 const mix = (a, b, part) => a + (b - a) * part;
 const clamp = (value) => Math.min(1, Math.max(0, value));
@@ -263,29 +263,59 @@ export const COURSE = {
   'not-home': (t) => ({ angles: ZERO, turn: t < 0.6 ? 2 * PI * between(t, 0.05, 0.3) : 2 * PI * (1 + between(t, 0.6, 0.75)),
     passed: t < 0.6 ? between(t, 0.35, 0.55) : between(t, 0.8, 0.98) }),
   'between-poses': (t) => ({ part: between(t, 0.1, 0.9) }),
-  'it-moves': (t) => ({ time: 24 * clamp(t) }),
+  'it-moves': (t) => ({ time: LASTS * clamp(t) }),
   'your-turn': (t, start) => ({ angles: start }),
 };
 
-// The camera in stop 15: a rate that changes all the time, and what a gyroscope that is off by 1.5 degrees a second
-// makes of it, step by step. Frames as they are after each of the steps.
-const STEP = 0.05, OFF = deg(1.5);
+// The camera in stop 15: a rate that changes all the time, or, once the reader has thrown it, that of a free body; and
+// what a gyroscope that is off by 1.5 degrees a second about each axis makes of it, step by step.
+const STEP = 0.05, OFF = scale(deg(1.5), [1, 1, 1]), INERTIA = [1.1, 0.8, 1.25];
+export const LASTS = 24;   // seconds
 export const rateAt = (time) => [0.5 * Math.sin(0.9 * time), 0.35 * Math.cos(0.6 * time), 0.4 * Math.sin(0.45 * time + 1)];
-const runs = { true: [IDENTITY], told: [IDENTITY] };
-export function motion(time) {
-  const count = Math.floor(time / STEP);
-  for (let k = runs.true.length; k <= count + 1; k += 1) {
-    const rate = rateAt((k - 0.5) * STEP);   // along the camera's own arrows, as an instrument in it feels it
-    const step = (dcm, w) => multiply(dcmFromAxisAngle(w, length(w) * STEP), dcm);
-    runs.true.push(step(runs.true[k - 1], rate));
-    runs.told.push(step(runs.told[k - 1], add(rate, [0, OFF, 0])));
+// Euler's equations: how the rate of a free body changes, along its principal axes.
+const freely = (rate) => INERTIA.map((own, i) => {
+  const [j, k] = [(i + 1) % 3, (i + 2) % 3];
+  return (INERTIA[j] - INERTIA[k]) * rate[j] * rate[k] / own;
+});
+
+// Frames as they are after each of the steps. `thrown`: where the camera was let go, and how fast it turned, along its
+// own arrows, as an instrument in it feels it.
+class Run {
+  constructor({ dcm, rate } = { dcm: IDENTITY }) {
+    this.rate = rate;
+    this.D = [dcm];
+    this.told = [dcm];
   }
+
+  // The rate in the middle of the next step.
+  next() {
+    if (!this.rate) return rateAt((this.D.length - 0.5) * STEP);
+    const middle = add(this.rate, scale(STEP / 2, freely(this.rate)));
+    this.rate = add(this.rate, scale(STEP, freely(middle)));
+    return middle;
+  }
+
+  upTo(count) {
+    while (this.D.length <= count) {
+      const rate = this.next(), step = (dcm, w) => multiply(dcmFromAxisAngle(w, length(w) * STEP), dcm);
+      this.D.push(step(this.D.at(-1), rate));
+      this.told.push(step(this.told.at(-1), add(rate, OFF)));
+    }
+  }
+}
+
+const runs = new WeakMap(), ITSELF = {};
+export function motion(time, thrown) {
+  const key = thrown ?? ITSELF, count = Math.floor(time / STEP);
+  if (!runs.has(key)) runs.set(key, new Run(thrown ?? undefined));
+  const run = runs.get(key);
+  run.upTo(count + 1);
   const part = time / STEP - count;
-  const at = (run) => {
-    const [from, to] = [run[count], run[count + 1]].map(quaternionFromDcm);
+  const at = (frames) => {
+    const [from, to] = [frames[count], frames[count + 1]].map(quaternionFromDcm);
     return dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, part));
   };
-  return { D: at(runs.true), told: at(runs.told) };
+  return { D: at(run.D), told: at(run.told) };
 }
 
 // The two ways of stop 14 at a share of the way, as matrices.
@@ -306,9 +336,9 @@ export const apart = (first, second) => axisAngleFromDcm(multiply(second, transp
 const SHOWS = {
   'two-triads'(scene, s, { D }) {
     if (s.away < 0.02) return;
-    const to = scale(1.15 * s.away, s.right);
-    scene.triad('D', D, { reach: 0.95, origin: add(to, scale(-0.55 * s.away, [0, 0, -1])), alpha: s.away, thick: 0.022 });
-    scene.camera(D, { at: add(to, scale(-0.55 * s.away, [0, 0, -1])), size: 0.55, alpha: 0.25 * s.away });
+    const to = add(scale(-1.5 * s.away, s.right), scale(0.76 * s.away, [0, 0, 1]));
+    scene.triad('D', D, { reach: 0.95, origin: to, alpha: s.away, thick: 0.022 });
+    scene.camera(D, { at: to, size: 0.55, alpha: 0.25 * s.away });
   },
   'one-motor'(scene, s, { D }) {
     scene.circle(IDENTITY[0], IDENTITY[1], REACH, 0, 2 * PI, 'muted', 0.011);
@@ -318,7 +348,7 @@ const SHOWS = {
   'nine-shadows'(scene, s, { D }) { shadows(scene, D[s.lit], [0, 1, 2]); },
   'two-motors'(scene, s) {
     const [psi, theta] = s.angles, other = dcmFromBodyFixed([theta, psi, 0], 'xzy');
-    const at = add(scale(-1.28, s.right), [0, 0, 1.12]);
+    const at = add(scale(-1.34, s.right), [0, 0, 0.92]);
     scene.camera(other, { at, size: 0.62, alpha: 0.42 });
     scene.triad('D', other, { origin: at, reach: 0.85, alpha: 0.55, thick: 0.018 });
   },
@@ -345,7 +375,9 @@ const SHOWS = {
     const margin = Math.abs(wrapped(s.angles[1])) - PI / 2, close = Math.abs(margin) < deg(12);
     for (const [axis, text, near] of [[A[2], '\\psi', 1.62], [C[1], '\\varphi', 1.5]]) {
       scene.dashes(scale(-1.25, axis), scale(near, axis), 0.017, close ? 'accent' : 'muted', 22);
-      scene.label(scale(near, axis), text, close ? 'accent' : 'ink', ZERO);
+      // At lock the two names stand on either side of the one line.
+      const at = scale(close ? 1.35 : near, axis), beside = scale(text === '\\psi' ? 1 : -1, s.right);
+      scene.label(at, text, close ? 'accent' : 'ink', close ? add(at, beside) : ZERO);
     }
     scene.dashes(scale(-1.7, B[0]), scale(1.7, B[0]), 0.017, 'muted', 24);
     scene.label(scale(1.7, B[0]), '\\theta', 'ink');
@@ -407,7 +439,7 @@ const SHOWS = {
     if (Math.abs(Math.sin(half)) > 0.05) scene.arrow(ZERO, scale(1.5 * Math.sin(half), axis), 'accent', { thick: 0.045 });
     scene.triad('D', D, { reach: 1.15, thick: 0.022, labels: false });
     // The circle of the half angle, flat before the eye.
-    const [right, up] = s.view, middle = add(TARGET, scale(1.42, right), scale(1.42, up)), r = 0.72;
+    const [right, up] = s.view, middle = add(TARGET, scale(1.52, right), scale(1.62, up)), r = 0.64;
     const at = (angle, far = r) => add(middle, scale(far * Math.sin(angle), right), scale(far * Math.cos(angle), up));
     scene.circle(right, up, r, 0, 2 * PI, 'muted', 0.014, middle);
     scene.rod(at(0, -r), at(0), 0.008, 'muted');
@@ -455,11 +487,11 @@ const SHOWS = {
     if (s.track.length > 1) scene.tube(s.track.map((rows) => scale(1.54, rows[1])), 0.024, 'D');
   },
   'it-moves'(scene, s, { D }) {
-    const { told } = motion(s.time);
+    const { told } = motion(s.time, s.thrown);
     if (!s.free) {
       scene.camera(told, { alpha: 0.34, colour: 'B', lamp: false });
       scene.triad('B', told, { reach: 1.25, alpha: 0.7, thick: 0.018, labels: false });
-      const since = Math.max(0, s.time - 6), at = (kind) => Array.from({ length: 40 }, (_, k) => scale(1.5, motion(mix(since, s.time, k / 39))[kind][1]));
+      const since = Math.max(0, s.time - 6), at = (kind) => Array.from({ length: 40 }, (_, k) => scale(1.5, motion(mix(since, s.time, k / 39), s.thrown)[kind][1]));
       if (s.time > 0.2) {
         scene.tube(at('D'), 0.016, 'D');
         scene.tube(at('told'), 0.013, 'B');
@@ -503,7 +535,7 @@ function moved(s) {
   if (s.stop === 'four-numbers' && !s.free) return dcmFromAxisAngle(FOUR.axis, s.whole);
   if (s.stop === 'not-home') return simpleDcm('y', s.turn);
   if (s.stop === 'between-poses' && !s.free) return ways(s.part).one;
-  if (s.stop === 'it-moves' && !s.free) return motion(s.time).D;
+  if (s.stop === 'it-moves' && !s.free) return motion(s.time, s.thrown).D;
   return frames(s.angles).D;
 }
 
@@ -518,7 +550,7 @@ export function viewOf(s) {
 
 // What a state holds besides what a stop moves.
 export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17], ride: 0, away: 0, lit: 0, part: 0, whole: 0, turn: 0,
-  passed: 0, together: 0, apart: 0, time: 0, start: GENERIC, free: false, track: [] };
+  passed: 0, together: 0, apart: 0, time: 0, start: GENERIC, free: false, thrown: null, track: [] };
 
 // All that is seen in a state: { items, labels, view, frames }.
 export function sceneOf(state) {

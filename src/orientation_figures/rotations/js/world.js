@@ -1,11 +1,11 @@
 // The figure of the essay in the page: it stays while the text goes past, the text moves it, and the reader may take it
 // in hand at any moment. What is seen follows what is wanted, a little later and gently.
 import { carriedBy, fragmentOf } from '../../moving/js/address.js';
-import { add, dcmFromQuaternion, dot, multiply, quaternionFromDcm, scale, slerp, times, transpose } from '../../moving/js/mathematics.js';
+import { add, dot, length, quaternionFromDcm, scale, times, transpose, unit } from '../../moving/js/mathematics.js';
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
-import { AT_READER, COURSE, CROOKED, EYES, FROM, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
+import { AT_READER, COURSE, CROOKED, EYES, FROM, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
   project, sceneOf, turnedAlong, turnedFrame, wholeWays, wrapped } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
@@ -19,10 +19,11 @@ const DIALS = {
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
   together: ['both mirrors together', 0, 55, 1, 55, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
   whole: ['turn of the camera', 0, 720, 1, DEGREES, '°'], turn: ['turn of the camera', 0, 720, 1, DEGREES, '°'],
-  passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, 24, 0.1, 1, 's'],
+  passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
 };
 const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
+const SWING = [0.5, 0.4, 1.1];   // along A, radians a second
 const stopOf = (id) => STOPS.find((one) => one.id === id);
 const fadesOf = (stop) => ({ ground: 1, ...stop });
 
@@ -119,7 +120,7 @@ class World {
     }
     this.enter(now.id);
     this.goal.t = calm() ? stopOf(now.id).still : part;
-    if (this.state.free && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
+    if ((this.state.free || this.state.thrown) && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
     this.wake();
   }
 
@@ -130,6 +131,7 @@ class World {
     this.state.stop = id;
     this.state.t = 0;
     this.state.free = false;
+    this.state.thrown = null;
     this.state.track = [];
     this.set.clear();
     this.heldAt = null;
@@ -170,6 +172,7 @@ class World {
   takeBack() {
     const before = this.shownDcm();
     this.state.free = false;
+    this.state.thrown = null;
     this.set.clear();
     this.state.track = [];
     if (stopOf(this.state.stop).by === 'camera') this.carry = { from: quaternionFromDcm(before), since: null };
@@ -244,8 +247,9 @@ class World {
   // Where graphics are drawn by the processor, fewer points are better than few pictures.
   pace(now, still) {
     if (still || !this.before) { this.slow = 0; return; }
-    const long = now - this.before > 55;
-    this.slow = long ? (this.slow ?? 0) + 1 : 0;
+    // One that takes long counts for up to three.
+    const took = now - this.before;
+    this.slow = took > 55 ? (this.slow ?? 0) + Math.min(3, took / 55) : 0;
     if (this.slow > 6 && this.painter.renderer.dpr > 0.6) {
       this.slow = 0;
       this.painter.resize(this.painter.wide, this.painter.high, Math.max(0.6, this.painter.renderer.dpr * 0.7));
@@ -307,7 +311,7 @@ class World {
   words() {
     const { state } = this, { D } = this.picture.frames, look = `The camera looks ${lookOf(D)}.`;
     const more = {
-      'one-motor': () => `First motor ${say(state.angles[0])}: ${Math.cos(state.angles[0]).toFixed(2)} of the arrow falls on one arrow of the hand, ${Math.sin(state.angles[0]).toFixed(2)} on the other.`,
+      'one-motor': () => `First motor at ${say(state.angles[0])}: the two shadows are ${Math.cos(state.angles[0]).toFixed(2)} and ${Math.sin(state.angles[0]).toFixed(2)} long.`,
       'nine-shadows': () => `The shadows of the arrow d ${'xyz'[state.lit]} are ${D[state.lit].map((entry) => entry.toFixed(2)).join(', ')}.`,
       'three-are-enough': () => this.beside(D),
       lock: () => {
@@ -320,10 +324,10 @@ class World {
       'four-numbers': () => `Turned ${say(state.whole)}: the point stands at ${say(state.whole / 2)}.`,
       'not-home': () => this.cable(),
       'between-poses': () => this.way(D),
-      'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the small turns that the instrument added up are ${say(apart(D, motion(state.time).told))} off.`),
+      'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the small turns that the instrument added up are ${say(apart(D, motion(state.time, state.thrown).told))} off.`),
     }[state.stop];
     const held = this.phoneWords ?? (more ? more() : look);
-    return held.replaceAll('-0.00', '0.00');
+    return held.replaceAll('-0.00', '0.00').replace(/-(?=\d)/g, '\u2212');
   }
 
   beside(D) {
@@ -396,6 +400,7 @@ class World {
     goal.angles = anglesNear(dcm, state.angles);
     state.angles = [...goal.angles];
     this.carry = null;
+    state.thrown = null;
     state.free = true;
   }
 
@@ -424,7 +429,7 @@ class World {
     } else if (state.stop === 'not-home') {
       this.dial('turn', Math.max(0, Math.min(4 * PI, goal.turn + moved[0] / 60)));
     } else if (part === 'D') {
-      this.turnBy(moved);
+      this.turnBy(moved, event.timeStamp);
     } else {
       const k = part === 'B' ? 0 : 1, axis = k ? this.picture.frames.B[0] : [0, 0, 1];
       this.along(k, axis, moved);
@@ -433,12 +438,13 @@ class World {
   }
 
   // As a ball under the hand: the front goes where the pointer goes.
-  turnBy([right, up]) {
+  turnBy([right, up], when) {
     const { goal, state } = this, turn = Math.hypot(right, up) / (0.75 * this.half);
     if (!turn) return;
     const axis = times(transpose(this.picture.view), [-up, right, 0]);
     const before = frames(goal.angles).D, dcm = turnedFrame(axis, turn, before);
     goal.angles = anglesNear(dcm, goal.angles);
+    this.swing = [...(this.swing ?? []).slice(-20), { at: when, by: scale(turn, unit(axis)) }];
     if (state.stop === 'between-poses') state.track = [...state.track, dcm].slice(-400);
   }
 
@@ -458,7 +464,22 @@ class World {
     this.held = null;
     this.canvas.removeAttribute('data-held');
     if (!part) return;
+    if (part === 'D' && this.state.stop === 'it-moves') {
+      // As fast as it was turned in the last tenth of a second.
+      const lately = (this.swing ?? []).filter(({ at }) => event.timeStamp - at < 100);
+      if (lately.length) this.throwIt(scale(10, add(...lately.map(({ by }) => by))));
+    }
     this.letGo();
+  }
+
+  // Thrown: it turns on by itself, at that rate, along A.
+  throwIt(rate) {
+    const { state } = this, dcm = frames(state.angles).D, fast = length(rate);
+    if (fast < 0.2) return;
+    state.thrown = { dcm, rate: times(dcm, scale(Math.min(1, 2.5 / fast), rate)) };
+    state.free = false;
+    state.time = 0;
+    this.run('time', LASTS, 1000 * LASTS);
   }
 
   // What follows when it is let go, by hand or by key.
@@ -476,13 +497,13 @@ class World {
   }
 
   // Goes on by itself.
-  run(name, to, length) {
+  run(name, to, lasts) {
     this.set.add(name);
-    const from = this.goal[name] = 0, begin = performance.now();
+    const begin = performance.now(), running = this.running = {};
     const tick = () => {
-      if (this.held || !this.set.has(name)) return;
-      const part = calm() ? 1 : Math.min(1, (performance.now() - begin) / length);
-      this.goal[name] = from + (to - from) * part;
+      if (this.held || !this.set.has(name) || this.running !== running) return;
+      const part = calm() ? 1 : Math.min(1, (performance.now() - begin) / lasts);
+      this.goal[name] = to * part;
       this.wake();
       if (part < 1) requestAnimationFrame(tick);
     };
@@ -525,6 +546,13 @@ class World {
       return { name, field, value, factor, sign, motor, zero, title, row: element('label', { class: `dial${motor >= 0 && motor !== null ? ` motor-${motor}` : ''}` }, element('span', {}, title), field, value) };
     });
     this.dials.replaceChildren(...this.open.map(({ row }) => row));
+    if (stop.id === 'it-moves') {
+      this.dials.append(element('div', { class: 'tools' }, element('button', { type: 'button', click: () => {
+        this.seize();
+        this.throwIt(SWING);
+        this.letGo();
+      } }, 'Give it a swing')));
+    }
     if (stop.id === 'nine-shadows') {
       this.dials.append(element('div', { class: 'tools' }, ...['x', 'y', 'z'].map((axis, k) => element('button', { type: 'button', click: () => {
         this.state.lit = k;
@@ -541,7 +569,7 @@ class World {
       const shown = String(Number((now * factor + zero).toFixed(factor === 1 ? 1 : 0)) + 0);
       if (document.activeElement !== field || !this.set.has(name)) field.value = shown;
       write(value, `${shown}${sign}`);
-      put(field, 'aria-valuetext', `${title}: ${shown} ${{ '°': 'degrees', '%': 'per cent', s: 'seconds' }[sign]}`);
+      put(field, 'aria-valuetext', `${title}: ${shown} ${{ '°': 'degrees', '%': 'per cent', ' s': 'seconds' }[sign]}`);
     }
   }
 
@@ -552,6 +580,7 @@ class World {
 
   dial(name, value) {
     if (stopOf(this.state.stop).by === 'camera' && this.state.free) this.takeBack();
+    this.running = null;
     this.set.add(name);
     this.heldAt = this.goal.t;
     this.goal[name] = value;
@@ -562,7 +591,9 @@ class World {
   content() {
     const { state, goal } = this, round = (value) => Math.round(value * 1e4) / 1e4;
     const set = Object.fromEntries([...this.set].filter((name) => SCALARS.includes(name)).map((name) => [name, round(goal[name])]));
-    return { stop: state.stop, t: round(goal.t), eye: goal.eye.map(round), ...(state.free && { angles: goal.angles.map(round) }), ...set };
+    const pose = state.free ? goal.angles : state.thrown && anglesNear(state.thrown.dcm, state.angles);
+    return { stop: state.stop, t: round(goal.t), eye: goal.eye.map(round), ...(pose && { angles: pose.map(round) }),
+      ...(state.thrown && { rate: state.thrown.rate.map(round) }), ...set };
   }
 
   async copyAddress() {
@@ -587,7 +618,7 @@ class World {
       return;
     }
     if (carried?.place !== PLACE) return;
-    const { stop, t, eye, angles, ...rest } = carried.content, known = stopOf(stop);
+    const { stop, t, eye, angles, rate, ...rest } = carried.content, known = stopOf(stop);
     if (!known) return;
     const numbers = (list, count, most) => Array.isArray(list) && list.length === count && list.every((one) => Number.isFinite(one) && Math.abs(one) <= most);
     const share = t >= 0 && t <= 1 ? t : 0, section = this.sections.find((one) => one.id === stop);
@@ -604,6 +635,10 @@ class World {
     if (numbers(angles, 3, 100)) {
       this.seize();
       this.goal.angles = angles;
+      if (stop === 'it-moves' && numbers(rate, 3, 2.5)) {
+        this.state.thrown = { dcm: frames(angles).D, rate };
+        this.state.free = false;
+      }
     }
     for (const name of SCALARS) {
       const dial = DIALS[name];
@@ -657,6 +692,10 @@ const turnedPoint = (axis, angle, point) => {
   return point.map((entry, k) => c * entry + s * across[k] + (1 - c) * along * axis[k]);
 };
 
+// Where scripts run the stills are text, until somebody needs them.
+const unfold = () => { for (const folded of document.querySelectorAll('[data-stop] > noscript')) folded.outerHTML = folded.textContent; };
+addEventListener('beforeprint', unfold);
+
 for (const figure of document.querySelectorAll('.world:not([data-ready], [data-stills])')) {
   const sections = [...document.querySelectorAll('[data-stop]')].map((still) => ({ id: still.dataset.stop, place: still.closest('section') ?? still, still }));
   try {
@@ -666,6 +705,7 @@ for (const figure of document.querySelectorAll('.world:not([data-ready], [data-s
     if (error.message !== 'WebGL') throw error;
     // Without WebGL the stills take turns in the place of the figure.
     figure.dataset.stills = '';
+    unfold();
     const still = figure.querySelector('.still');
     const show = () => {
       const line = 0.55 * innerHeight, now = sections.filter(({ place }) => place.getBoundingClientRect().top <= line).at(-1) ?? sections[0];

@@ -4,6 +4,7 @@ What does not have exactly the form of a record is counted and dropped. Nothing 
 """
 
 import json
+from typing import Any, NoReturn
 
 from coursework.checking.plain import NotPlain, read_plain
 
@@ -18,7 +19,7 @@ OUTCOMES = ("done", "error", "timeout", "memory")
 class Records:
     """Takes bytes as they come and gives the records that are whole and well formed."""
 
-    def __init__(self, number_of_cells):
+    def __init__(self, number_of_cells: int) -> None:
         self.number_of_cells = number_of_cells
         self.unfinished = bytearray()
         self.received = 0
@@ -26,24 +27,24 @@ class Records:
         self.damaged = 0
 
     @property
-    def too_many(self):
+    def too_many(self) -> bool:
         """Whether more came than any honest notebook sends."""
         return self.received > MOST_BYTES or self.lines > MOST_RECORDS or len(self.unfinished) > LONGEST_LINE
 
-    def feed(self, data):
+    def feed(self, data: bytes) -> list[dict[str, Any]]:
         self.received += len(data)
         self.unfinished += data
         if self.too_many or b"\n" not in data:
             return []
         *lines, rest = self.unfinished.split(b"\n")
         self.unfinished = rest
-        lines = [bytes(line) for line in lines if line]
-        self.lines += len(lines)
-        records = [self.record(line) for line in lines]
+        whole = [bytes(line) for line in lines if line]
+        self.lines += len(whole)
+        records = [self.record(line) for line in whole]
         self.damaged += records.count(None)
         return [record for record in records if record is not None]
 
-    def record(self, line):
+    def record(self, line: bytes) -> dict[str, Any] | None:
         """One line as a record, or None."""
         try:
             record = json.loads(line.decode("utf-8"), parse_constant=_refuse)
@@ -53,7 +54,7 @@ class Records:
         except (ValueError, RecursionError, NotPlain):
             return None
 
-    def well_formed(self, record):
+    def well_formed(self, record: dict[str, Any]) -> bool:
         keys = set(record)
         if keys == {"done"}:
             return record["done"] is True
@@ -85,10 +86,10 @@ class Records:
             )
         return False
 
-    def is_cell(self, cell):
+    def is_cell(self, cell: object) -> bool:
         return cell is None or is_count(cell, 0, self.number_of_cells)
 
-    def is_step(self, step):
+    def is_step(self, step: object) -> bool:
         if not isinstance(step, list) or len(step) != 2:
             return False
         if step[0] == "cell":
@@ -96,13 +97,13 @@ class Records:
         return step[0] == "answer" and is_text(step[1], LONGEST_NAME)
 
 
-def is_text(value, longest):
+def is_text(value: object, longest: int) -> bool:
     return isinstance(value, str) and len(value) <= longest
 
 
-def is_count(value, first, end):
+def is_count(value: object, first: int, end: int) -> bool:
     return type(value) is int and first <= value < end
 
 
-def _refuse(constant):
+def _refuse(constant: str) -> NoReturn:
     raise ValueError(f"{constant} is not JSON")

@@ -19,8 +19,8 @@ from ...checking.reply import plain_text
 from ..judging.ledger import Ledger, appeals_open, with_decisions
 from ..judging.term import EXCUSED, results_of, say_what_marked_costs
 from ..store import REFUSED, as_text, file_name, write
-from ..submissions.identity import local_parts
 from ..submissions.languages import LANGUAGES, in_english
+from ..submissions.roster import local_parts
 from ..tables import in_a_line, number, readable, table
 
 NBGRADER = (
@@ -67,18 +67,18 @@ class Marks:
         standing = Ledger(store.folder).standing(as_of)
         self.behind, self.records = 0, []
         for record in store.all():
-            if assignment in (None, record["assignment"]):
+            if assignment in (None, record.assignment):
                 decided = with_decisions(record, standing)
                 self.behind += decided != record
                 self.records.append(decided)
         if not self.records:
             named = f" of {assignment!r}" if assignment else ""
             raise CannotExport(f"There are no records{named} in {store.folder}.")
-        self.assignments = sorted({record["assignment"] for record in self.records})
+        self.assignments = sorted({record.assignment for record in self.records})
         self.students = {}
         for record in self.records:
-            self.students.setdefault(record["student"], []).append(record)
-        worth = {record["assignment"]: record["worth"] for record in self.records}
+            self.students.setdefault(record.student, []).append(record)
+        worth = {record.assignment: record.worth for record in self.records}
         self.worth = sum(worth.values())
         self.results = self._results(worth, as_of or datetime.datetime.now(datetime.UTC)) if rules else {}
 
@@ -89,7 +89,7 @@ class Marks:
             raise CannotExport(f"The rules say nothing of {', '.join(unknown)}.")
         found, marked = {}, []
         for student, records in self.students.items():
-            own = {record["assignment"]: record for record in records}
+            own = {record.assignment: record for record in records}
             for result in results_of(student, own, self.rules, worth, now)[0]:
                 if result.assignment in own:
                     found[student, result.assignment] = result
@@ -101,29 +101,29 @@ class Marks:
 
     def penalty(self, record):
         """The share of the points of a record that its lateness costs."""
-        found = self.results.get((record["student"], record["assignment"]))
+        found = self.results.get((record.student, record.assignment))
         return found.penalty if found else 0.0
 
     def excused(self, student):
         """Whether the rules excuse a student from what is handed on here, or from a part of it."""
         return any(
-            self.results[student, record["assignment"]].state == EXCUSED
+            self.results[student, record.assignment].state == EXCUSED
             for record in self.students[student]
             if self.results
         )
 
     def points(self, student):
-        return sum(record["points"] * (1 - self.penalty(record)) for record in self.students[student])
+        return sum(record.points * (1 - self.penalty(record)) for record in self.students[student])
 
     def undecided(self, student):
-        return sum(record["undecided"] for record in self.students[student])
+        return sum(record.undecided for record in self.students[student])
 
     def appeals(self, student):
         """The questions of a student against whose marks an appeal is open."""
         return [name for record in self.students[student] for name in appeals_open(record)]
 
     def identity(self, student):
-        return self.students[student][0]["identity"]
+        return self.students[student][0].identity
 
 
 # --- a table whose every byte is kept -----------------------------------------------------------
@@ -507,10 +507,10 @@ def write_feedback(path, marks, store):
         )
     pages = {}
     for record in marks.records:
-        page = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
-        if not page.exists() or "reply" not in record:
-            raise CannotExport(f"There is no feedback for {record['student']!r}: grade again.")
-        name = f"{record['reply']}feedback-{file_name(record['assignment']).replace('_', '-')}.html"
+        page = store.folder / "feedback" / file_name(record.student) / f"{file_name(record.assignment)}.html"
+        if not page.exists() or record.reply is None:
+            raise CannotExport(f"There is no feedback for {record.student!r}: grade again.")
+        name = f"{record.reply}feedback-{file_name(record.assignment).replace('_', '-')}.html"
         if name in pages:
             raise CannotExport(f"Two pages of feedback would be called {name!r}: grade again, with a --roster.")
         pages[name] = page
@@ -533,17 +533,17 @@ def write_nbgrader(path, marks):
     for record in marks.records:
         rows.append(
             (
-                record["assignment"],
+                record.assignment,
                 "",
                 "",
-                record["student"],
+                record.student,
                 "",
                 "",
                 "",
-                record["points"],
-                round(record["points"] * marks.penalty(record), 4),
-                round(record["points"] * (1 - marks.penalty(record)), 4),
-                record["worth"],
+                record.points,
+                round(record.points * marks.penalty(record), 4),
+                round(record.points * (1 - marks.penalty(record)), 4),
+                record.worth,
             )
         )
     write(path, table(NBGRADER, rows))
@@ -563,18 +563,18 @@ def write_gradescope(path, marks, student=None):
         raise CannotExport(f"There are no records of {student!r}.")
     tests = []
     for record in marks.students[student]:
-        for mark in record["marks"].values():
+        for mark in record.marks.values():
             tests.append(
                 {
-                    "name": readable(mark["title"], 200),
+                    "name": readable(mark.title, 200),
                     "number": str(len(tests) + 1),
-                    "score": mark["points"],
-                    "max_score": mark["worth"],
+                    "score": mark.points,
+                    "max_score": mark.worth,
                     # Neither one nor the other, where a person has still to decide.
-                    **({} if mark["outcome"] == "undecided" else {"status": STATUS.get(mark["outcome"], "failed")}),
+                    **({} if mark.outcome == "undecided" else {"status": STATUS.get(mark.outcome, "failed")}),
                     "visibility": "visible",
                     "output_format": "text",
-                    "output": readable("\n".join([mark["outcome"], *map(plain_text, mark["messages"])])),
+                    "output": readable("\n".join([mark.outcome, *map(plain_text, mark.messages)])),
                 }
             )
     write(

@@ -134,7 +134,7 @@ def run(home=HOME):
     """
     from ..grade import NothingToGrade, grade
     from ..store import Store
-    from ..submissions.identity import Roster
+    from ..submissions.roster import Roster
     from .gradebooks import Marks, write_gradescope
 
     source = home / "source"

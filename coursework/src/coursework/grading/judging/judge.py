@@ -17,12 +17,15 @@ import sys
 import time
 import traceback
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from types import TracebackType
 from typing import Any, NoReturn, Self
 
+from ..record import Mark, Record
 from . import marking
-from .cases import Contracts, Question
+from .cases import Contracts
+from .contract import Contract
 
 #: Processor time for one question of one student, of which an honest answer takes some thousandths.
 MOST_SECONDS = 10
@@ -31,8 +34,6 @@ MOST_MEMORY = 1 << 30
 #: Nothing was heard of it for so long, on however busy a machine: then it is ended.
 LONGEST_SILENCE = 60 * MOST_SECONDS
 PR_SET_PDEATHSIG = 1
-
-Record = dict[str, Any]
 
 
 class Judge:
@@ -48,7 +49,10 @@ class Judge:
     """
 
     def __init__(
-        self, questions: Mapping[str, Mapping[str, Question]], contracts: Contracts, log: Callable[[str], None]
+        self,
+        questions: Mapping[str, Mapping[str, Sequence[Contract]]],
+        contracts: Contracts,
+        log: Callable[[str], None],
     ) -> None:
         self.questions, self.contracts, self.log = questions, contracts, log
         self.process: tuple[int, int, int] | None = None
@@ -62,7 +66,7 @@ class Judge:
     ) -> None:
         self.end()
 
-    def marks(self, record: Record) -> dict[str, dict[str, Any]]:
+    def marks(self, record: Record) -> dict[str, Mark]:
         """The marks of a record, by the names of its questions.
 
         Raises
@@ -72,20 +76,20 @@ class Judge:
         """
         if self.of != os.getpid():
             self.process, self.of = None, os.getpid()  # a copy of the process has a judge of its own
-        found: dict[str, dict[str, Any]] = {}
+        found: dict[str, Mark] = {}
         while True:
             if self.process is None:
                 self.process = self._begin()
             begun = ""
             try:
-                self._say({"record": record, "without": list(found)})
+                self._say({"record": record.as_json(), "without": list(found)})
                 while "end" not in (said := self._hear()):
                     if "error" in said:
                         raise ValueError(said["error"])
                     if "fault" in said:
                         raise RuntimeError(said["fault"])
                     if "mark" in said:
-                        found[begun] = said["mark"]
+                        found[begun] = Mark.from_json(said["mark"], begun)
                     else:
                         begun = said["begin"]
                 return found
@@ -95,17 +99,13 @@ class Judge:
                     raise RuntimeError("The process that judges ended, and not at an answer.") from None
                 found[begun] = self._stopped(record, begun)
 
-    def _stopped(self, record: Record, name: str) -> dict[str, Any]:
-        self.log(f"not judged, too much work: {record['student']!r} {record['assignment']} {name}")
+    def _stopped(self, record: Record, name: str) -> Mark:
+        self.log(f"not judged, too much work: {record.student!r} {record.assignment} {name}")
         own, _ = marking.of_student(
-            {name: self.questions[record["assignment"]][name]}, record["student"], record, self.contracts
+            {name: self.questions[record.assignment][name]}, record.student, record, self.contracts
         )
-        return {
-            **marking.UNJUDGED,
-            "worth": own[name]["worth"],
-            "version": own[name]["version"],
-            "guessable": own[name]["guessable"],
-        }
+        contract = own[name].contract
+        return replace(marking.UNJUDGED, worth=contract.worth, version=contract.version, guessable=contract.guessable)
 
     # -- the process
 
@@ -156,7 +156,7 @@ class Judge:
                 _limit_memory()
                 while True:
                     asked = _read(hears)
-                    for said in self._marks(asked["record"], asked["without"]):
+                    for said in self._marks(Record.from_json(asked["record"], "a record"), asked["without"]):
                         _write(says, said)
         except (EOFError, OSError):
             pass
@@ -165,17 +165,16 @@ class Judge:
 
     def _marks(self, record: Record, without: list[str]) -> Any:
         try:
-            own, _ = marking.of_student(self.questions[record["assignment"]], record["student"], record, self.contracts)
+            own, _ = marking.of_student(self.questions[record.assignment], record.student, record, self.contracts)
             limited = marking.was_limited(record)
             for name, question in own.items():
                 if name not in without:
                     yield {"begin": name}
                     _limit_time()
-                    yield {
-                        "mark": marking.mark_with_siblings(
-                            name, question, record["answers"], record.get("remembered", {}), record["finished"], limited
-                        )
-                    }
+                    found = marking.mark_with_siblings(
+                        name, question, record.answers, record.remembered, record.finished, limited
+                    )
+                    yield {"mark": found.as_json()}
             yield {"end": True}
         except ValueError as error:
             yield {"error": str(error)}

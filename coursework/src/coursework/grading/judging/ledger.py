@@ -21,13 +21,16 @@ import json
 import math
 import os
 import secrets
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ...checking import fields
+from ...checking.fields import Fields, Misread, Reader, many, one_of, text, whole
 from ..locks import lock
-from ..submissions.identity import decoded
+from ..record import Judged, Mark, Record
+from ..submissions.roster import decoded
 from ..tables import as_written
 
 FILE = "ledger.jsonl"
@@ -38,7 +41,6 @@ CUT = "ledger.cut"
 DECISIONS, APPEALS = "decisions.csv", "appeals.csv"
 LONGEST_WORDS = 4_000
 
-Record = dict[str, Any]
 #: A student, an assignment, a question.
 Key = tuple[str, str, str]
 
@@ -184,15 +186,15 @@ class Collision(ValueError):
         self.decisions = list(decisions)
 
 
-def digest_of_answer(record: Mapping[str, Any], question: str) -> str:
+def digest_of_answer(record: Record, question: str) -> str:
     """A short text that follows from an answer, and from nothing else."""
-    answer = record["answers"].get(question, {"outcome": "missing"})
+    answer = record.answer(question).as_json()
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def contract_of(record: Mapping[str, Any], question: str) -> str:
+def contract_of(record: Record, question: str) -> str:
     """The version of the question by which an answer is judged."""
-    return str(record.get("marks", {}).get(question, {}).get("version", ""))
+    return record.marks[question].version if question in record.marks else ""
 
 
 def stable_id(student: str, assignment: str, question: str) -> str:
@@ -260,9 +262,9 @@ class Standing:
     appeals: Mapping[Key, Sequence[Appealed]] = field(default_factory=dict)
     worths: Mapping[tuple[str, str], Worth] = field(default_factory=dict)
 
-    def decision(self, record: Mapping[str, Any], question: str) -> Decision | None:
+    def decision(self, record: Record, question: str) -> Decision | None:
         """The decision on an answer that counts; one on an answer that was handed in before does not."""
-        found = self.decisions.get((record["student"], record["assignment"], question))
+        found = self.decisions.get((record.student, record.assignment, question))
         return found if found and found.answer == digest_of_answer(record, question) else None
 
     def worth(self, question: str, line: str, source: float | None) -> float | None:
@@ -270,12 +272,12 @@ class Standing:
         said = self.worths.get((question, line))
         return said.points if said is not None and said.source == source else source
 
-    def points(self, decision: Decision, mark: Mapping[str, Any]) -> float:
+    def points(self, decision: Decision, mark: Mark) -> float:
         """The points of a decision: a share of all, or what the lines of the rubric are worth now."""
-        worth = float(mark["worth"])
+        worth = float(mark.worth)
         if decision.points is None:
             return round(worth * (decision.credit or 0), 4)
-        source, found = mark.get("rubric", {}), 0.0
+        source, found = (mark.rubric or {}), 0.0
         for line, then in zip(decision.rubric, decision.points, strict=True):
             now = self.worth(decision.question, line, source.get(line))
             found += (then if now is None else now) or 0  # a line that nobody knows any more stays what it was
@@ -285,38 +287,26 @@ class Standing:
 def with_decisions(record: Record, standing: Standing) -> Record:
     """A record with what people decided on its answers, in place of what the machine said; nothing is judged."""
     marks = {}
-    for name, mark in record["marks"].items():
-        found = {key: value for key, value in mark.items() if key not in ("before", "decided", "appeals")}
-        found |= mark.get("before", {})
-        decided = standing.decision(record, name)
+    for name, mark in record.marks.items():
+        judged = mark.judged
+        found, decided = judged, standing.decision(record, name)
         if decided is not None:
-            found |= {
-                "outcome": "decided",
-                "points": standing.points(decided, found),
-                "messages": [said for said in (*decided.rubric, decided.comment) if said],
-                "before": {key: found[key] for key in ("outcome", "note", "points", "messages")},
-                "decided": {"who": decided.who, "when": decided.when, "id": decided.id},
-            }
-        appeals = standing.appeals.get((record["student"], record["assignment"], name), ())
-        if appeals:
-            found["appeals"] = [one.as_json() for one in appeals]
-        marks[name] = found
-    return {
-        **record,
-        "marks": marks,
-        "points": round(sum(mark["points"] for mark in marks.values()), 4),
-        "worth": sum(mark["worth"] for mark in marks.values()),
-        "undecided": sum(mark["outcome"] == "undecided" for mark in marks.values()),
-    }
+            found = replace(
+                judged,
+                outcome="decided",
+                points=standing.points(decided, judged),
+                messages=tuple(said for said in (*decided.rubric, decided.comment) if said),
+                before=Judged(judged.outcome, judged.note, judged.points, judged.messages),
+                decided={"who": decided.who, "when": decided.when, "id": decided.id},
+            )
+        appeals = standing.appeals.get((record.student, record.assignment, name), ())
+        marks[name] = replace(found, appeals=tuple(one.as_json() for one in appeals))
+    return replace(record, marks=marks)
 
 
-def appeals_open(record: Mapping[str, Any]) -> list[str]:
+def appeals_open(record: Record) -> list[str]:
     """The questions of a record against whose marks an appeal is open."""
-    return [
-        name
-        for name, mark in record["marks"].items()
-        if any(appeal["state"] in OPEN for appeal in mark.get("appeals", ()))
-    ]
+    return [name for name, mark in record.marks.items() if any(appeal["state"] in OPEN for appeal in mark.appeals)]
 
 
 class Ledger:
@@ -405,7 +395,7 @@ class Ledger:
             copies.append(one._replace(**same))
         self.append(copies)
 
-    def add(self, record: Mapping[str, Any], question: str, credit: float | None, **more: Any) -> Decision:
+    def add(self, record: Record, question: str, credit: float | None, **more: Any) -> Decision:
         """Decide on an answer of a record."""
         one = self.decision(record, question, credit, **more)
         self.append([one])
@@ -413,7 +403,7 @@ class Ledger:
 
     def decision(
         self,
-        record: Mapping[str, Any],
+        record: Record,
         question: str,
         credit: float | None,
         *,
@@ -433,8 +423,8 @@ class Ledger:
             secrets.token_hex(8),
             _now(),
             who or getpass.getuser(),
-            record["student"],
-            record["assignment"],
+            record.student,
+            record.assignment,
             question,
             digest_of_answer(record, question),
             credit,
@@ -450,7 +440,7 @@ class Ledger:
 
     def appeal(
         self,
-        record: Mapping[str, Any],
+        record: Record,
         question: str,
         words: str,
         *,
@@ -481,8 +471,8 @@ class Ledger:
             secrets.token_hex(8),
             _now(),
             who or getpass.getuser(),
-            record["student"],
-            record["assignment"],
+            record.student,
+            record.assignment,
             question,
             digest_of_answer(record, question),
             contract_of(record, question),
@@ -514,7 +504,7 @@ class Ledger:
             for line, (points, after) in changes.items()
         ]
 
-    def take_back(self, records: Iterable[Mapping[str, Any]], question: str, who: str, why: str = "") -> None:
+    def take_back(self, records: Iterable[Record], question: str, who: str, why: str = "") -> None:
         """Take back the last decision of a person on each of these answers; what stood before it counts again.
 
         Raises
@@ -524,9 +514,7 @@ class Ledger:
         """
         with self._alone() as file:
             standing = _not_taken_back(_in_order(self.events))
-            mine = [
-                (record, standing.get((record["student"], record["assignment"], question), [])) for record in records
-            ]
+            mine = [(record, standing.get((record.student, record.assignment, question), [])) for record in records]
             own = [(record, [one for one in several if one.who == who]) for record, several in mine]
             if not any(several for _, several in own):
                 others = [several[-1] for _, several in mine if several]
@@ -667,7 +655,7 @@ class Ledger:
                 unused.append(f"line {number}: {fitting}")
                 continue
             record, question = fitting
-            known = entered.get((record["student"], record["assignment"], question))
+            known = entered.get((record.student, record.assignment, question))
             comment = row.get("comment", "")
             same = known and (known.credit, known.comment, known.answer) == (
                 credit,
@@ -699,7 +687,7 @@ class Ledger:
                 unused.append(f"line {number}: {fitting}")
                 continue
             record, question = fitting
-            if (record["student"], record["assignment"], question, words) in raised:
+            if (record.student, record.assignment, question, words) in raised:
                 continue
             try:
                 self.appeal(record, question, words)
@@ -764,11 +752,12 @@ def events_in(path: Path) -> Iterator[Event]:
                 yield _event(line)
             except NewerFormat as error:
                 raise ValueError(f"{path}, line {number}: {error}") from None
-            except (ValueError, TypeError, KeyError):
+            except ValueError as error:
                 if not line.endswith("\n"):
                     return
+                why = f" ({error})" if isinstance(error, Misread) else ""
                 raise ValueError(
-                    f"{path}, line {number}: this is no decision: {line[:80]!r}. Somebody changed the file: move "
+                    f"{path}, line {number}: this is no decision: {line[:80]!r}{why}. Somebody changed the file: move "
                     "the line into a file of its own, and look at that answer again."
                 ) from None
 
@@ -783,7 +772,7 @@ def _is_cut(line: bytes) -> bool:
         _event(line.decode("utf8", "replace"))
     except NewerFormat:
         return False
-    except (ValueError, TypeError, KeyError):
+    except ValueError:
         return True
     return False
 
@@ -794,26 +783,89 @@ def _line(one: Event) -> bytes:
 
 
 def _event(line: str) -> Event:
-    """What a line says; raises ``ValueError``, ``TypeError`` or ``KeyError`` if it is none."""
-    found = json.loads(line)
-    if found.pop("format", 1) > FORMAT:
+    """What a line says.
+
+    Raises
+    ------
+    NewerFormat, ValueError
+        It is none; the message says why.
+    """
+    about = Fields(json.loads(line), "the line")
+    if (about.maybe("format", whole) or 1) > FORMAT:
         raise NewerFormat("a later version of coursework wrote this. Install that one.")
-    kind = KINDS[found.pop("event", "decision")]
-    for name in ("rubric", "points"):
-        if isinstance(found.get(name), list):
-            found[name] = tuple(found[name])
-    made = kind(**found)
-    credit = found["credit"] if isinstance(made, Decision) else None
-    if not all(isinstance(found[name], str) for name in ("id", "when", "who")):
-        raise TypeError
+    kind = KINDS[about.maybe("event", one_of(*KINDS)) or "decision"]
+    for name, value in about.beside(("format", "event", *kind._fields)).items():
+        raise Misread(about.where, f"an event without {name!r}", value)
+    made = READERS[kind](about)
     datetime.datetime.fromisoformat(made.when)
-    if not (credit is None or 0 <= credit <= 1):
-        raise ValueError
-    if isinstance(made, Decision) and made.points is not None and len(made.points) != len(made.rubric):
-        raise ValueError
-    if isinstance(made, Worth) and not math.isfinite(made.points):
-        raise ValueError
     return made
+
+
+def _decision(about: Fields) -> Decision:
+    credit, rubric = about.get("credit", _or_none(fields.number)), about.maybe("rubric", many(text)) or ()
+    points = about.maybe("points", many(_or_none(fields.number)))
+    if not (credit is None or 0 <= credit <= 1):
+        raise Misread(f"{about.where}: 'credit'", "a share from 0 to 1", credit)
+    if points is not None and len(points) != len(rubric):
+        raise Misread(f"{about.where}: 'points'", f"those of {len(rubric)} lines", points)
+    return Decision(
+        about.get("id", text),
+        about.get("when", text),
+        about.get("who", text),
+        about.get("student", text),
+        about.get("assignment", text),
+        about.get("question", text),
+        about.get("answer", text),
+        credit,
+        about.maybe("comment", text) or "",
+        rubric,
+        about.maybe("why", text) or "",
+        about.maybe("undoes", text) or "",
+        about.maybe("after", text) or "",
+        about.maybe("contract", text) or "",
+        points,
+        about.maybe("appeal", text) or "",
+    )
+
+
+def _appeal(about: Fields) -> Appeal:
+    return Appeal(
+        about.get("id", text),
+        about.get("when", text),
+        about.get("who", text),
+        about.get("student", text),
+        about.get("assignment", text),
+        about.get("question", text),
+        about.get("answer", text),
+        about.get("contract", text),
+        about.get("state", text),
+        about.get("words", text),
+        about.maybe("appeal", text) or "",
+        about.maybe("after", text) or "",
+    )
+
+
+def _worth(about: Fields) -> Worth:
+    points = about.get("points", fields.number)
+    if not math.isfinite(points):
+        raise Misread(f"{about.where}: 'points'", "a number of points", points)
+    return Worth(
+        about.get("id", text),
+        about.get("when", text),
+        about.get("who", text),
+        about.get("question", text),
+        about.get("line", text),
+        points,
+        about.maybe("source", fields.number),
+        about.maybe("after", text) or "",
+    )
+
+
+def _or_none(reader: Reader[float]) -> Reader[float | None]:
+    return lambda value, where: None if value is None else reader(value, where)
+
+
+READERS: dict[type[Event], Callable[[Fields], Event]] = {Decision: _decision, Appeal: _appeal, Worth: _worth}
 
 
 def _fitting_rows(
@@ -825,9 +877,9 @@ def _fitting_rows(
     by_id: dict[str, tuple[Record, str]] = {}
     by_names: dict[tuple[str, str], list[tuple[Record, str]]] = {}
     for record in records:
-        for question in record["marks"]:
-            by_id[stable_id(record["student"], record["assignment"], question)] = record, question
-            by_names.setdefault((record["student"], question), []).append((record, question))
+        for question in record.marks:
+            by_id[stable_id(record.student, record.assignment, question)] = record, question
+            by_names.setdefault((record.student, question), []).append((record, question))
     for number, row in _rows(path, column):
         names = as_written(row.get("student", "")), row.get("question", "")
         fitting = [by_id[row["id"]]] if row.get("id") in by_id else by_names.get(names, [])

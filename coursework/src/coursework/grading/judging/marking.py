@@ -13,24 +13,28 @@ import io
 import itertools
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
-from ...authoring.author import AuthorError
+from ...authoring.author import AuthoredQuestion, AuthorError
 from ...authoring.source import MEASURED, checked_names, measured_strengths, read_source, texts_of_questions
 from ...checking.evaluate import MP
-from ...checking.kinds import PARTS, Blank, Fault, Undecidable, canonical, fingerprint, read
+from ...checking.kinds import PARTS, Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, read_plain
 from ...checking.plugins import packages
+from ...checking.question import Locker
 from ...checking.questions import compare
+from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
+from ..record import MISSING, Answer, Mark, Record, Remembered
 from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
 from . import secret as in_secret
-from .cases import Case, Contracts, Question, asked_of, case_by_rule, case_of
+from .cases import Case, Contracts, asked_of, case_by_rule, case_of, questions_in
+from .contract import Asked, Contract, variants_as_json
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
@@ -43,15 +47,11 @@ LONGEST_FOR_SIBLINGS = 1_000
 #: Verdicts that are kept for those who hand in the same, at most.
 MOST_KEPT = 4096
 #: The mark of an answer under which the process that judges ended, but for what the question says.
-UNJUDGED = {
-    "outcome": "undecided",
-    "note": "too much work",
-    "details": {},
-    "messages": ["Working this answer out takes more time or memory than it may: a person decides."],
-    "points": 0,
-    "group": "",
-    "tries": None,
-}
+UNJUDGED = Mark(
+    "undecided",
+    "too much work",
+    messages=("Working this answer out takes more time or memory than it may: a person decides.",),
+)
 #: A figure in the text of a question, as :func:`coursework.checking.variants.image` writes it.
 PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: How a cell ends that a limit ended: what is missing then may have been lost to it.
@@ -74,7 +74,7 @@ def names_asked(path):
 
 
 def questions_of(path, secret, edition=""):
-    """All that marks need of the questions of a notebook with solutions, as JSON can hold it, by name."""
+    """All that marks need of the questions of a notebook with solutions: the contracts of all variants, by name."""
     with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
         return _questions_of(path, secret, edition)
 
@@ -84,22 +84,22 @@ def _questions_of(path, secret, edition):
     source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
     texts = texts_of_questions(source.notebook, source.figures)
     found = {
-        name: about(question, secret, measured.get(name) or None, texts.get(name, ""))
+        name: [contract_of(question, secret, measured.get(name) or None, texts.get(name, ""))]
         for name, question in source.questions.items()
     }
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
         having = [name for name, rule in source.rules.items() if number < rule.count]
         for name, question in read_source(path, number, edition, having, pictures=True).questions.items():
-            found[name].setdefault("others", []).append(about(question, secret, measured.get(name) or None))
-    return found
+            found[name].append(contract_of(question, secret, measured.get(name) or None))
+    return {name: tuple(variants) for name, variants in found.items()}
 
 
 def of_student(
-    questions: Mapping[str, Question],
+    questions: Mapping[str, Sequence[Contract]],
     identity: str,
-    record: Mapping[str, Any] | None = None,
+    record: Record | None = None,
     contracts: Contracts | None = None,
-) -> tuple[dict[str, Question], dict[str, Case]]:
+) -> tuple[dict[str, Asked], dict[str, Case]]:
     """The questions of a student, each in the student's own variant, and the case of each.
 
     Parameters
@@ -115,70 +115,64 @@ def of_student(
 
     Returns
     -------
-    questions : dict
-        As :func:`coursework.grading.judging.cases.asked_of` gives each.
+    questions : dict of str to Asked
     cases : dict of str to Case
     """
-    own: dict[str, Question] = {}
+    own: dict[str, Asked] = {}
     cases: dict[str, Case] = {}
-    for name, question in questions.items():
-        today = case_by_rule(name, question, identity)
-        case = case_of(record, name, question, contracts) if record and contracts else None
+    for name, variants in questions.items():
+        today = case_by_rule(name, variants, identity)
+        case = case_of(record, name, variants, contracts) if record and contracts else None
         if case is None or case.edition != today.edition:
             case = today
-        own[name], cases[name] = asked_of(name, question, case, contracts), case
+        own[name], cases[name] = asked_of(name, variants, case, contracts), case
         if case.own.variant != today.own.variant:
-            own[name]["newer"] = asked_of(name, question, today, contracts)
+            own[name] = replace(own[name], newer=asked_of(name, variants, today, contracts))
     return own, cases
 
 
-def with_second_chances(questions, named=None):
+def with_second_chances(questions: Mapping[str, Asked], named: Collection[str] | None = None) -> dict[str, Contract]:
     """The questions of a student, and their siblings beside them: those that are ``named``, or all."""
     chances = {
-        sibling: question
+        sibling: contract
         for one in questions.values()
-        for sibling, question in one.get("second chances", {}).items()
+        for sibling, contract in one.second_chances.items()
         if named is None or sibling in named
     }
-    return {**questions, **chances}
+    return {name: asked.contract for name, asked in questions.items()} | chances
 
 
-def about(question, secret, guessable=None, text=""):
-    """All that marks need of a :class:`coursework.authoring.author.Question`, and a version that follows from it.
+def contract_of(question: AuthoredQuestion, secret: bytes, guessable: int | None = None, text: str = "") -> Contract:
+    """All that marks need of a question, with the version that follows from it.
 
     ``guessable`` is after how many tries the attack guessed it, if it did;
     ``text`` is that in the source: a question with variants holds its own, beside which the figures stay.
     """
-    found = json.loads(
-        json.dumps(
-            {
-                "title": question.title,
-                "variable": question.variable,
-                "worth": question.worth,
-                "credit": question.credit,
-                "public": question.public,
-                "known": {
-                    **{text: {"cases": []} for text in question.near},
-                    **{text: {"cases": entry.cases} for text, entry in question.entries.items()},
-                },
-                "right": _canonical_of(question),
-                "plain": question.plain if question.public["kind"] != "function" else None,
-                "secret": in_secret.secret_of(question, secret),
-                "guessable": guessable,
-                "partial": read(question.public, question.plain).text if question.partial else None,
-                "rubric": question.rubric,
-                "text": "\n\n".join(PICTURE.findall(text)) if "text" in question.public else text,
-            }
-        )
+    near = {text: Locker().as_json() for text in question.near}
+    found = Contract(
+        question.title,
+        question.variable,
+        question.worth,
+        question.public,
+        question.credit,
+        near | {text: Locker(tuple(entry.answers)).as_json() for text, entry in question.entries.items()},
+        _canonical_of(question),
+        question.plain if question.public.kind != "function" else None,
+        in_secret.secret_of(question, secret),
+        guessable,
+        read(question.public, question.plain).text if question.partial else None,
+        question.rubric,
+        "\n\n".join(PICTURE.findall(text)) if question.public.variant else text,
     )
-    return {**found, "version": hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]}
+    # As JSON holds it: of what its author wrote as a tuple it makes a list.
+    return Contract.from_json(json.loads(json.dumps(found.as_json())), question.name).with_version()
 
 
 def _canonical_of(question):
     reading = read(question.public, question.plain)
-    if reading.text is not None or question.public.get("tolerance") is not None:
+    if reading.text is not None or question.public.tolerance is not None:
         return None
-    return [MP.nstr(number, 30) for number in canonical(question.public, reading)]
+    return tuple(MP.nstr(number, 30) for number in canonical(question.public, reading))
 
 
 def load_questions(paths, kept, secret, edition=""):
@@ -196,7 +190,9 @@ def load_questions(paths, kept, secret, edition=""):
         places[path] = Path(kept) / f"{path.stem}-{depends}.json"
 
     def work_out(path):
-        write(places[path], json.dumps(questions_of(path, secret, edition), ensure_ascii=False), private=True)
+        found = questions_of(path, secret, edition)
+        as_json = {name: variants_as_json(variants) for name, variants in found.items()}
+        write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
 
     missing = [path for path, place in places.items() if not place.exists()]
     if len(missing) == 1:
@@ -208,7 +204,7 @@ def load_questions(paths, kept, secret, edition=""):
         list(side_by_side(map(str, missing), number, lambda stack: lambda path: work_out(Path(path)), [AuthorError]))
     found = {}
     for place in places.values():
-        found.update(json.loads(place.read_text("utf8")))
+        found.update(questions_in(place))
     return found
 
 
@@ -217,31 +213,32 @@ def asked_of_sandbox(questions):
 
     Of the secret calls a notebook learns when it has handed in everything else.
     """
-    variables = [question["variable"] for question in questions.values()]
+    variables = [contract.variable for contract in questions.values()]
+
+    def calls(contract, arguments):
+        is_called = contract.question.kind == "function" and arguments
+        return {"arguments": list(arguments), "as": contract.question.takes} if is_called else None
+
     return {
         name: {
             # Two questions may call their answers the same, in two notebooks that were joined: then only the
             # checks tell them apart.
-            "variable": question["variable"] if variables.count(question["variable"]) == 1 else None,
-            "calls": None
-            if question["public"]["kind"] != "function"
-            else {"arguments": question["public"]["calls"], "as": question["public"]["takes"]},
-            "secret calls": None
-            if question["public"]["kind"] != "function" or not question["secret"]
-            else {"arguments": question["secret"]["calls"], "as": question["public"]["takes"]},
+            "variable": contract.variable if variables.count(contract.variable) == 1 else None,
+            "calls": calls(contract, contract.question.calls),
+            "secret calls": calls(contract, contract.secret.calls if contract.secret else ()),
         }
         # The numbers of the student's own variant, which its notebook may use by name.
-        | ({"given": question["public"]["given"]} if question["public"].get("given") else {})
-        for name, question in questions.items()
+        | ({"given": dict(contract.variant.given)} if contract.variant.given else {})
+        for name, contract in questions.items()
     }
 
 
-def was_limited(record: Mapping[str, Any]) -> bool:
+def was_limited(record: Record) -> bool:
     """Whether a limit ended one of the cells of a record."""
     return any(
-        cell["outcome"] in BY_A_LIMIT or "SIGKILL" in cell.get("error", "")
-        for notebook in record["notebooks"]
-        for cell in notebook["cells"]
+        cell.outcome in BY_A_LIMIT or "SIGKILL" in (cell.error or "")
+        for notebook in record.notebooks
+        for cell in notebook.cells
     )
 
 
@@ -254,10 +251,8 @@ def mark(name, question, answer, finished=True, limited=False):
     Parameters
     ----------
     name : str
-    question : dict
-        As :func:`questions_of` gives it.
-    answer : dict
-        As :mod:`coursework.grading.execution.sandbox` gives it.
+    question : Asked
+    answer : Answer
     finished : bool
         Whether the notebook came to its end; if not, an answer that is missing may be due to that.
     limited : bool
@@ -265,136 +260,130 @@ def mark(name, question, answer, finished=True, limited=False):
 
     Returns
     -------
-    dict
-        ``outcome``, ``note`` with its ``details``, ``messages``, ``points``, ``worth``, the ``version`` of the
-        question, ``group``, which identical answers have in common, and ``guessable``, after how many tries a
-        script finds the right answer, or ``None``.
+    Mark
     """
     # Many hand in the same. What is judged follows from the version of the question and from these texts alone.
-    contract = question.get("contract", question)["version"]
-    of_question = name, question["version"], contract, len(question.get("siblings", [])), "newer" in question
-    known = *of_question, json.dumps(answer), finished, limited
+    before = (question.before or question.contract).version
+    of_question = name, question.contract.version, before, len(question.siblings), question.newer is not None
+    known = *of_question, json.dumps(answer.as_json()), finished, limited
     if known not in _marked:
         if len(_marked) >= MOST_KEPT:
             _marked.clear()
         _marked[known] = _mark(name, question, answer, finished, limited)
-    return dict(_marked[known])
+    return _marked[known]
 
 
 _marked = {}
 
 
 def _mark(name, question, answer, finished, limited):
+    contract = question.contract
     reply, text = judge(name, question, answer, finished, limited)
-    short = reply.outcome == "wrong" and len(answer["plain"]["nodes"]) <= LONGEST_FOR_SIBLINGS
-    if short and "newer" in question and _is_right(name, question["newer"], answer):
+    short = reply.outcome == "wrong" and len(answer.plain["nodes"]) <= LONGEST_FOR_SIBLINGS
+    if short and question.newer and _is_right(name, question.newer, answer):
         said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
         reply = _undecided(name, "numbers of another edition", said)
-    elif short and any(_is_right(name, other, answer) for other in question.get("siblings", [])):
+    elif short and any(_is_right(name, Asked(other), answer) for other in question.siblings):
         reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
-    share = {"correct": 1, "wrong": question["credit"].get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
-    if reply.outcome == "wrong" and question["partial"] and reply.note != "other numbers":
-        right, parts, beyond_chance = parts_right(question, text)
+    share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
+    if reply.outcome == "wrong" and contract.partial and reply.note != "other numbers":
+        right, parts, beyond_chance = parts_right(contract, text)
         share = max(share, beyond_chance)
-        pairs = "pairs stand in the right order" if question["public"]["kind"] == "order" else "are right"
+        pairs = "pairs stand in the right order" if contract.question.kind == "order" else "are right"
         reply.messages.append(f"{right} of {parts} {pairs}.")
-    return {
-        "outcome": reply.outcome,
-        "note": reply.note,
-        "details": reply.details,
-        "messages": reply.messages,
-        "points": round(question["worth"] * share, 4),
-        "worth": question["worth"],
-        "group": hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
-        "version": question["version"],
-        "guessable": question["guessable"],
-    }
+    return Mark(
+        reply.outcome,
+        reply.note,
+        reply.details,
+        tuple(reply.messages),
+        round(contract.worth * share, 4),
+        contract.worth,
+        hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
+        contract.version,
+        contract.guessable,
+    )
 
 
 def _is_right(name, question, answer):
     """Whether an answer is right for a question. Of most it takes one look to see that they are not."""
     with contextlib.suppress(ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable):
-        text = fingerprint(question["public"], read(question["public"], answer["plain"]))
-        return text in question["known"] and judge(name, question, answer)[0].outcome == "correct"
+        asked = question.contract.question
+        text = fingerprint(asked, read(asked, answer.plain))
+        return text in question.contract.known and judge(name, question, answer)[0].outcome == "correct"
     return False
 
 
-def parts_right(question, text):
+def parts_right(contract, text):
     """How many parts of an answer in words are right, of how many, and the share of credit that this earns.
 
     The parts of an order are its pairs: which of the two comes first. Of the share, what a guess has right on average
     is taken off, so that guessing earns nothing on average: with m words to choose from, it has 1/m right.
     """
-    public, right = question["public"], question["partial"]
-    if public["kind"] == "order":
+    kind, right = contract.question.kind, contract.partial
+    if kind == "order":
         given, places = text.split(PARTS["order"]), {part: k for k, part in enumerate(right.split(PARTS["order"]))}
         good = [places[first] < places[second] for first, second in itertools.combinations(given, 2)]
         chance = 1 / 2
     else:
-        between = PARTS[public["kind"]]
+        between = PARTS[kind]
         given, wanted = ((one.split(between) if between else list(one)) for one in (text, right))
         good = [one == other for one, other in zip(given, wanted, strict=True)]
-        chance = 1 / len(public.get("options", "TF"))
+        chance = 1 / len(contract.question.options or "TF")
     return sum(good), len(good), max(0, (sum(good) / len(good) - chance) / (1 - chance))
 
 
 def mark_with_siblings(
     name: str,
-    question: Question,
-    answers: Mapping[str, Any],
-    remembered: Mapping[str, Any],
+    question: Asked,
+    answers: Mapping[str, Answer],
+    remembered: Mapping[str, Remembered],
     finished: bool = True,
     limited: bool = False,
-) -> dict[str, Any]:
+) -> Mark:
     """The mark of a question, with regard to the help that a student had and to the siblings that were solved.
 
     Parameters
     ----------
-    answers : dict
+    answers : mapping
         Those of the record, by the names of questions and of siblings.
-    remembered : dict
-        As :func:`coursework.grading.submissions.intake.remembered_in` gives it.
-
-    Returns
-    -------
-    dict
-        As :func:`mark` gives it, and ``tries``, which the notebook remembers, or ``None``.
+    remembered : mapping
+        That of the record.
     """
-    found = mark(name, question, answers.get(name, {"outcome": "missing"}), finished, limited)
-    found["tries"] = remembered.get(name, {}).get("tries")
-    had = remembered.get(name, {}).get("help", "")
-    for sibling, other in question.get("second chances", {}).items():
-        helped = remembered.get(sibling, {}).get("help")
-        if sibling in answers and not helped and (had or found["outcome"] != "correct"):
-            if judge(sibling, other, answers[sibling])[0].outcome == "correct":
-                return found | _by_a_sibling(question, found, sibling)
-    if found["outcome"] == "correct" and had and "second chances" in question:
-        share = question["credit"].get("help", WITH_HELP)
+    known = remembered.get(name)
+    found = mark(name, question, answers.get(name, MISSING), finished, limited)
+    found, had = replace(found, tries=known and known.tries), known.help if known else ""
+    for sibling, other in question.second_chances.items():
+        helped = sibling in remembered and remembered[sibling].help
+        if sibling in answers and not helped and (had or found.outcome != "correct"):
+            if judge(sibling, Asked(other), answers[sibling])[0].outcome == "correct":
+                return _by_a_sibling(question.contract, found, sibling)
+    if found.outcome == "correct" and had and (question.siblings or question.second_chances):
+        share = question.contract.credit.get("help", WITH_HELP)
         said = (
             f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without help earns the rest."
         )
-        found |= {"note": "with help", "points": round(question["worth"] * share, 4)}
-        found["messages"] = [said] if share < 1 else []
+        points = round(question.contract.worth * share, 4)
+        return replace(found, note="with help", points=points, messages=(said,) if share < 1 else ())
     return found
 
 
-def _by_a_sibling(question, found, sibling):
+def _by_a_sibling(contract, found, sibling):
     """What a sibling that was solved without help makes of the mark of a question.
 
     It earns what help cost. Where the question itself was not answered right, whose numbers were solved is anybody's
     guess, and with each sibling a friend's answer would have one more chance: a person looks.
     """
-    if found["outcome"] == "correct":
+    if found.outcome == "correct":
         said = f"`{sibling}` was solved without help, and counts for this question."
-        return {"note": "by a sibling", "points": question["worth"], "messages": [said]}
+        return replace(found, note="by a sibling", points=contract.worth, messages=(said,))
     said = f"`{sibling}` was solved without help, and the question itself was not answered right: a person decides."
-    messages = [*found["messages"], said]
-    return {"outcome": "undecided", "note": "by a sibling alone", "points": 0, "messages": messages}
+    messages = (*found.messages, said)
+    return replace(found, outcome="undecided", note="by a sibling alone", points=0, messages=messages)
 
 
 def judge(name, question, answer, finished=True, limited=False):
     """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
-    state = answer["outcome"]
+    state, contract = answer.outcome, question.contract
     if state == "missing":
         if not finished:
             return _undecided(
@@ -404,31 +393,31 @@ def judge(name, question, answer, finished=True, limited=False):
             return _undecided(
                 name, "lost to a limit", "A cell was stopped by a limit of time or memory, and this answer is missing."
             ), ""
-        variable = f" under the name `{question['variable']}`" if question["variable"] else ""
+        variable = f" under the name `{question.contract.variable}`" if question.contract.variable else ""
         return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
-    if state == "unreadable" and answer["why"] not in CUT_SHORT:
-        return Reply(name, "invalid", "unreadable", [answer["why"]]), ""
+    if state == "unreadable" and answer.why not in CUT_SHORT:
+        return Reply(name, "invalid", "unreadable", [answer.why]), ""
     if state != "recorded":
         return _undecided(
             name,
             "stopped while it was read",
-            f"Reading this answer was stopped. {answer.get('why') or answer.get('error', '')}".strip(),
+            f"Reading this answer was stopped. {answer.why or answer.error or ''}".strip(),
         ), ""
     found = []
 
     def look_up(text):
         if not found:  # what is looked up after that is another reading of the same answer
             found.append(text)
-        return question["known"].get(text)
+        return contract.locker(text)
 
     try:
-        plain = in_calls_of(question, read_plain(answer["plain"]))
+        plain = in_calls_of(question, read_plain(answer.plain))
         if plain is None:
             said = "The function was not called with the arguments that this question has now. Grade again: it is run."
             return _undecided(name, "not called", said), ""
-        reply = compare(name, question["public"], plain, look_up)
+        reply = compare(name, contract.question, plain, look_up)
         rounded = reply.outcome == "wrong" and reply.note in ("", "rounded too far")
-        if rounded and _nearly_right(question, plain):
+        if rounded and _nearly_right(contract, plain):
             reply = _undecided(
                 name,
                 "nearly right",
@@ -437,8 +426,8 @@ def judge(name, question, answer, finished=True, limited=False):
             )
         if reply.outcome == "not attempted":
             reply.messages = ["Nothing was answered."]  # there is no "yet" any more
-        if reply.outcome == "correct" or (reply.note and question["credit"].get(reply.note)):
-            reply = _in_secret(name, question, answer, plain, reply, found[-1])
+        if reply.outcome == "correct" or (reply.note and contract.credit.get(reply.note)):
+            reply = _in_secret(name, contract, answer, plain, reply, found[-1])
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     except MemoryError:
@@ -453,42 +442,41 @@ def in_calls_of(question, plain):
 
     What was recorded are the results of the calls of the contract, one after another.
     """
-    calls = question["public"].get("calls")
-    called = question.get("contract", question)["public"].get("calls")
+    calls = question.contract.question.calls
+    called = (question.before or question.contract).question.calls
     kind, *value = plain["value"]
     if kind != "function" or calls == called:
         return plain
     results, *rest = value
-    if calls is None or called is None or len(results) != len(called) or any(call not in called for call in calls):
+    if not calls or not called or len(results) != len(called) or any(call not in called for call in calls):
         return None
     return {**plain, "value": [kind, [results[called.index(call)] for call in calls], *rest]}
 
 
-def _in_secret(name, question, answer, plain, reply, text):
+def _in_secret(name, contract, answer, plain, reply, text):
     """The reply, if the answer is what it seems to be also where its author could not look."""
-    place, public = question["secret"], question["public"]
+    place = contract.secret
     if place is None:
         return reply
-    right = place["right"] if reply.outcome == "correct" else place["partly"].get(text)
+    right = place.right if reply.outcome == "correct" else place.partly.get(text)
     if right is None:
         return reply  # a mistaken function: what it would return elsewhere is not known
-    elsewhere = {**public, **{name: place[name] for name in ("salt", "calls") if name in place}}
-    if "calls" in place:
-        said = answer.get("secret", {})
+    if place.calls:
+        said = answer.secret or {}
         if "unreadable" in said and said["unreadable"] not in CUT_SHORT:
             return _elsewhere_wrong(name)
-        if "plain" not in said or said.get("calls") != in_secret.digest(place):
+        if "plain" not in said or said.get("calls") != place.digest:
             return _undecided(
                 name, "not called", "The function could not be called with other arguments than those of the check."
             )
         plain = read_plain(said["plain"])
     try:
-        numbers = in_secret.numbers_of(elsewhere, plain)
+        numbers = in_secret.numbers_of(place.of(contract.question), plain)
     except (Blank, Fault):
         return _elsewhere_wrong(name)
     except Undecidable as error:
         return _undecided(name, "undecidable", str(error))
-    return reply if in_secret.agree(public, numbers, right) else _elsewhere_wrong(name)
+    return reply if in_secret.agree(contract.question, numbers, right) else _elsewhere_wrong(name)
 
 
 def _elsewhere_wrong(name):
@@ -504,14 +492,14 @@ def _undecided(name, note, message):
     return Reply(name, "undecided", note, [message])
 
 
-def _nearly_right(question, plain):
-    if question["right"] is None:
+def _nearly_right(contract, plain):
+    if contract.right is None:
         return False
     try:
-        numbers = canonical(question["public"], read(question["public"], plain))
+        numbers = canonical(contract.question, read(contract.question, plain))
     except (Blank, Fault, Undecidable):
         return False
-    right = [MP.mpf(number) for number in question["right"]]
+    right = [MP.mpf(number) for number in contract.right]
     return len(numbers) == len(right) and all(
         abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right, strict=True)
     )

@@ -7,20 +7,21 @@ in all their forms: they are worked out with 40 digits, and told apart far above
 """
 
 import copy
-import hashlib
 import hmac
-import json
 import math
 import os
 import random
 import secrets
+from dataclasses import replace
 from pathlib import Path
 
 from ...checking.check import calls_for
 from ...checking.evaluate import MP
-from ...checking.kinds import Blank, Fault, Undecidable, canonical, read, tolerances
+from ...checking.kinds import Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, to_plain
 from ...checking.plugins import kinds
+from ...checking.reading import canonical, read, tolerances
+from .contract import Elsewhere
 
 FILE = ".grading-secret"
 CALLS = 3
@@ -60,18 +61,16 @@ def secret_of(question, secret):
 
     Parameters
     ----------
-    question : coursework.authoring.author.Question
+    question : coursework.authoring.author.AuthoredQuestion
     secret : bytes
 
     Returns
     -------
-    dict
-        ``salt`` or ``calls``, and ``right``, the numbers of the right answer there; ``partly``, those of each
-        mistake that earns something, by its fingerprint.
+    Elsewhere or None
     """
     public = question.public
-    is_function = public["kind"] == "function"
-    if not is_function and (kinds()[public["kind"]].text or not public.get("symbols")):
+    is_function = public.kind == "function"
+    if not is_function and (kinds()[public.kind].text or not public.symbols):
         return None  # a word or a number is the same everywhere
     known = None
     for attempt in range(ATTEMPTS):
@@ -80,7 +79,7 @@ def secret_of(question, secret):
             found = _of_function(question, seed)
         else:
             found = _of_expression(question, seed)
-        if found is not None and is_function and all(call in public["calls"] for call in found["calls"]):
+        if found is not None and is_function and all(call in public.calls for call in found.calls):
             known, found = known or found, None  # rather calls that no check has made; of a few words there are none
         if found is not None:
             return found
@@ -88,8 +87,8 @@ def secret_of(question, secret):
 
 
 def _of_expression(question, seed):
-    place = {"salt": seed[:16]}
-    elsewhere = {**question.public, **place}
+    salt = seed[:16]
+    elsewhere = replace(question.public, salt=salt)
     try:
         right = numbers_of(elsewhere, question.plain)
     except (Blank, Fault, Undecidable):
@@ -101,23 +100,24 @@ def _of_expression(question, seed):
                 partly[text] = numbers_of(elsewhere, entry.plain)
             except (Blank, Fault, Undecidable):
                 return None
-    return {**place, "right": right, "partly": partly}
+    return Elsewhere(salt, right=right, partly=partly)
 
 
 def _of_function(question, seed):
     public, dice = question.public, random.Random(seed)
-    columns = _columns(public["calls"])
+    columns = _columns(public.calls)
     calls = [[_another(values, dice) for values in columns] for _ in range(CALLS)]
     near = [_moved(call, dice) for call in calls]
     try:
         right, moved = (
-            numbers_of({**public, "calls": some}, to_plain(question.answer, calls_for({**public, "calls": some})))
+            numbers_of(elsewhere, to_plain(question.answer, calls_for(elsewhere)))
             for some in (calls, near)
+            for elsewhere in [replace(public, calls=tuple(some))]
         )
     except (Blank, Fault, Undecidable, NotPlain):
         return None
     # Not where the right answer itself jumps: there two right functions may differ.
-    return {"calls": calls, "right": right, "partly": {}} if agree(public, right, moved) else None
+    return Elsewhere(calls=tuple(calls), right=right) if agree(public, right, moved) else None
 
 
 def numbers_of(public, plain):
@@ -127,7 +127,7 @@ def numbers_of(public, plain):
     ------
     Blank, Fault, Undecidable
     """
-    return [MP.nstr(number, 30) for number in canonical(public, read(public, plain))]
+    return tuple(MP.nstr(number, 30) for number in canonical(public, read(public, plain)))
 
 
 def agree(public, numbers, others):
@@ -140,11 +140,6 @@ def agree(public, numbers, others):
         abs(number - other) <= max(SLACK * (absolute + relative * abs(other)), APART * max(1, abs(other)))
         for number, other in pairs
     )
-
-
-def digest(place):
-    """A short text that follows from the calls: answers to other calls are not compared with these."""
-    return hashlib.sha256(json.dumps(place["calls"]).encode()).hexdigest()[:16]
 
 
 # --- arguments like those that an author chose --------------------------------------------------

@@ -40,8 +40,8 @@ from typing import NamedTuple
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from ..store import write
-from ..submissions.identity import Roster
 from ..submissions.intake import as_time
+from ..submissions.roster import Roster
 
 EXCUSED = "excused"
 #: What tables of systems call the time at which something was handed in.
@@ -255,7 +255,8 @@ def delay(handed_in, due, zone):
 def _times(path, zone):
     """Who handed in when, by a system's table: a function of what is known of a student, or ``None``."""
     roster, found = Roster(path), {}
-    for student, row in roster.rows.items():
+    for student, person in roster.people.items():
+        row = person.row
         column = next((name for name in TIMES if name in row), None)
         if column is None:
             raise BadRules(f"{path}: no column says when something was handed in; it may be called {', '.join(TIMES)}.")
@@ -347,17 +348,17 @@ def _result(student, name, record, rules, worth, now):
     if record is None:
         state = "not due" if name not in worth or (due is not None and now <= due) else "missing"
     else:
-        points, when = record["points"], _handed_in(student, record, about, rules.zone)
+        points, when = record.points, _handed_in(student, record, about, rules.zone)
         if when is None:
-            late = any(notebook["late"] for notebook in record["notebooks"]) and extension is None
+            late = any(notebook.late for notebook in record.notebooks) and extension is None
             penalty = (rules.marked or 0.0) if late else 0.0
         elif due is not None:
             delayed = delay(when, due, rules.zone)
             penalty, late = rules.penalty(delayed), delayed > rules.grace
     if extension == EXCUSED:
         state, late, penalty = EXCUSED, False, 0.0
-    full = record["worth"] if record else worth.get(name, 0)
-    return Result(name, state, points, full, due, when, late, penalty, record["undecided"] if record else 0)
+    full = record.worth if record else worth.get(name, 0)
+    return Result(name, state, points, full, due, when, late, penalty, record.undecided if record else 0)
 
 
 def say_what_marked_costs(assignments):
@@ -372,7 +373,7 @@ def say_what_marked_costs(assignments):
 def _handed_in(student, record, about, zone):
     """The latest time that a system says of the notebooks that count."""
     if about.times:
-        identity = record["identity"]
+        identity = record.identity
         keys = [
             (kind, identity[kind]) for kind in ("canvas", "moodle", "brightspace", "email", "name") if kind in identity
         ]
@@ -380,7 +381,7 @@ def _handed_in(student, record, about, zone):
         found, _ = about.times["roster"].find(keys)
         if found in about.times["times"]:
             return about.times["times"][found]
-    said = [notebook.get("handed in") for notebook in record["notebooks"]]
+    said = [notebook.handed_in for notebook in record.notebooks]
     moments = (in_zone(datetime.datetime.fromisoformat(one), zone, later=False) for one in said if one)
     return max(moments, key=lambda moment: moment.astimezone(datetime.UTC), default=None)
 

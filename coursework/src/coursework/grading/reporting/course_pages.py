@@ -61,8 +61,8 @@ def write_course(store, rules, *, earlier=(), now=None, folder=None):
     standing = Ledger(store.folder).standing()
     for record in store.all():
         statistics.add(with_decisions(record, standing))
-        worth[record["assignment"]] = record["worth"]
-        students.add(record["student"])
+        worth[record.assignment] = record.worth
+        students.add(record.student)
     roster = store.folder / ROSTER
     if roster.exists():
         students.update(store.json_in(roster))

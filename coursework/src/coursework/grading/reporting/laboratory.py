@@ -5,12 +5,12 @@ to choose, as a policy: nobody loses by it, all who had a faulty variant have it
 """
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..judging.cases import Case
+from ..record import Case, Mark, Record
 from ..store import as_text, write
 from ..tables import number, table
 
@@ -19,8 +19,6 @@ FILE, TABLE, PAGE = "policies.json", "regrade.csv", "regrade.html"
 TAKEN_OUT = "taken-out"
 #: The note of an answer that is to be run again, since it was not asked for what the question asks for now.
 RUN_AGAIN = "not called"
-
-Record = dict[str, Any]
 
 
 class BadPolicy(ValueError):
@@ -73,17 +71,15 @@ class Policies:
                     f"There is no question {one.partition('@')[0]!r}; there are {', '.join(sorted(there))}."
                 )
 
-    def applied(
-        self, name: str, mark: dict[str, Any], before: Mapping[str, Any] | None, case: Case, taken_out: bool
-    ) -> dict[str, Any]:
+    def applied(self, name: str, mark: Mark, before: Mark | None, case: Case, taken_out: bool) -> Mark:
         """A mark as the policies have it.
 
         Parameters
         ----------
         name : str
-        mark : dict
+        mark : Mark
             What the machine says now.
-        before : mapping or None
+        before : Mark or None
             What it said before.
         case : Case
         taken_out : bool
@@ -91,19 +87,30 @@ class Policies:
         """
         if name in self.void:
             said = "This question does not count."
-            return {**mark, "points": 0, "worth": 0, "messages": [said], "policy": "void"}
+            return replace(mark, points=0, worth=0, messages=(said,), policy="void")
         wanted = {name, f"{name}@{case.own.variant}", *([f"{name}@{TAKEN_OUT}"] if taken_out else [])}
         if wanted & set(self.full_credit):
             said = "There was a fault in this question: all who were asked it have its points."
-            about = {"outcome": "correct", "note": "full credit", "policy": "full credit", "messages": [said]}
-            return {**mark, **about, "points": mark["worth"]}
-        if name in self.never_lower and before is not None and before["points"] > mark["points"]:
-            return {**mark, **{key: before[key] for key in KEPT if key in before}, "policy": "never lower"}
+            return replace(
+                mark,
+                outcome="correct",
+                note="full credit",
+                messages=(said,),
+                points=mark.worth,
+                policy="full credit",
+            )
+        if name in self.never_lower and before is not None and before.points > mark.points:
+            return replace(
+                mark,
+                outcome=before.outcome,
+                note=before.note,
+                details=before.details,
+                messages=before.messages,
+                points=before.points,
+                group=before.group,
+                policy="never lower",
+            )
         return mark
-
-
-#: What of an earlier mark stays where nobody is to lose.
-KEPT = ("outcome", "note", "details", "messages", "points", "group")
 
 
 class Change(NamedTuple):
@@ -132,18 +139,18 @@ class Laboratory:
 
     def add(self, before: Record, after: Record) -> None:
         """Take in a record as it is, and as it would be."""
-        for name, mark in after["marks"].items():
-            old = before["marks"].get(name, {"points": 0, "outcome": "not asked", "note": ""})
-            if (old["points"], old["outcome"]) != (mark["points"], mark["outcome"]):
+        for name, mark in after.marks.items():
+            old = before.marks.get(name, Mark("not asked"))
+            if (old.points, old.outcome) != (mark.points, mark.outcome):
                 change = Change(
-                    before["student"],
-                    before["assignment"],
+                    before.student,
+                    before.assignment,
                     name,
-                    old["points"],
-                    mark["points"],
+                    old.points,
+                    mark.points,
                     _outcome(old),
                     _outcome(mark),
-                    after["cases"][name]["own"]["variant"],
+                    after.cases[name].own.variant if after.cases else "",
                 )
                 self.changes.append(change)
 
@@ -192,8 +199,8 @@ class Laboratory:
         write(folder / PAGE, page("laboratory.html", groups=groups, changes=order, lines=self.lines()))
 
 
-def _outcome(mark: Mapping[str, Any]) -> str:
-    return f"{mark['outcome']} ({mark['note']})" if mark["note"] else str(mark["outcome"])
+def _outcome(mark: Mark) -> str:
+    return f"{mark.outcome} ({mark.note})" if mark.note else mark.outcome
 
 
 def _students(found: Sequence[Change]) -> str:

@@ -80,33 +80,33 @@ class _Assignment:
 
     def add(self, record):
         self.students += 1
-        self.points[record["points"]] += 1
-        self.worth = max(self.worth, record["worth"])
-        for name, mark in record["marks"].items():
-            self.titles.setdefault(name, mark["title"])
+        self.points[record.points] += 1
+        self.worth = max(self.worth, record.worth)
+        for name, mark in record.marks.items():
+            self.titles.setdefault(name, mark.title)
             self.parts.setdefault(name, Counter())[_part(mark)] += 1
-            if mark.get("tries"):
-                self.tries.setdefault(name, Counter())[mark["tries"]] += 1
-            if mark["outcome"] in ("wrong", "invalid") and mark["note"]:
+            if mark.tries:
+                self.tries.setdefault(name, Counter())[mark.tries] += 1
+            if mark.outcome in ("wrong", "invalid") and mark.note:
                 self.mixups[name, deed(mark)] += 1
-            elif mark["outcome"] == "wrong" and mark["group"]:
-                if (name, mark["group"]) not in self.same:
-                    self.same[name, mark["group"]] = [0, pages.answer_as_text(record["answers"].get(name))]
-                self.same[name, mark["group"]][0] += 1
-            if mark["outcome"] == "undecided":
+            elif mark.outcome == "wrong" and mark.group:
+                if (name, mark.group) not in self.same:
+                    self.same[name, mark.group] = [0, pages.answer_as_text(record.answer(name).plain)]
+                self.same[name, mark.group][0] += 1
+            if mark.outcome == "undecided":
                 self.waiting += 1
                 if len(self.undecided) < MOST_UNDECIDED:
-                    answer = pages.answer_as_text(record["answers"].get(name))
-                    self.undecided.append((record["student"], name, mark["messages"], answer))
+                    answer = pages.answer_as_text(record.answer(name).plain)
+                    self.undecided.append((record.student, name, mark.messages, answer))
         for kind in _oddities(record):
             found = self.odd.setdefault(kind, [0, []])
             found[0] += 1
             if len(found[1]) < MOST_NAMES:
-                found[1].append(record["student"])
-        for notebook in record["notebooks"]:
-            isolation = notebook["isolation"]
+                found[1].append(record.student)
+        for notebook in record.notebooks:
+            isolation = notebook.isolation
             self.ways[("WEAK: " if isolation["weak"] else "") + (", ".join(isolation["layers"]) or "none")] += 1
-        self.versions[", ".join(f"{name} {version}" for name, version in record["software"].items())] += 1
+        self.versions[", ".join(f"{name} {version}" for name, version in record.software.items())] += 1
 
     @property
     def numbers(self):
@@ -117,22 +117,16 @@ class _Assignment:
 def write_all(store):
     """Make the tables and the pages of all records; no more than one record is held at a time."""
     classes, names, links = {}, {}, _read(store.folder / LINKS, {})
-    for record in _readable(store):
-        place = store.folder / "feedback" / file_name(record["student"]) / f"{file_name(record['assignment'])}.html"
+    for record in store.all():
+        place = store.folder / "feedback" / file_name(record.student) / f"{file_name(record.assignment)}.html"
         _write_if_new(place, feedback(record, links))
-        classes.setdefault(record["assignment"], _Assignment()).add(record)
-        names.update(dict.fromkeys(record["marks"]))
+        classes.setdefault(record.assignment, _Assignment()).add(record)
+        names.update(dict.fromkeys(record.marks))
     refused = [tuple(entry) for entry in _read(store.folder / "refused.json", [])]
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
-    write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(_readable(store))))
+    write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
     write(store.folder / "report.html", report(classes, refused))
-
-
-def _readable(store):
-    for record in store.all():
-        record["answers"] = {name: answer.get("plain") for name, answer in record["answers"].items()}
-        yield record
 
 
 UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer")
@@ -140,18 +134,18 @@ UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "
 
 def _undecided_of(records):
     for record in records:
-        for name, mark in record["marks"].items():
-            if mark["outcome"] == "undecided":
+        for name, mark in record.marks.items():
+            if mark.outcome == "undecided":
                 yield (
-                    stable_id(record["student"], record["assignment"], name),
-                    record["student"],
+                    stable_id(record.student, record.assignment, name),
+                    record.student,
                     name,
                     "",
                     "",
-                    mark["worth"],
-                    mark["note"],
-                    " ".join(mark["messages"]),
-                    pages.answer_as_text(record["answers"].get(name)),
+                    mark.worth,
+                    mark.note,
+                    " ".join(mark.messages),
+                    pages.answer_as_text(record.answer(name).plain),
                 )
 
 
@@ -171,16 +165,16 @@ def grades(records, names):
 
 
 def _grades_of(record, names):
-    marks = [record["marks"].get(name) for name in names]
+    marks = [record.marks.get(name) for name in names]
     return [
-        record["student"],
-        record["assignment"],
-        record["points"],
-        record["worth"],
-        record["undecided"],
-        "late" if any(notebook["late"] for notebook in record["notebooks"]) else "",
-        *(mark["points"] if mark else "" for mark in marks),
-        *(mark["outcome"] if mark else "" for mark in marks),
+        record.student,
+        record.assignment,
+        record.points,
+        record.worth,
+        record.undecided,
+        "late" if record.late else "",
+        *(mark.points if mark else "" for mark in marks),
+        *(mark.outcome if mark else "" for mark in marks),
     ]
 
 
@@ -188,17 +182,17 @@ def _grades_of(record, names):
 
 
 def feedback(record, links=None):
-    """The page that a student gets; ``answers`` of the record are plain data, ``links`` addresses as a course has them."""
+    """The page that a student gets; ``links`` are addresses as a course has them."""
     return page(
         "feedback.html",
         record=record,
         questions=[
-            (name, mark, FINAL.get(mark["outcome"]) or OUTCOMES[mark["outcome"]][:2], _shown(record, name))
-            for name, mark in record["marks"].items()
+            (name, mark, FINAL.get(mark.outcome) or OUTCOMES[mark.outcome][:2], _shown(record, name))
+            for name, mark in record.marks.items()
         ],
-        notebooks=[(notebook, _stopped(notebook)) for notebook in record["notebooks"]],
+        notebooks=[(notebook, _stopped(notebook)) for notebook in record.notebooks],
         notes=NOTES,
-        links={name: _addresses(name, links or {}) for name in record["marks"]},
+        links={name: _addresses(name, links or {}) for name in record.marks},
     )
 
 
@@ -217,17 +211,17 @@ def _addresses(question, links):
 
 def _shown(record, name):
     """An answer as it was read, as mathematics and as text; nothing where there is nothing to show."""
-    plain = record["answers"].get(name)
+    plain = record.answer(name).plain
     # What a function returned is not repeated: a list of it would do for a friend's answer.
-    if not plain or record["marks"][name]["outcome"] == "not attempted" or plain["value"][0] == "function":
+    if not plain or record.marks[name].outcome == "not attempted" or plain["value"][0] == "function":
         return None
     return plain, pages.answer_as_text(plain)
 
 
 def _stopped(notebook):
     """The cells of a notebook that did not come to their end, with their numbers."""
-    cells = enumerate(notebook["cells"], 1)
-    return [(order, cell) for order, cell in cells if cell["outcome"] not in ("done", "not run")][:MOST_STOPPED]
+    cells = enumerate(notebook.cells, 1)
+    return [(order, cell) for order, cell in cells if cell.outcome not in ("done", "not run")][:MOST_STOPPED]
 
 
 # --- for the instructor -------------------------------------------------------------------------
@@ -240,15 +234,15 @@ def feedback_of(student, assignment):
 
 def deed(mark):
     """What was done, in words that follow "31 % of the class"."""
-    if mark["note"] == "authored":
-        return f"were told: “{mark['messages'][0]}”"
+    if mark.note == "authored":
+        return f"were told: “{mark.messages[0]}”"
     # Where there is only one turn, it has no number.
     details = {
         name: ORDINALS[value] if isinstance(value, int) and name != "number" else value or ""
-        for name, value in mark["details"].items()
+        for name, value in mark.details.items()
     }
     # Two mistakes at once are named together, as in "transposed, and sign of one turn".
-    notes = [mark["note"]] if mark["note"] in _deeds() else mark["note"].split(", and ")
+    notes = [mark.note] if mark.note in _deeds() else mark.note.split(", and ")
     return " ".join(", and ".join(_deeds().get(note, note) for note in notes).format(**details).split())
 
 
@@ -339,9 +333,7 @@ def _tries(counts):
 
 
 def _part(mark):
-    return {"not attempted": "none", "decided": "correct" if mark["points"] else "wrong"}.get(
-        mark["outcome"], mark["outcome"]
-    )
+    return {"not attempted": "none", "decided": "correct" if mark.points else "wrong"}.get(mark.outcome, mark.outcome)
 
 
 def _percent(part, whole):
@@ -369,13 +361,13 @@ def _same(found):
 def _oddities(record):
     """What is worth a look in a record, each kind once."""
     found = {}
-    for notebook in record["notebooks"]:
-        found.update(dict.fromkeys(notebook["notes"]))
-        found.update(dict.fromkeys(f"its code {said}" for said in notebook.get("tried", ())))
-        if notebook["unknown questions"]:
+    for notebook in record.notebooks:
+        found.update(dict.fromkeys(notebook.notes))
+        found.update(dict.fromkeys(f"its code {said}" for said in notebook.tried))
+        if notebook.unknown_questions:
             found["it checks an answer to a question that there is not"] = None
-        outcomes = sorted({cell["outcome"] for cell in notebook["cells"]} - {"done", "not run", "error"})
+        outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
         found.update(dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes))
-    if record["superseded"]:
+    if record.superseded:
         found["handed in more than once; the newest counts"] = None
     return found

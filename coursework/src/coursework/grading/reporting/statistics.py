@@ -67,8 +67,8 @@ class Question:
     """
 
     def __init__(self, assignment, mark):
-        self.assignment, self.title, self.worth = assignment, mark["title"], mark["worth"]
-        self.is_guessable = mark["guessable"] is not None
+        self.assignment, self.title, self.worth = assignment, mark.title, mark.worth
+        self.is_guessable = mark.guessable is not None
         self.outcomes, self.notes, self.earned, self.decided = Counter(), Counter(), 0.0, 0
         self.discrimination = Correlation()
         self.answers, self.versions = {}, set()
@@ -91,34 +91,32 @@ class Statistics:
         self.students = defaultdict(int)
 
     def add(self, record):
-        marks = record["marks"]
-        self.students[record["assignment"]] += 1
-        earned = sum(mark["points"] for mark in marks.values())
-        worth = sum(mark["worth"] for mark in marks.values())
+        marks = record.marks
+        self.students[record.assignment] += 1
+        earned = sum(mark.points for mark in marks.values())
+        worth = sum(mark.worth for mark in marks.values())
         for name, mark in marks.items():
-            key = record["assignment"], name
+            key = record.assignment, name
             if key not in self.questions:
-                self.questions[key] = Question(record["assignment"], mark)
+                self.questions[key] = Question(record.assignment, mark)
             question = self.questions[key]
-            question.outcomes[mark["outcome"]] += 1
-            question.versions.add(mark["version"])
-            did = deed(mark) if mark["note"] and mark["outcome"] in ("wrong", "invalid") else ""
+            question.outcomes[mark.outcome] += 1
+            question.versions.add(mark.version)
+            did = deed(mark) if mark.note and mark.outcome in ("wrong", "invalid") else ""
             if did:
                 question.notes[did] += 1
-            answer = (mark["outcome"], did, mark["group"] or digest_of_answer(record, name))
-            same = question.answers.setdefault(
-                answer, {"number": 0, "plain": record["answers"].get(name, {}).get("plain"), "who": []}
-            )
+            answer = (mark.outcome, did, mark.group or digest_of_answer(record, name))
+            same = question.answers.setdefault(answer, {"number": 0, "plain": record.answer(name).plain, "who": []})
             same["number"] += 1
             if len(same["who"]) < MOST_NAMES:
-                same["who"].append(record["student"])
-            if mark["outcome"] == "undecided":
+                same["who"].append(record.student)
+            if mark.outcome == "undecided":
                 continue
-            share = mark["points"] / mark["worth"] if mark["worth"] else 0
+            share = mark.points / mark.worth if mark.worth else 0
             question.decided += 1
             question.earned += share
-            if worth > mark["worth"]:
-                question.discrimination.add(share, (earned - mark["points"]) / (worth - mark["worth"]))
+            if worth > mark.worth:
+                question.discrimination.add(share, (earned - mark.points) / (worth - mark.worth))
 
     def counts(self, name):
         """What can be kept for other years: numbers only, and none of so few that it points at somebody."""

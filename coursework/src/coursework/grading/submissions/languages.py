@@ -8,6 +8,8 @@ earlier versions, as in mudrd8mz/moodle-lang). Of Brightspace's other languages 
 columns are named by hand.
 """
 
+from collections.abc import Iterable
+
 #: The columns of Moodle's worksheet in English, and how "no" is said in them.
 MOODLE = (
     "identifier",
@@ -244,7 +246,7 @@ LANGUAGES = {
 }
 
 
-def in_english(header):
+def in_english(header: Iterable[str]) -> tuple[dict[str, str], str]:
     """What the columns of a worksheet of Moodle in another language are called in English, and how "no" is said there.
 
     Told from the two columns that no worksheet lacks: who it is, and the grade.

@@ -19,6 +19,7 @@ import tokenize
 import traceback
 import types
 
+import IPython
 import plain_numpy
 from IPython.display import display
 from IPython.lib import pretty
@@ -358,6 +359,5 @@ def shorten(told):
 
 def start(send):
     """Start the one shell of this run of Python; ``send`` takes each message, as JSON."""
-    global shell
-    shell = Shell(send)
-    return shell
+    IPython.shell = Shell(send)
+    return IPython.shell

@@ -2,20 +2,18 @@
 
 import base64
 
+from . import get_ipython
+
 
 def display(*values, **ignored):
     """Show each of ``values`` as the value of a cell's last line is shown."""
-    import session
-
     for value in values:
-        session.shell.show(value)
+        get_ipython().show(value)
 
 
 def clear_output(wait=False):
     """Take away what the cell has put out so far."""
-    import session
-
-    session.shell.clear()
+    get_ipython().clear()
 
 
 class _Content:

@@ -1,0 +1,74 @@
+"""The catalogue: every mistake that a question knows, by its short name, with what the student is told."""
+
+import functools
+import inspect
+import itertools
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from .fields import Json
+from .mistakes import FACTORS, MESSAGES, NUMBERS, Mistake, short_name
+from .plugins import kind_of_values, kinds
+from .question import Note, Question
+
+
+def message(question: Question, note: str, details: Mapping[str, Json]) -> str:
+    """What a student is told of a mistake."""
+    said = kind_of_values(question).messages.get(note) or MESSAGES[note]
+    return said(question, **details)
+
+
+def by_short_name(question: Question) -> dict[bytes, Note]:
+    """Every mistake that the messages can name for a question, with its details, by its short name.
+
+    It is the same for all questions of a kind, and so tells nothing.
+
+    Raises
+    ------
+    RuntimeError
+        Two mistakes have the same short name: one of them needs another note.
+    """
+    return _by_short_name(question.kind_of_values, tuple(sorted(question.symbols)))
+
+
+@functools.lru_cache(64)
+def _by_short_name(name: str, symbols: tuple[str, ...]) -> dict[bytes, Note]:
+    kind = kinds()[name]
+    details: dict[str, Iterable[Any]] = {
+        "symbol": symbols,
+        "first": symbols,
+        "second": symbols,
+        "factor": [name for name, _ in FACTORS],
+        "number": range(len(NUMBERS)),
+    }
+    found: dict[bytes, Note] = {}
+    for messages, own in ((MESSAGES, {}), (kind.messages, kind.details)):
+        for note, words in messages.items():
+            needed = list(inspect.signature(words).parameters)[1:]
+            if note != "authored":
+                choices = ((own or details).get(name, ()) for name in needed)
+                for values in itertools.product(*choices):
+                    one = Note(note, dict(zip(needed, values, strict=True)))
+                    if found.setdefault(short_name(*one), one) != one:
+                        raise RuntimeError(f"{one} and {found[short_name(*one)]} have one short name: rename a note.")
+    return found
+
+
+def mistakes(
+    question: Question, answer: object, turns: Iterable[tuple[Any, Any]] = (), turned: tuple[Any, Any] | None = None
+) -> list[Mistake]:
+    """Give every mistake of the catalogue that applies to an answer, as :class:`Mistake`.
+
+    Parameters
+    ----------
+    question : Question
+    answer : SymPy object, nested list or number
+        The right answer, as its author wrote it.
+    turns : list of tuples (axis, angle)
+        The successive turns, each about an axis of the frame that the turns before it have reached, of which
+        the answer is the direction cosine matrix or the quaternion.
+    turned : tuple (matrix, components)
+        For components that a matrix turned: the matrix and what it was applied to.
+    """
+    find = kinds()[question.kind].mistakes
+    return list(find(question, answer, list(turns), turned)) if find else []

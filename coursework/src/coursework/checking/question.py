@@ -1,0 +1,381 @@
+"""A question as a student's computer knows it, and what is locked up with it: the data, and how it is read and written.
+
+JSON calls a field as Python does, with spaces for underscores: ``either_sign`` is ``"either sign"``. What is empty is
+left out. The files of sealed questions are read by :mod:`coursework.checking.questions`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from .fields import (
+    Fields,
+    Json,
+    Misread,
+    a_list,
+    anything,
+    by_name,
+    many,
+    number,
+    one_of,
+    pair,
+    text,
+    truth,
+    whole,
+    written,
+)
+
+#: Of the files with sealed questions. Format 3, which called a mistake by its place in a catalogue, is read, too.
+FORMAT = 4
+#: What an answer that a question knows may be, by its number in a locker.
+OUTCOMES = ("correct", "mistake")
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What is particular to one of the variants of a question.
+
+    Attributes
+    ----------
+    number, count : int
+        Which it is, and how many there are.
+    given : mapping
+        Its numbers and names, by the names of the parameters.
+    shown : mapping of str
+        How its text shows them.
+    text : str
+        Of the question, with ``{{places}}`` for what is shown.
+    picture : str or None
+        As :func:`coursework.checking.variants.packed` makes it.
+    names : tuple of str
+        What all variants are called, where one goes to a student by its name.
+    edition : str
+        Of the course: each draws afresh.
+    """
+
+    number: int = 0
+    count: int = 1
+    given: Mapping[str, Json] = field(default_factory=dict)
+    shown: Mapping[str, str] = field(default_factory=dict)
+    text: str = ""
+    picture: str | None = None
+    names: tuple[str, ...] = ()
+    edition: str = ""
+
+    @classmethod
+    def of(cls, about: Fields) -> Variant | None:
+        """The variant of a question, from the fields of that; ``None`` if there is only one."""
+        count = about.maybe("variants", whole)
+        if count is None:
+            return None
+        return cls(
+            about.maybe("variant", whole) or 0,
+            count,
+            about.maybe("given", by_name(anything)) or {},
+            about.maybe("shown", by_name(text)) or {},
+            about.maybe("text", text) or "",
+            about.maybe("picture", text),
+            about.maybe("names", many(text)) or (),
+            about.maybe("edition", text) or "",
+        )
+
+    def as_json(self) -> dict[str, Json]:
+        more = {"picture": self.picture, "names": written(self.names), "edition": self.edition}
+        return {
+            "variant": self.number,
+            "variants": self.count,
+            "given": written(self.given),
+            "shown": written(self.shown),
+            "text": self.text,
+            **{name: value for name, value in more.items() if value},
+        }
+
+
+OF_VARIANTS = ("variant", "variants", "given", "shown", "text", "picture", "names", "edition")
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a student's computer knows of a question.
+
+    Attributes
+    ----------
+    kind : str
+        A key of :func:`coursework.checking.plugins.kinds`.
+    salt : str
+        From which the points and the edges of the cells follow, and with which fingerprints are hashed.
+    frames : tuple of str
+        The target and the source; of a vector the frame of its components.
+    symbols : mapping of str to (float, float)
+        The symbols of the answer, each with the range in which it is tried.
+    unit : tuple of tuples of str
+        Groups of symbols that make a unit vector or a unit quaternion.
+    shape : (int, int) or None
+    length : int or None
+    options : tuple of str
+    tolerance, relative : float or None
+        What the answer may be off by, absolutely, and as a share of itself; it is exact if there is no tolerance.
+    calls : tuple of lists
+        The arguments of each call of a function.
+    takes : str or None
+        ``"lists"`` or ``"arrays"``.
+    result : str or None
+        The kind of what a function returns.
+    quantity : str or None
+    either_sign, unit_vector : bool or None
+    every_symbol : bool or None
+        Whether the right answer holds each of the symbols.
+    scale : str or None
+        How large the unit of a measurement is.
+    exam : bool or None
+        Whether nothing is sealed.
+    variant : Variant or None
+    arguments : mapping
+        What only this kind of question has, as its plug-in calls it.
+    """
+
+    kind: str
+    salt: str = ""
+    frames: tuple[str, ...] = ()
+    symbols: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    unit: tuple[tuple[str, ...], ...] = ()
+    shape: tuple[int, int] | None = None
+    length: int | None = None
+    options: tuple[str, ...] = ()
+    tolerance: float | None = None
+    relative: float | None = None
+    calls: tuple[list[Json], ...] = ()
+    takes: str | None = None
+    result: str | None = None
+    quantity: str | None = None
+    either_sign: bool | None = None
+    unit_vector: bool | None = None
+    every_symbol: bool | None = None
+    scale: str | None = None
+    exam: bool | None = None
+    variant: Variant | None = None
+    arguments: Mapping[str, Json] = field(default_factory=dict)
+
+    @property
+    def kind_of_values(self) -> str:
+        """The kind of what is compared: for a function, of its results."""
+        return self.result if self.kind == "function" and self.result else self.kind
+
+    @property
+    def variants(self) -> int:
+        """How many variants there are."""
+        return self.variant.count if self.variant else 1
+
+    @property
+    def given(self) -> Mapping[str, Json]:
+        """The numbers and names of this variant."""
+        return self.variant.given if self.variant else {}
+
+    @classmethod
+    def from_json(cls, found: object, where: str = "a question") -> Question:
+        """Read a question; beside it there may be what is sealed.
+
+        Raises
+        ------
+        Misread
+        """
+        about = Fields(found, where)
+        return cls(
+            about.get("kind", text),
+            about.maybe("salt", text) or "",
+            about.maybe("frames", many(text)) or (),
+            about.maybe("symbols", by_name(pair(number))) or {},
+            about.maybe("unit", many(many(text))) or (),
+            about.maybe("shape", pair(whole)),
+            about.maybe("length", whole),
+            about.maybe("options", many(text)) or (),
+            about.maybe("tolerance", number),
+            about.maybe("relative", number),
+            about.maybe("calls", many(a_list)) or (),
+            about.maybe("takes", one_of("lists", "arrays")),
+            about.maybe("result", text),
+            about.maybe("quantity", text),
+            about.maybe("either sign", truth),
+            about.maybe("unit vector", truth),
+            about.maybe("every symbol", truth),
+            about.maybe("scale", text),
+            about.maybe("exam", truth),
+            Variant.of(about),
+            about.beside(NOT_OF_THE_KIND),
+        )
+
+    def as_json(self) -> dict[str, Json]:
+        """What :meth:`from_json` reads."""
+        found: dict[str, Json] = {}
+        for name, value in vars(self).items():
+            if name == "variant":
+                found |= self.variant.as_json() if self.variant else {}
+            elif name == "arguments":
+                found |= self.arguments
+            elif value not in (None, (), {}):
+                found[name.replace("_", " ")] = written(value)
+        return found
+
+
+class Place(NamedTuple):
+    """Where something is locked up: the number of a page, its key, and what is to be put into the words there."""
+
+    page: int
+    key: str
+    short: str = ""
+
+    @classmethod
+    def from_json(cls, found: object, where: str) -> Place:
+        if not isinstance(found, (list, tuple)) or len(found) not in (2, 3):
+            raise Misread(where, "a page with its key", found)
+        return cls(whole(found[0], where), *(text(part, where) for part in found[1:]))
+
+
+class Note(NamedTuple):
+    """What a mistake is called, and what its message needs to know."""
+
+    note: str
+    details: dict[str, Json]
+
+    @classmethod
+    def from_json(cls, found: object, where: str) -> Note:
+        note, details = pair(anything)(found, where)
+        return cls(text(note, where), by_name(anything)(details, where))
+
+
+@dataclass(frozen=True)
+class KnownAnswer:
+    """An answer that a question knows: the right one, or one that a mistake leads to.
+
+    Attributes
+    ----------
+    outcome : str
+        One of :data:`OUTCOMES`.
+    notes : tuple of Note
+        The mistakes that lead to it.
+    hints : tuple of str
+    numbers : tuple of str
+        Its numbers, where a tolerance or a neighbour makes them needed.
+    """
+
+    outcome: str
+    notes: tuple[Note, ...] = ()
+    hints: tuple[str, ...] = ()
+    numbers: tuple[str, ...] = ()
+
+    @classmethod
+    def from_json(cls, found: object, where: str) -> KnownAnswer:
+        about = Fields(found, where)
+        return cls(
+            about.get("outcome", one_of(*OUTCOMES)),
+            about.maybe("notes", many(Note.from_json)) or (),
+            about.maybe("hints", many(text)) or (),
+            about.maybe("numbers", many(text)) or (),
+        )
+
+    def as_json(self) -> dict[str, Json]:
+        found = {"outcome": self.outcome, "notes": written(self.notes)}
+        found |= {"hints": written(self.hints)} if self.hints else {}
+        return found | ({"numbers": written(self.numbers)} if self.numbers else {})
+
+
+@dataclass(frozen=True)
+class Locker:
+    """What a fingerprint opens.
+
+    Attributes
+    ----------
+    answers : tuple of KnownAnswer
+        Those that have this fingerprint; none where it is that of answers which are nearly right.
+    after : mapping of tuples of str
+        Hints for other questions, by the names of these.
+    solution : Place, str or None
+        The worked solution, or where it is.
+    place : Place or None
+        Where all this stood.
+    """
+
+    answers: tuple[KnownAnswer, ...] = ()
+    after: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    solution: Place | str | None = None
+    place: Place | None = None
+
+    @classmethod
+    def from_json(cls, found: object, where: str, place: Place | None = None) -> Locker:
+        about = Fields(found, where)
+        return cls(
+            about.maybe("cases", many(KnownAnswer.from_json)) or (),
+            about.maybe("after", by_name(many(text))) or {},
+            about.maybe("solution", _solution),
+            place,
+        )
+
+    def as_json(self) -> dict[str, Json]:
+        """What is known of the answers; the solution and its place are sealed by :mod:`coursework.authoring.author`."""
+        cases: dict[str, Json] = {"cases": [answer.as_json() for answer in self.answers]}
+        return cases | ({"after": written(self.after)} if self.after else {})
+
+
+def _solution(found: object, where: str) -> Place | str:
+    return found if isinstance(found, str) else Place.from_json(found, where)
+
+
+@dataclass(frozen=True)
+class Sealed:
+    """A question with what is locked up of it, as students receive it.
+
+    Attributes
+    ----------
+    question : Question
+    answer : str
+        The name of the answer.
+    worth : float
+    lockers : str
+        As :func:`coursework.checking.sealing.pack` packs them.
+    pages, ladder : tuple of str
+        As :func:`coursework.checking.sealing.seal` seals them: the ladder are the hints that every question has.
+    format : int
+        Of the file.
+    """
+
+    question: Question
+    lockers: str = ""
+    worth: float = 1
+    answer: str = ""
+    pages: tuple[str, ...] = ()
+    ladder: tuple[str, ...] = ()
+    format: int = FORMAT
+
+    @classmethod
+    def from_json(cls, found: object, where: str, format: int = FORMAT) -> Sealed:
+        """Read a question of a file of sealed questions.
+
+        Raises
+        ------
+        Misread
+        """
+        about = Fields(found, where)
+        worth = about.maybe("worth", number)
+        return cls(
+            Question.from_json(found, where),
+            about.maybe("lockers", text) or "",
+            1 if worth is None else worth,
+            about.maybe("answer", text) or "",
+            about.maybe("pages", many(text)) or (),
+            about.maybe("ladder", many(text)) or (),
+            format,
+        )
+
+    def as_json(self) -> dict[str, Json]:
+        """What :meth:`from_json` reads."""
+        more = {"answer": self.answer, "pages": written(self.pages), "ladder": written(self.ladder)}
+        sealed: dict[str, Json] = {"lockers": self.lockers, "worth": self.worth}
+        return self.question.as_json() | sealed | {name: value for name, value in more.items() if value}
+
+
+#: The fields of a sealed question that are no arguments of its kind alone.
+NOT_OF_THE_KIND = frozenset(
+    name.replace("_", " ") for one in (Question, Sealed) for name in one.__dataclass_fields__
+).union(OF_VARIANTS)

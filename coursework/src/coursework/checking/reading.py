@@ -1,0 +1,296 @@
+"""How an answer is read into numbers, and its fingerprint.
+
+An answer is *read* into real numbers: its entries at the points of the question. Those numbers, rounded to
+whole cells, are its fingerprint; all ways of writing one answer share it. What has several equally right
+values is first turned into something that has one: a quaternion and its negative, the many Euler angles of
+one orientation.
+
+Where the cells begin follows from the salt and from nothing else, so it tells nothing of the answer. An answer
+near the edge of a cell has a locker for the cell beyond it too. Cells are several tolerances wide: what the
+fingerprint opens holds the right numbers, and with those an answer is compared to the digit.
+
+The same reading serves the student's check, which compares fingerprints through a slow hash, and the
+grading, which compares them as they are. It sees only the plain data of :mod:`coursework.checking.plain`.
+"""
+
+import functools
+import hashlib
+import itertools
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from .evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol, real, values
+from .kinds import Blank, Fault, Number, Undecidable, is_blank, listed
+from .plain import Plain
+from .plugins import kind_of_values, kinds
+from .points import points
+from .question import Question
+from .units import UnknownUnit, unit
+
+#: What an exact answer may be off by, absolutely and relatively: above all rounding of doubles.
+EXACT = MP.mpf(10) ** -12
+#: Width of its cells in that unit: far below every real difference.
+EXACT_WIDTH = 1000
+#: What an answer may be off by that is said to be nearly right where an exact one is asked for: three digits.
+NEAR = MP.mpf("2e-3")
+#: What two units that measure something else are apart, in tolerances.
+FAR = 10**6
+
+
+class Reading(NamedTuple):
+    """An answer as numbers: ``numbers`` is a list for each point; ``text`` is set for words instead."""
+
+    numbers: list[list[Number]]
+    text: str | None = None
+
+
+def calls_for(question: Question) -> list[list[Any]] | None:
+    """The arguments of each call to a function that is asked for, made anew: it may change them."""
+    if question.kind != "function":
+        return None
+    if question.takes == "arrays":
+        import numpy
+
+        return [
+            [numpy.array(part) if isinstance(part, list) else part for part in arguments]
+            for arguments in question.calls
+        ]
+    return [json.loads(json.dumps(arguments)) for arguments in question.calls]
+
+
+def read(question: Question, plain: Plain) -> Reading:
+    """Read an answer.
+
+    Parameters
+    ----------
+    question : Question
+    plain : dict
+        The answer as :func:`coursework.checking.plain.to_plain` gives it.
+
+    Raises
+    ------
+    Blank, Fault, Undecidable
+    """
+    value = plain["value"]
+    if is_blank(value):
+        raise Blank
+    if question.kind == "function":
+        return _read_function(question, plain)
+    kind = kinds()[question.kind]
+    if kind.text:
+        return Reading([], kind.text(question, plain))
+    leaves = _entries(question, value)
+    numbers = []
+    for point in points(question):
+        results = values(plain["nodes"], point)
+        numbers.append([_number(question, results[leaf]) for leaf in leaves])
+    return Reading(_with_units(question, value, numbers) if question.kind == "measurement" else numbers)
+
+
+def fingerprint(question: Question, reading: Reading, near: bool = False) -> str:
+    """Give the text that is the same for all forms of one answer, and for no other answer.
+
+    With ``near``, the text that answers share which agree to about three digits.
+    """
+    if reading.text is not None:
+        return reading.text
+    places = _places(question, canonical(question, reading), near)
+    return _text_of([int(MP.floor(place)) for place in places], near)
+
+
+def fingerprints(
+    question: Question, reading: Reading, reach: float = 1, near: bool = False, most: int = 6
+) -> list[str]:
+    """The fingerprints of all answers that are within ``reach`` tolerances of one: its cell and those beside it.
+
+    Of more than ``most`` edges that are as near as that, the nearest are taken.
+    """
+    if reading.text is not None:
+        return [reading.text]
+    numbers = canonical(question, reading)
+    choices = [[int(MP.floor(place))] for place in _places(question, numbers, near)]
+    for _, order, beside in edges_near(question, numbers, reach, near)[:most]:
+        choices[order].append(beside)
+    return [_text_of(chosen, near) for chosen in itertools.product(*choices)]
+
+
+def edges_near(
+    question: Question, numbers: Sequence[Number], reach: float = 1, near: bool = False
+) -> list[tuple[Number, int, int]]:
+    """The edges within ``reach`` tolerances, nearest first: how far, of which number, and the cell beyond."""
+    margin = MP.mpf(reach) / _width(question, len(numbers), near)
+    edges = []
+    for order, place in enumerate(_places(question, numbers, near)):
+        cell = int(MP.floor(place))
+        for far, beside in ((place - cell, cell - 1), (cell + 1 - place, cell + 1)):
+            if far < margin:
+                edges.append((far, order, beside))
+    return sorted(edges)
+
+
+def _text_of(cells: Iterable[int], near: bool) -> str:
+    return ("near " if near else "") + " ".join(map(str, cells))
+
+
+def tolerances(question: Question) -> tuple[Number, Number]:
+    """What each number of an answer may be off by: an absolute part, and a share of the right number."""
+    if question.tolerance is None:
+        return EXACT, EXACT
+    return kind_of_values(question).parts * MP.mpf(str(question.tolerance)), MP.mpf(str(question.relative or 0))
+
+
+def distance(question: Question, numbers: Sequence[Number], right: Sequence[Number]) -> Number:
+    """How far an answer is from the right one, in tolerances: up to 1 it is right."""
+    absolute, relative = tolerances(question)
+    return max(abs(number - other) / (absolute + relative * abs(other)) for number, other in zip(numbers, right))
+
+
+def within(question: Question, numbers: Sequence[Number], right: Sequence[Number], share: float = 1) -> bool:
+    """Whether an answer is within some share of the tolerance; quicker than :func:`distance` where it is not."""
+    absolute, relative = tolerances(question)
+    return all(
+        abs(number - other) <= share * (absolute + relative * abs(other)) for number, other in zip(numbers, right)
+    )
+
+
+def _width(question: Question, count: int, near: bool) -> int:
+    """Width of a cell in tolerances. The more numbers, the wider: so the cells that an answer is near stay few."""
+    if near:
+        return 4 * count
+    return EXACT_WIDTH if question.tolerance is None else 3 * count
+
+
+def _places(question: Question, numbers: Sequence[Number], near: bool) -> list[Number]:
+    absolute, relative = (NEAR, NEAR) if near else tolerances(question)
+    width = _width(question, len(numbers), near)
+    return [
+        _in_tolerances(number, absolute, relative) / width + offset
+        for number, offset in zip(numbers, offsets(question.salt, len(numbers)))
+    ]
+
+
+def _in_tolerances(number: Number, absolute: Number, relative: Number) -> Number:
+    """A number on a scale on which each step of 1 is one tolerance, however large the number."""
+    if not relative:
+        return number / absolute
+    size = MP.log(1 + relative * abs(number) / absolute) / relative
+    return size if number >= 0 else -size
+
+
+@functools.lru_cache(256)
+def offsets(salt: str, count: int) -> list[Number]:
+    data = hashlib.shake_256(f"{salt} edges of the cells".encode()).digest(8 * count)
+    return [int.from_bytes(data[8 * k : 8 * k + 8], "big") / MP.mpf(2) ** 64 for k in range(count)]
+
+
+def canonical(question: Question, reading: Reading) -> list[Number]:
+    """The numbers of a reading with what is a matter of taste removed, all points one after another."""
+    unique = kind_of_values(question).unique
+    if not unique:
+        return [number for numbers in reading.numbers for number in numbers]
+    return [number for numbers in reading.numbers for number in unique(question, numbers)]
+
+
+def fault(question: Question, reading: Reading) -> Fault | None:
+    """Say what is wrong with the form of an answer that was read, or give ``None``."""
+    find = kind_of_values(question).fault
+    if find and reading.text is None:
+        for numbers in reading.numbers:
+            found: Fault | None = find(question, numbers)
+            if found:
+                return found
+    return None
+
+
+# --- reading the entries ------------------------------------------------------------------------
+
+
+def _entries(question: Question, value: list[Any]) -> Sequence[int]:
+    """The nodes of the entries of an answer; every kind whose answers are no words says which they are."""
+    entries = kinds()[question.kind].entries
+    assert entries is not None
+    found: Sequence[int] = entries(question, value)
+    return found
+
+
+def _number(question: Question, result: Any) -> Number:
+    try:
+        return real(result, _imaginary_rest(question, result))
+    except UnknownSymbol as error:
+        name = error.args[0][:40]
+        given = list(question.symbols)
+        wanted = f"this question has the symbols {listed(given)}" if given else "this question has no symbols"
+        raise Fault("stray symbol", f"The answer holds `{name}`; {wanted}.") from None
+    except Undefined as error:
+        raise Fault("undefined", f"The answer has no finite value for some values of its symbols: {error}.") from None
+    except TooLarge as error:
+        raise Fault("too large", f"The answer is not worked out: {error}.") from None
+    except NotSupported as error:
+        raise Undecidable(f"The answer holds {error}, whose value is not worked out here.") from None
+    except ValueError:
+        raise Fault("not real", "The answer has an imaginary part; the question asks for something real.") from None
+
+
+def _imaginary_rest(question: Question, result: Any) -> Number:
+    """What may remain of exponentials that should cancel: as much as the answer may be off by."""
+    if not isinstance(result, MP.mpc):
+        return 0
+    absolute, relative = tolerances(question)
+    return max(absolute, EXACT) + max(relative, EXACT) * abs(result.real)
+
+
+def _with_units(question: Question, value: list[Any], numbers: list[list[Number]]) -> list[list[Number]]:
+    """The number in base units, in terms of the question's scale, and which these are.
+
+    The unit is part of the answer: another one differs from it by more than any tolerance.
+    """
+    text = value[1][1][1]
+    try:
+        found = unit(text)
+    except UnknownUnit as error:
+        raise Fault(
+            "unknown unit",
+            f"`{error}` is no unit that is known here. Write products with a space and quotients with a stroke: "
+            "`kN m`, `m/s^2`, `J/(kg K)`.",
+        ) from None
+    absolute, _ = tolerances(question)
+    far = [exponent * FAR * max(absolute, NEAR) for exponent in found.exponents]
+    scale = MP.mpf(question.scale or 1)  # in an exam it is not told
+    return [[number * found.size / scale, *far] for [number] in numbers]
+
+
+def _read_function(question: Question, plain: Plain) -> Reading:
+    value = plain["value"]
+    if value[0] != "function":
+        raise Fault("shape", "The question asks for a function: give its name, without calling it.")
+    inner = replace(question, kind=question.kind_of_values, symbols={})
+    if all(map(is_blank, value[1])):
+        if not value[2]:
+            raise Blank  # the body of the function is still empty
+        raise Fault(
+            "returned nothing",
+            "The function works something out and returns nothing. End it with a line that begins with `return`.",
+        )
+    if any(result[0] == "printed" for result in value[1]):
+        raise Fault(
+            "printed",
+            "The function prints its result and returns nothing, so nothing else can work with it. "
+            "Write `return` in place of `print`.",
+        )
+    results = values(plain["nodes"], {})
+    numbers = []
+    for order, result in enumerate(value[1]):
+        which = f"In call {order + 1} of {len(value[1])} the function"
+        if result[0] == "raised":
+            raise Fault("raised an error", f"{which} raised `{result[1]}`.")
+        if is_blank(result):
+            raise Fault("returned nothing", f"{which} returned nothing. Is there a `return`?")
+        try:
+            numbers.append([_number(inner, results[leaf]) for leaf in _entries(inner, result)])
+        except Fault as found:
+            raise Fault(found.note, f"{which} returned something else than was asked for. {found.message}") from None
+    if len(numbers) != len(question.calls):
+        raise Fault("raised an error", "The function did not answer all calls.")
+    return Reading(numbers)

@@ -1,0 +1,238 @@
+"""The roster: who is in the course, from a table of the instructor's or the gradebook that a system exports."""
+
+import csv
+import io
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePosixPath
+from typing import TypeVar
+
+from .languages import in_english
+
+Key = TypeVar("Key")
+
+#: What the columns of rosters and exported gradebooks are called, and what they hold.
+COLUMNS = {
+    "own": (
+        "student", "student id", "student_id", "username", "user name", "login", "sis login id", "sis user id",
+        "integration id", "id number", "orgdefinedid", "identifier",
+    ),
+    "name": ("name", "full name", "student name"),
+    "email": ("email", "email address", "e-mail", "e-mail address"),
+    "canvas": ("canvas", "canvas id"),
+    "canvas anonymous": ("canvas anonymous",),
+    "moodle": ("moodle", "moodle id"),
+    "brightspace": ("brightspace", "brightspace id"),
+    "github": ("github", "github_username", "github username"),
+    "handed in as": ("handed in as",),
+}  # fmt: skip
+FIRST, LAST = ("first name", "first_name", "firstname"), ("last name", "last_name", "lastname", "surname")
+WORDS = {
+    "own": "the name of the folder",
+    "name": "the full name",
+    "email": "the address",
+    "letters": "the letters of the name",
+    "canvas": "Canvas's number",
+    "canvas anonymous": "Canvas's anonymous name",
+    "moodle": "Moodle's number",
+    "gradescope": "the number or address in Gradescope",
+    "brightspace": "Brightspace's number",
+    "github": "the GitHub name",
+    "handed in as": "the roster's own word",
+}
+
+
+class BadRoster(ValueError):
+    """A roster cannot be used; the message says why, and in which line."""
+
+
+@dataclass(frozen=True)
+class Person:
+    """Somebody in the course.
+
+    Attributes
+    ----------
+    called : mapping of tuples of str
+        What the roster calls them, by a key of :data:`WORDS`.
+    row : mapping of str
+        Their whole line, by the names of the columns in small letters.
+    local_part : str
+        What stands before the sign in their address, if it is of the same place as most; or nothing.
+    """
+
+    called: Mapping[str, tuple[str, ...]]
+    row: Mapping[str, str] = field(default_factory=dict)
+    local_part: str = ""
+
+    @property
+    def student(self) -> str | None:
+        """The name that they have here, and that their variants follow from; ``None`` if there is none."""
+        return next((value for kind in ("own", "email", "name") for value in self.called.get(kind, ())), None)
+
+    def spellings(self) -> Iterator[tuple[str, str]]:
+        """All that they may be found by: a kind, and a value."""
+        for kind, values in self.called.items():
+            for value in values:
+                yield kind, value
+                if kind == "name":
+                    yield from (("letters", value), ("letters", turned(value)))
+                if kind == "email":
+                    yield "own", value
+                if kind in ("own", "email"):
+                    yield "gradescope", value
+        if self.local_part:
+            yield "own", self.local_part
+
+
+class Roster:
+    """Who is in the course: the only source of identity where it is given.
+
+    Parameters
+    ----------
+    path : path
+        A table of comma-separated values, or the gradebook that Canvas, Moodle or Brightspace exports. Read are
+        the columns of :data:`COLUMNS`; ``handed in as`` holds names of folders or files, separated by semicolons,
+        for what cannot be matched otherwise.
+
+    Attributes
+    ----------
+    people : dict of str to Person
+        By their names here.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.people: dict[str, Person] = {}
+        for line, row in _rows(Path(path)):
+            person = Person(_called(row), row)
+            if person.student is None:
+                continue  # Canvas's line of possible points
+            if person.student in self.people:
+                raise BadRoster(f"{path}, line {line}: {person.student!r} is there a second time.")
+            self.people[person.student] = person
+        if not self.people:
+            raise BadRoster(f"{path} names no student. Its columns may be called {', '.join(sorted(COLUMNS))}.")
+        addresses = {name: one.called["email"][0] for name, one in self.people.items() if one.called.get("email")}
+        for name, own in local_parts(addresses).items():
+            self.people[name] = replace(self.people[name], local_part=own)
+        self.index: dict[tuple[str, str], set[str]] = {}
+        for name, person in self.people.items():
+            for kind, value in person.spellings():
+                self.index.setdefault((kind, _same(kind, value)), set()).add(name)
+        self.kinds = {kind for kind, _ in self.index}
+
+    def find(self, keys: Iterable[tuple[str, str]], place: str = "") -> tuple[str | None, str]:
+        """The student that a claim's keys mean and the kind that told, or ``None`` and why nobody is meant.
+
+        ``place`` is the name of the folder or file, for which the roster may have a word of its own.
+        """
+        names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
+        keys = (*(("handed in as", name) for name in names), *keys)
+        for kind, value in keys:
+            found = self.index.get((kind, _same(kind, value)), set())
+            if len(found) == 1:
+                return next(iter(found)), WORDS[kind]
+            if found:
+                return None, f"Several students of the roster fit: {', '.join(sorted(found))}."
+            if kind in self.kinds and kind in ("canvas", "canvas anonymous", "moodle", "gradescope"):
+                break  # the system's number is known of others, so a name does not overrule it
+            if kind == "github" and kind not in self.kinds:
+                return None, "The roster has no column `github`, and that name anybody may choose."
+        return None, "Nobody in the roster fits."
+
+    def identity(self, student: str) -> dict[str, str | list[str]]:
+        """What is known of a student, as a record holds it."""
+        person = self.people[student]
+        found: dict[str, str | list[str]] = {
+            kind: person.called[kind][0]
+            for kind in ("canvas", "moodle", "brightspace", "name", "email")
+            if person.called.get(kind)
+        }
+        return found | {"own": [*person.called.get("own", ()), *([person.local_part] if person.local_part else [])]}
+
+
+def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    try:
+        text = decoded(path.read_bytes())
+    except OSError as error:
+        raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
+    first = text.split("\n", 1)[0]
+    # Not at every sign that ends a line somewhere: students choose their names, and would begin a line of theirs.
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
+    header = [name.strip().casefold() for name in next(reader, [])]
+    repeated = [name for name, times in Counter(header).items() if times > 1 and name]
+    if repeated:
+        raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
+    english, _ = in_english(header)
+    header = [english.get(name, name) for name in header]
+    for number, cells in enumerate(reader, 2):
+        yield number, dict(zip(header, (cell.strip() for cell in cells), strict=False))
+
+
+def decoded(data: bytes) -> str:
+    """The text of a table, in whichever encoding a spreadsheet left it."""
+    for mark, encoding in ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
+        if data.startswith(mark):
+            return data.decode(encoding)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
+    """What a line of a roster calls a student, by kind."""
+    row = dict(line)
+    of_canvas = "section" in row or "sis login id" in row or "sis user id" in row
+    if "id" in row and ("student" in row or "lastname" in row) and of_canvas:
+        # Canvas's gradebook, with the name in one column or in two.
+        row["name"], row["canvas"] = row.pop("student", ""), row.pop("id")
+        if not row["canvas"]:
+            return {}
+        if "," in row["name"]:
+            row["name"] = turned(row["name"])
+    elif "identifier" in row and ("full name" in row or "grade" in row):
+        row["moodle"] = re.sub(r"\D", "", row.pop("identifier"))  # Moodle's worksheet: "Participant 17"
+    elif "id" in row:
+        row.setdefault("student id", row.pop("id"))  # nbgrader's list
+    known = {
+        kind: [value for name in names if (value := row.get(name, "").lstrip("#"))] for kind, names in COLUMNS.items()
+    }
+    first, last = (next((row[name] for name in names if row.get(name)), "") for names in (FIRST, LAST))
+    if first or last:
+        known["name"].append(f"{first} {last}".strip())
+    known["handed in as"] = [part.strip() for value in known["handed in as"] for part in value.split(";")]
+    return {kind: tuple(values) for kind, values in known.items() if values}
+
+
+def local_parts(addresses: Mapping[Key, str]) -> dict[Key, str]:
+    """What stands before the sign in addresses, of those alone that are of the same place as most.
+
+    The others anybody may have chosen, to be called at home what somebody else is called here.
+
+    >>> local_parts({1: 'ann@uni.example', 2: 'bob@uni.example', 3: 'ann@mail.example'})
+    {1: 'ann', 2: 'bob'}
+    """
+    parts = {key: address.partition("@")[::2] for key, address in addresses.items() if "@" in address}
+    places = Counter(place.casefold() for _, place in parts.values()).most_common(1)
+    return {key: own for key, (own, place) in parts.items() if place.casefold() == places[0][0]}
+
+
+def turned(name: str) -> str:
+    """``Last, First`` the other way round; without a comma, the last word first."""
+    last, comma, first = name.partition(",")
+    if comma:
+        return f"{first.strip()} {last.strip()}"
+    *before, last = name.split() or [""]
+    return " ".join([last, *before])
+
+
+def _same(kind: str, value: str) -> str:
+    """One spelling of what people write in several ways."""
+    value = unicodedata.normalize("NFKC", value).casefold()
+    value = "".join(sign for sign in value if unicodedata.category(sign) != "Cf")
+    if kind == "letters":
+        return "".join(sign for sign in unicodedata.normalize("NFKD", value) if sign.isalnum())
+    return " ".join(value.split())

@@ -1,0 +1,83 @@
+"""What is read from outside: what is wrong is said with its key and value, and what is right is written again."""
+
+import json
+
+import pytest
+
+from coursework.checking import questions
+from coursework.checking.fields import Misread
+from coursework.checking.question import Locker, Question, Sealed
+from coursework.grading.judging.contract import Contract
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.record import Record
+from coursework.grading.store import Store
+
+LEVER = {
+    "kind": "expression", "salt": "b", "symbols": {"F": [1, 5]}, "answer": "moment", "worth": 2, "lockers": "",
+    "variant": 1, "variants": 2, "given": {"arm": 2}, "shown": {"arm": "2"}, "text": "{{arm}}", "sequence": "zxy",
+}  # fmt: skip
+MARK = {"outcome": "wrong", "note": "", "messages": [], "points": 0, "worth": 2}
+RECORD = {"student": "ann", "assignment": "levers", "notebooks": [], "answers": {}, "marks": {"levers/one": MARK}}
+DECISION = {
+    "id": "1", "when": "2026-10-05T12:00:00", "who": "Bea", "student": "ann", "assignment": "levers",
+    "question": "levers/one", "answer": "a", "credit": 0.5,
+}  # fmt: skip
+
+
+def test_a_sealed_question_is_written_as_it_was_read():
+    sealed = Sealed.from_json(LEVER, "levers/one")
+    assert sealed.as_json() == LEVER and sealed.question.variant.given == {"arm": 2}
+    assert sealed.question.arguments == {"sequence": "zxy"}  # of a kind that a plug-in brings
+
+
+@pytest.mark.parametrize(
+    "reader, found, change, said",
+    [
+        (Question.from_json, LEVER, {"kind": None}, "'kind'"),
+        (Question.from_json, LEVER, {"tolerance": "small"}, "'tolerance' should be a number, and is 'small'"),
+        (Question.from_json, LEVER, {"symbols": {"F": [1, 2, 3]}}, "'symbols': 'F' should be a list of two"),
+        (Sealed.from_json, LEVER, {"worth": True}, "'worth' should be a number, and is True"),
+        (Locker.from_json, {}, {"cases": [{"outcome": "right"}]}, "'outcome' should be one of 'correct', 'mistake'"),
+        (Contract.from_json, {"title": "One", "public": LEVER}, {"worth": "2"}, "'worth' should be a number"),
+        (Record.from_json, RECORD, {"student": 7}, "'student' should be a text, and is 7"),
+        (Record.from_json, RECORD, {"marks": {"levers/one": {**MARK, "points": "0"}}}, "'points' should be a number"),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_key_and_its_value(reader, found, change, said):
+    with pytest.raises(Misread) as error:
+        reader({**found, **change}, "here")
+    assert said in str(error.value) and str(error.value).startswith("here")
+
+
+def test_a_student_whose_sealed_file_is_damaged_is_told_what_to_do(tmp_path, monkeypatch):
+    (tmp_path / "sealed").mkdir()
+    content = {"format": questions.FORMAT, "questions": {"levers/one": {**LEVER, "worth": "two"}}}
+    (tmp_path / "sealed" / "levers.json").write_text(json.dumps(content))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(RuntimeError, match="levers/one: 'worth' should be a number.*Unpack the exercises"):
+        questions.find_question("levers/one", "")
+
+
+def test_a_record_of_a_later_version_is_refused(tmp_path):
+    store = Store(tmp_path)
+    store.save(Record.from_json(RECORD, "here"))
+    path = store.place("ann", "levers")
+    path.write_text(json.dumps({**json.loads(path.read_text()), "format": 9}))
+    with pytest.raises(ValueError, match="of format 9.*reads formats up to 3"):
+        store.read("ann", "levers")
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        ({"credit": 2}, "'credit' should be a share from 0 to 1, and is 2"),
+        ({"who": 3}, "'who' should be a text, and is 3"),
+        ({"colour": "red"}, "without 'colour'"),
+        ({"rubric": ["Sign"], "points": []}, "those of 1 lines"),
+    ],
+)
+def test_a_line_of_the_ledger_that_is_none_says_why(tmp_path, change, said):
+    (tmp_path / "ledger.jsonl").write_text(json.dumps({**DECISION, **change}) + "\n")
+    with pytest.raises(ValueError, match="line 1: this is no decision") as error:
+        Ledger(tmp_path)
+    assert said in str(error.value)

@@ -1,0 +1,1 @@
+"""What other programs answer, asked anew: ``python -m tools.programs`` prints what changed."""

@@ -1,0 +1,57 @@
+"""The converter of the page, asked from here: every form and sequence of a program, and its lines of code."""
+
+import itertools
+import json
+import subprocess
+
+from notebook_pages.paths import NODE
+from orientation import SEQUENCES
+from orientation_figures.moving import bundle
+from orientation_workbench.programs import FORMS, OTHER, PROGRAMS
+
+APPLY = """
+const { readFileSync } = await import('node:fs');
+const { programs, jobs } = JSON.parse(readFileSync(0));
+const { settled, read, told, line, shown, byAxesOf } = (() => {
+BODY
+return { settled, read, told, line, shown, byAxesOf };
+})();
+const attempt = (work) => { try { return work(); } catch (error) { return { fault: error.message }; } };
+console.log(JSON.stringify(jobs.map(({ source, side, dcm, text }) => attempt(() => {
+  const means = settled(side, programs);
+  if (!dcm) return read(means, text);
+  const exchanged = source ? byAxesOf(source, side, programs, dcm) : { dcm }, numbers = told(means, exchanged.dcm);
+  return { text: shown(numbers), line: line(means, numbers, programs), said: exchanged.said };
+}))));
+"""
+
+
+def converted(jobs):
+    """What the page makes of each side with a matrix to write, or a text to read.
+
+    Parameters
+    ----------
+    jobs : list of dict
+        ``side``, and ``dcm`` or ``text``; with ``source``, whose matrix it is, its axes are exchanged for the side's.
+    """
+    program = "".join(map(bundle.body, bundle.SHARED)) + APPLY.replace("BODY", bundle.body("converter"))
+    done = subprocess.run([NODE, "--input-type=module", "-e", program], capture_output=True, text=True,
+                          input=json.dumps({"programs": PROGRAMS, "jobs": jobs}))  # fmt: skip
+    if done.returncode:
+        raise RuntimeError(done.stderr[-2000:])
+    return json.loads(done.stdout)
+
+
+def sides(program):
+    """Every form and sequence that a program of the table takes; for another program every reading as well."""
+    if program == OTHER:
+        names = ("program", "form", "sequence", "matrix", "scalar", "unit")
+        readings = itertools.product(
+            FORMS, ("zxy", "xyx"), ("as here", "transposed"), ("first", "last"), ("radians", "degrees")
+        )
+        return [dict(zip(names, (OTHER, *one))) for one in readings]
+    found = []
+    for form in PROGRAMS[program]["lines"]:
+        allowed = PROGRAMS[program].get("sequences", {}).get(form, SEQUENCES) if "angles" in form else ["zyx"]
+        found += [{"program": program, "form": form, "sequence": one} for one in allowed]
+    return found
