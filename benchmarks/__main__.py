@@ -2,7 +2,8 @@
 
 Pages have a table of their own, for which the book must be built: ``python -m benchmarks.pages``; so have their
 first views on a slow telephone: ``python -m benchmarks.first_view``, the figures that move:
-``python -m benchmarks.moving``, and grading: ``python -m benchmarks.grading``.
+``python -m benchmarks.moving``, the essay: ``python -m benchmarks.essay``, and grading:
+``python -m benchmarks.grading``.
 """
 
 import itertools

@@ -23,7 +23,7 @@ from notebook_pages.serve import server
 from .first_view import SITE, Compressing
 
 PAGES = ("rotations", "index")
-SLOWED, ROUNDS, PICTURES = (1, 4, 6), 3, 60
+SLOWED, ROUNDS, PICTURES = (1, 4, 6), 3, 40
 PHONE = {"viewport": {"width": 380, "height": 780}, "device_scale_factor": 2, "is_mobile": True, "has_touch": True}
 WATCH = """
 window.seen = { shift: 0, paint: 0, ready: 0 };

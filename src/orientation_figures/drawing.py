@@ -163,7 +163,7 @@ class Drawing:
 
     def dot(self, point, colour="ink", radius=4):
         """Draw a dot with a radius in pixels."""
-        return self.path(*_ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"head {colour}")
+        return self.path(*ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"head {colour}")
 
     def label(self, point, text, colour="ink", shift=(0, 0), size=20):
         """Write ``text``, its middle on a point."""
@@ -176,7 +176,7 @@ class Drawing:
 
     # Arrows and frames.
 
-    def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, bow=0):
+    def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, bow=0, size=20):
         """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from the tip.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
@@ -187,9 +187,9 @@ class Drawing:
         tail, tip = self.on_sheet([start, end])
         along, length = _direction(tip - tail)
         if length < 0.05 * self.scale * np.linalg.norm(reach):
-            self.path(*_ellipse(tip, (9, 0), (0, 9)), f"paper {colour}")
+            self.path(*ellipse(tip, (9, 0), (0, 9)), f"paper {colour}")
             if self.view[2] @ reach > 0:
-                self.path(*_ellipse(tip, (3, 0), (0, 3)), f"head {colour}")
+                self.path(*ellipse(tip, (3, 0), (0, 3)), f"head {colour}")
             else:
                 self.path("MLML", tip + 6.4 * np.array([(-1, -1), (1, 1), (-1, 1), (1, -1)]), colour)
             outward = np.array((15, 15))
@@ -201,11 +201,11 @@ class Drawing:
             self._head(tip, along, 1, colour)
             outward, tip = np.sign(bow) * 15 * left, (tail + tip) / 2 + bow * left
         else:
-            size = min(1, 0.5 * length / 14)
-            self.path("ML", [tail, tip - 10 * size * along], f"axis {colour}")
-            self._head(tip, along, size, colour)
+            head = min(1, 0.5 * length / 14)
+            self.path("ML", [tail, tip - 10 * head * along], f"axis {colour}")
+            self._head(tip, along, head, colour)
             outward = 17 * along
-        return self._write(label, tip + (outward if shift is None else shift), colour) if label else self
+        return self._write(label, tip + (outward if shift is None else shift), colour, size) if label else self
 
     def _head(self, tip, along, size, colour):
         corners = size * np.array(HEADS.get(colour, BARB)) @ [along, (-along[1], along[0])]
@@ -227,7 +227,7 @@ class Drawing:
 
     def node(self, point, letter):
         """Draw a circle that stands for the frame ``letter`` in a diagram of connected frames."""
-        self.path(*_ellipse(self.on_sheet(point), (19, 0), (0, 19)), f"fill-8 axis {letter}")
+        self.path(*ellipse(self.on_sheet(point), (19, 0), (0, 19)), f"fill-8 axis {letter}")
         return self.label(point, f"${letter}$", letter)
 
     # Angles and circles.
@@ -275,7 +275,7 @@ class Drawing:
         """Draw the circle about ``normal``; ``kind`` as in ``line``, or 'fill-8', 'fill-16', ..."""
         normal = _direction(normal)[0]
         first = radius * _direction(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))]))[0]
-        return self.path(*_ellipse(*self.on_sheet([origin, first, np.cross(normal, first)])), f"{kind} {colour}")
+        return self.path(*ellipse(*self.on_sheet([origin, first, np.cross(normal, first)])), f"{kind} {colour}")
 
     # Solid bodies. Draw what lies farther from the reader first. Faces turned away shrink to nothing
     # instead of being left out, so that an Animation finds the same marks at every moment.
@@ -311,7 +311,7 @@ class Drawing:
         ]
         self.path("MCCLCCZ", body, f"fill-{fill} {colour}")
         for place, seen in zip(ends, (facing < 0, facing > 0)):
-            self.path(*_ellipse(place, seen * bulge, seen * side), f"fill-8 {colour}")
+            self.path(*ellipse(place, seen * bulge, seen * side), f"fill-8 {colour}")
         return self
 
     # SVG.
@@ -482,7 +482,7 @@ def _direction(vector):
     return (vector / length if length > 1e-9 else 0 * vector), length
 
 
-def _ellipse(middle, u, v):
+def ellipse(middle, u, v):
     """Return the commands and points of the ellipse with conjugate half diameters ``u`` and ``v``."""
     middle, u, v = np.asarray(middle), np.asarray(u), np.asarray(v)
     points = [u]

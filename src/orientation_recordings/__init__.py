@@ -9,10 +9,17 @@ Beside them stand the directions of bright stars, as the satellite Hipparcos mea
 that comes with *PyEphem* 4.2.1 by Brandon Rhodes (MIT licence; its text is in ``data/LICENSE-stars.txt``).
 """
 
+from __future__ import annotations
+
 from importlib import resources
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Array: TypeAlias = "NDArray[np.float64]"
 
 #: Metres per second squared.
 STANDARD_GRAVITY = 9.80665
@@ -39,21 +46,21 @@ class Recording(NamedTuple):
         As the instrument prints it, divided by its length; empty where it prints none.
     """
 
-    time: np.ndarray
-    angular_velocity: np.ndarray
-    specific_force: np.ndarray
-    magnetic_field: np.ndarray | None
-    quaternion_time: np.ndarray
-    quaternion: np.ndarray
+    time: Array
+    angular_velocity: Array
+    specific_force: Array
+    magnetic_field: Array | None
+    quaternion_time: Array
+    quaternion: Array
 
 
-def table(name):
+def table(name: str) -> Array:
     """Give the rows of a file of ``data/`` as an array, without the line of column names."""
     with resources.files(__package__).joinpath("data", f"{name}.csv").open(encoding="utf8") as file:
         return np.loadtxt(file, delimiter=",", skiprows=1)
 
 
-def x_imu():
+def x_imu() -> Recording:
     """Give sixteen seconds of an x-IMU in a hand: held, carried about, held. It printed on memory card.
 
     Returns
@@ -73,7 +80,7 @@ def x_imu():
     )
 
 
-def x_imu_time(packets):
+def x_imu_time(packets: Array) -> Array:
     """Give the time of packets of the x-IMU: that of the last sample of its sensors before each.
 
     Parameters
@@ -89,7 +96,7 @@ def x_imu_time(packets):
     return (np.searchsorted(table("x_imu_sensors")[:, 0], packets) - 1) / X_IMU_RATE
 
 
-def x_imu_euler_angles():
+def x_imu_euler_angles() -> Array:
     """Give the angles that the x-IMU printed beside each of its quaternions.
 
     Returns
@@ -100,7 +107,7 @@ def x_imu_euler_angles():
     return table("x_imu_euler_angles")[:, 1:]
 
 
-def x_imu_rotation_matrix():
+def x_imu_rotation_matrix() -> tuple[Array, Array]:
     """Give a second of the nine numbers that the x-IMU printed as its rotation matrix.
 
     Returns
@@ -112,7 +119,7 @@ def x_imu_rotation_matrix():
     return x_imu_time(rows[:, 0]), rows[:, 1:].reshape(-1, 3, 3)
 
 
-def x_imu3():
+def x_imu3() -> Recording:
     """Give ten seconds of an x-IMU3, a later instrument of the same maker, turned quickly by hand.
 
     Returns
@@ -132,7 +139,7 @@ def x_imu3():
     )
 
 
-def ngimu():
+def ngimu() -> Recording:
     """Give ten seconds of an NGIMU, turned by hand.
 
     Returns
@@ -151,7 +158,7 @@ def ngimu():
     )
 
 
-def xsens():
+def xsens() -> Recording:
     """Give nineteen seconds of an instrument of Xsens.
 
     Returns
@@ -164,7 +171,7 @@ def xsens():
     return Recording(time, rows[:, 4:7], rows[:, 1:4] / STANDARD_GRAVITY, rows[:, 7:10], time, _unit(rows[:, 10:14]))
 
 
-def walking_leg():
+def walking_leg() -> tuple[Recording, Recording]:
     """Give fourteen seconds of two instruments on one leg: two seconds of standing, then walking.
 
     Returns
@@ -172,23 +179,17 @@ def walking_leg():
     tuple of two :class:`Recording`
         Thigh and shank, 120 samples a second, sample for sample at the same times, without quaternions.
     """
-    recordings = []
-    for name in ("upper_leg", "lower_leg"):
-        rows = table(name)
-        recordings.append(
-            Recording(
-                np.arange(len(rows)) / WALKING_RATE,
-                rows[:, 4:7],
-                rows[:, 1:4] / STANDARD_GRAVITY,
-                None,
-                np.empty(0),
-                np.empty((0, 4)),
-            )
-        )
-    return tuple(recordings)
+    return _of_the_leg("upper_leg"), _of_the_leg("lower_leg")
 
 
-def bright_stars():
+def _of_the_leg(name: str) -> Recording:
+    rows = table(name)
+    time = np.arange(len(rows)) / WALKING_RATE
+    force = rows[:, 1:4] / STANDARD_GRAVITY
+    return Recording(time, rows[:, 4:7], force, None, np.empty(0), np.empty((0, 4)))
+
+
+def bright_stars() -> tuple[list[str], Array, Array]:
     """Give the directions of bright stars at the beginning of the year 2000.
 
     Returns
@@ -214,5 +215,6 @@ def bright_stars():
     return [row[0] for row in rows], directions, magnitudes
 
 
-def _unit(quaternions):
-    return quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True)
+def _unit(quaternions: Array) -> Array:
+    unit: Array = quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    return unit

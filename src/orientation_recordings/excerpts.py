@@ -10,6 +10,7 @@ use are left out.
 import io
 import sys
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
 DATA = Path(__file__).parent / "data"
@@ -17,15 +18,22 @@ SOURCE = "tests/data"
 OTHER_NAMES = {"Adara", "Agena", "Albereo", "Alcaid", "Etamin", "Formalhaut", "Gienah Corvi", "Sirrah"}
 
 
-def excerpts(wheel):
+def excerpts(wheel: str) -> dict[str, str]:
     """Give the text of each file of ``data/``, by its name."""
     archive = zipfile.ZipFile(wheel)
 
-    def lines(name):
+    def lines(name: str) -> list[str]:
         with archive.open(f"{SOURCE}/{name}") as file:
             return io.TextIOWrapper(file, "utf8").read().splitlines()
 
-    def rows(name, first, last, separator=",", columns=None, head=1):
+    def rows(
+        name: str,
+        first: float,
+        last: float,
+        separator: str = ",",
+        columns: Sequence[int] | None = None,
+        head: int = 1,
+    ) -> str:
         """The column names and the rows whose first number lies between two values."""
         text = lines(name)
         kept = [text[head - 1], *(line for line in text[head:] if first <= float(line.split(separator)[0]) < last)]
@@ -53,7 +61,7 @@ def excerpts(wheel):
     }
 
 
-def bright_stars(wheel):
+def bright_stars(wheel: str) -> str:
     """Give the table of the stars: each once, under the name that astronomers have agreed on."""
     with zipfile.ZipFile(wheel).open("ephem/stars.py") as file:
         lines = [line.split(",") for line in io.TextIOWrapper(file, "utf8") if ",f|S|" in line]
@@ -64,7 +72,7 @@ def bright_stars(wheel):
     return found
 
 
-def main(wheel, stars):
+def main(wheel: str, stars: str) -> None:
     DATA.mkdir(exist_ok=True)
     for name, text in {**excerpts(wheel), "bright_stars.csv": bright_stars(stars)}.items():
         (DATA / name).write_text(text, "utf8")

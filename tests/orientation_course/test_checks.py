@@ -200,7 +200,7 @@ def reply_to(one, answer):
         (ReferenceFrame("E").x + ReferenceFrame("F").y, "unreadable", "not connected"),
         (ReferenceFrame("E"), "frame", "This is the frame E"),
         (ReferenceFrame("E").x, "shape", "a vector"),
-        (simple_dcm("x", sm.Rational(1, 3)), "", "a direction cosine matrix, but not the one"),
+        (simple_dcm("x", sm.Rational(1, 3)), "", "a direction cosine matrix, but not the right one"),
         (..., "", "in place of"),
         (None, "", "in place of"),
     ],
@@ -266,7 +266,7 @@ def test_words_and_truth_values_pass_as_beginners_write_them(one, answer):
     assert passes(one, answer)
 
 
-THREE, MATRIX = "A list of 3 components is asked for; this is ", "A matrix of 3 × 3 is asked for; this is "
+THREE, MATRIX = "The question wants a list of 3 components; this is ", "The question wants a matrix of 3 × 3; this is "
 
 
 @pytest.mark.parametrize(
@@ -751,6 +751,27 @@ def test_products_of_quaternions_in_the_other_order_are_named():
     assert reply.note == "other order"
     # The rule for matrices is another one, and this answer already follows it.
     assert "quaternion" in reply.messages[0] and "matrix" not in reply.messages[0]
+
+
+@pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
+    """And not as the transpose with all the other signs, which is the same and which nobody has done."""
+    turns = [("z", theta), ("x", alpha), ("y", phi), ("z", theta / 3)][:count]
+    build = plugins.kinds()[kind].build
+    one = make(
+        "trial/os",
+        kind,
+        build(turns),
+        frames=("D", "A"),
+        symbols=" ".join(["theta", "alpha", "varphi"][:count]),
+        turns=turns,
+    )
+    for place in range(count):
+        slipped = [(axis, -angle if order == place else angle) for order, (axis, angle) in enumerate(turns)]
+        reply = reply_to(one, build(slipped[::-1]))
+        assert (reply.note, reply.details) == ("other order, sign of one turn", {"turn": place})
+        assert "wrong order, and the angle of" in reply.messages[0] and len(reply.messages) == 1
 
 
 def test_messages_speak_of_what_was_asked_for():

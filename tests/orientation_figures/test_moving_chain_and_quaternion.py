@@ -461,7 +461,7 @@ def test_turn_once_round(open_figure):
 
 def test_no_speed_is_cut_off_in_silence():
     """The scale holds all three ways; what is too fast for any scale leaves a gap, and its size is told."""
-    from orientation_figures.moving.stills.quaternion import plotted
+    from orientation_figures.moving.pictures.quaternion import plotted
 
     slow = np.radians([[30.0] * 4, [40, 50, 60, 70], [100, 170, 110, 20]])
     highest, pieces, beyond = plotted(slow)

@@ -103,7 +103,7 @@ def test_formulas_give_what_the_module_gives(in_browser_language, name, choice):
 def test_what_is_made_of_formulas(in_browser_language):
     dcms = orientations()
     found = in_browser_language("axisAngleFromDcm", dcms)
-    axes, angles = np.array([one["axis"] for one in found]), np.array([one["angle"] for one in found])
+    axes, angles = map(np.array, zip(*found))
     assert rotation_error(module.dcm_from_axis_angle(axes, angles), dcms) < LARGEST
     assert np.abs(angles - module.axis_angle_from_dcm(dcms)[1]).max() < LARGEST
     for sequence in ("zxz", "xyz"):

@@ -28,7 +28,7 @@ from orientation import (
     turns_from_angular_velocity,
 )
 from orientation_figures.moving import MotionFigure, bundle
-from orientation_figures.moving.motion import DESCRIPTIONS, MOMENTS
+from orientation_figures.moving.motion import COLOURS, MOMENTS
 from orientation_figures.moving.tumbling import SPIN
 
 NODE = Path(sys.executable).with_name("node")
@@ -136,7 +136,7 @@ def test_the_reference_agrees_with_scipy():
     assert abs(figure.run()["reference"][-1] - truth).max() < 1e-8
 
 
-@pytest.mark.parametrize("description", DESCRIPTIONS)
+@pytest.mark.parametrize("description", COLOURS)
 def test_angular_momentum_stays_where_it_is(description):
     # Along N it is C^T I omega: a wrong sign in a rate, or a transposed matrix, would turn it.
     figure = MotionFigure(method="Runge-Kutta", step=0.005, time=5.0, description=description)
@@ -173,7 +173,7 @@ def errors_at(time=6.0, **settings):
         name: axis_angle_from_dcm(nearest_dcm(MotionFigure(**settings, time=time, description=name).dcm @ truth.T).dcm)[
             1
         ]
-        for name in DESCRIPTIONS
+        for name in COLOURS
     }
 
 
@@ -285,7 +285,7 @@ def test_the_still_shows_and_tells(body, moments, time):
 @pytest.fixture(scope="module")
 def node(tmp_path_factory):
     """``node(code, data)``: what the code returns of the data, with everything of the figure in scope."""
-    module = "".join(map(bundle.body, (*bundle.SHARED, "motion")))
+    module = "".join(map(bundle.body, bundle.SHARED)) + bundle.whole("motion")
 
     def run(code, data):
         script = tmp_path_factory.mktemp("node") / "motion.mjs"

@@ -43,6 +43,7 @@ def test_a_formula_is_taken_from_the_reference(open_figure):
     page.locator("button.take-formula").wait_for()
     assert page.locator("button.take-formula").count() == 1  # nothing is offered of what is no formula
     page.click("button.take-formula")
+    assert page.locator("select[aria-label=Language] option").all_text_contents() == [*LANGUAGES]
     page.select_option("select[aria-label=Language]", "JavaScript")
     page.select_option("select[aria-label=Sequence]", "zyx")
     page.select_option("select[aria-label=Matrix]", "transposed")

@@ -6,7 +6,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from formats import DEG, FORMS, GRAVITY, recording
+from formats import DEG, FORMS, GRAVITY, core_motion, recording
 from places import REPOSITORY
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
@@ -184,6 +184,12 @@ def test_units_and_axes_of_many_forms_come_out_by_themselves(form):
     assert words["axes of the gyroscope"] == "those of the accelerometer"
     assert found.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.03)
     assert not [verdict for verdict in found.verdicts if verdict.light == "wrong"], str(found)
+
+
+def test_an_accelerometer_that_says_down_is_told():
+    """An iPhone's does. A ground with z down would look the same: both are said."""
+    found = examine(core_motion().content, "phone", judged=False)
+    assert found.light("level") == "look" and "-z axis" in str(found)
 
 
 def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):

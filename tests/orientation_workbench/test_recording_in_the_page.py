@@ -22,6 +22,7 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
     assert "<title>walk &lt;1&gt;.csv on the bench</title>" in kept
     for page in (shown, kept):
         assert re.search(r'<tr class="wrong"><td>wrong</td><th scope="row">offset of the magnetometer', page)
+        assert "<b>Wrong</b>: offset of the magnetometer." in page
         assert page.count("<svg") >= 3 and "<1>" not in page and "<script" not in page
     assert "offset of the magnetometer" in repr(found)
     rows = re.search(

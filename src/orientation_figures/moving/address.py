@@ -10,8 +10,12 @@ kept is read for ever, and one of a newer format is refused in words. What stand
 import base64
 import json
 import re
+from collections.abc import Mapping
+from typing import TypeAlias
 
 VERSION = 1
+#: Plain data, as JSON has it.
+Plain: TypeAlias = "None | bool | float | str | list[Plain] | dict[str, Plain]"
 #: Letters: longer addresses are cut by some programs that pass them on.
 LARGEST = 6000
 FRAGMENT = re.compile(r"#?([a-z0-9-]+)=([0-9]+)\.(.*)", re.DOTALL)
@@ -21,7 +25,7 @@ class BadAddress(ValueError):
     """An address carries too much, or is not whole, or of a newer format; the message says which."""
 
 
-def fragment_of(place, content):
+def fragment_of(place: str, content: Mapping[str, Plain]) -> str:
     """The fragment of an address that carries plain data to a place on a page.
 
     Parameters
@@ -55,7 +59,7 @@ def fragment_of(place, content):
     return f"#{place}={VERSION}.{data.rstrip('=')}"
 
 
-def carried_by(fragment):
+def carried_by(fragment: str) -> tuple[str, dict[str, Plain]] | None:
     """The place and the data that a fragment carries, or ``None`` where it is a plain name of a place.
 
     The data may come from anybody: whoever takes it up accepts what a reader could have entered, and nothing else.
@@ -73,7 +77,7 @@ def carried_by(fragment):
         raise BadAddress(f"This address is of format {version}, and this edition of the book reads {VERSION}.")
     try:
         data = base64.b64decode(text + "=" * (-len(text) % 4), altchars="-_", validate=True)
-        content = json.loads(data.decode("utf8"))
+        content: Plain = json.loads(data.decode("utf8"))
     except ValueError:
         content = None
     if len(text) > LARGEST or not isinstance(content, dict):

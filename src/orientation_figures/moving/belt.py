@@ -5,6 +5,7 @@ import math
 from orientation.quaternions import dcm_from_quaternion
 
 from .figure import MovingFigure
+from .pictures.belt import quaternion_at
 from .state import Numbers
 
 FULL = 4 * math.pi
@@ -44,23 +45,5 @@ class BeltFigure(MovingFigure):
         return dcm_from_quaternion(self.quaternion_at(1))
 
     def quaternion_at(self, share):
-        """Return the unit quaternion of the belt at a share of its length, four floats; the belt lies along y.
-
-        Its first and last sixth stay straight, so that the plate keeps away from the wall.
-        """
-        share = min(1, max(0, 1.5 * share - 0.25))
-        whole = self.angle / math.pi / 2
-        turns = round(whole) if abs(whole - round(whole)) < 1e-9 else 0
-        if turns == 2:
-            # Circles through 1 on the sphere of quaternions, from a great one down to a point.
-            tilt = self.passed * math.pi / 2
-            round_ = 2 * math.pi * share
-            size = math.cos(tilt)
-            along, across = size * math.sin(round_), size * math.sin(tilt) * (1 - math.cos(round_))
-            scalar = 1 - size * size * (1 - math.cos(round_))
-        else:
-            # Half circles from 1 to -1, from one way round to the other.
-            tilt = self.passed * math.pi if turns == 1 else 0.0
-            half = self.angle * share / 2
-            scalar, along, across = math.cos(half), math.cos(tilt) * math.sin(half), math.sin(tilt) * math.sin(half)
-        return tuple(round(entry, 15) + 0.0 for entry in (scalar, 0.0, along, across))
+        """Return the unit quaternion of the belt at a share of its length, four floats; the belt lies along y."""
+        return tuple(round(entry, 15) + 0.0 for entry in quaternion_at(self.angle, self.passed, share))

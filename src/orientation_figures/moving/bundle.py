@@ -11,9 +11,15 @@ from pathlib import Path
 from ..style import STYLE
 
 FOLDER = Path(__file__).parent
-SHARED = ("formulas", "mathematics", "glyphs", "model", "address", "shared")
+SHARED = ("formulas", "mathematics", "common_picture", "glyphs", "model", "address", "shared")
+#: What ``pictures`` describes, and ``javascript`` translates.
+PICTURES = (
+    "belt", "challenge", "common", "converter", "gimbal", "graph", "hands", "motion", "nine_numbers", "phone",
+    "quaternion", "simple", "successive", "triad", "workbench",
+)  # fmt: skip
 #: Modules that one figure alone needs, before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
+OWN |= {name: (*OWN.get(name, ()), f"{name}_picture") for name in PICTURES if name != "common"}
 #: Figures that use packages of npm: what their page loads when they are seen is built from this script, and each has a
 #: style sheet of its own.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
@@ -34,7 +40,7 @@ if (document.readyState === 'loading') addEventListener('DOMContentLoaded', begi
 IMPORT = re.compile(r"^(?:import|export) \{([^}]*)\} from .*;\n", re.MULTILINE)
 IMPORT_FROM = re.compile(r"^import \{([^}]*)\} from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
-COMMENT = re.compile(r"^\s*//.*\n|^ +", re.MULTILINE)
+COMMENT = re.compile(r"^\s*//.*\n|^ +| {2,}// .*$", re.MULTILINE)
 
 
 @cache

@@ -9,8 +9,8 @@ from orientation.direction_cosines import check_dcm
 from orientation.euler_angles import body_fixed_from_dcm
 
 from .figure import MovingFigure
+from .pictures.common import chain
 from .state import Turns
-from .successive import chain
 
 
 class ChallengeFigure(MovingFigure):

@@ -20,7 +20,7 @@ class MovingFigure(anywidget.AnyWidget):
     and calls what ``observe`` has registered. In Jupyter a kernel keeps both in step; a page of the book
     runs the same front end without one, in place of the still.
 
-    A figure has a ``kind``, the name of its modules in ``js`` and in ``stills``, and traits tagged
+    A figure has a ``kind``, the name of its modules in ``js`` and in ``pictures``, and traits tagged
     ``state=True``; traits tagged ``told=True`` are constants that the front end needs. ``sheet`` gives
     left, top, right and bottom of what may be drawn, in pixels from the origin: still and figure have the
     same size. ``room`` is the height of the whole figure in pixels, beside and below its controls, which
@@ -72,7 +72,9 @@ class MovingFigure(anywidget.AnyWidget):
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
         # Imported only now: a still needs NumPy and Matplotlib, the figure itself does not.
-        return import_module(f".stills.{self.kind}", __package__).drawing(self)
+        from .sheet import Sheet
+
+        return import_module(f".pictures.{self.kind}", __package__).drawing(self, Sheet)
 
     def state(self):
         """Return the attributes that the figure shows, by their names."""

@@ -3,14 +3,10 @@
 import traitlets
 
 from .figure import MovingFigure, svg_on
+from .pictures import motion as pictures
+from .pictures.motion import COLOURS, MOMENTS, SECONDS, body_of
 from .state import Numbers
 
-#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's are those that
-#: Brody (1985) measured, rounded; its a_x runs along its handle and a_z out of its face. The book's
-#: a_x runs along its long edges.
-MOMENTS = {"racket": (1.2, 16.0, 17.0), "book": (6.9, 13.3, 19.7)}
-DESCRIPTIONS = {"matrix": "direction cosine matrix", "quaternion": "quaternion", "angles": "Euler angles"}
-SECONDS = 20.0
 PLOT = (-180, 0, 180, 356)  # left, top, right and bottom
 
 
@@ -99,7 +95,7 @@ class MotionFigure(MovingFigure):
     method = traitlets.Enum(("Euler", "Runge-Kutta", "exponential"), "Euler").tag(sync=True, state=True)
     step = Between(0.01, 0.005, 0.1, "seconds").tag(sync=True, state=True)
     restored = traitlets.Bool(False).tag(sync=True, state=True)
-    description = traitlets.Enum(tuple(DESCRIPTIONS), "matrix").tag(sync=True, state=True)
+    description = traitlets.Enum(tuple(COLOURS), "matrix").tag(sync=True, state=True)
     time = Between(6.0, 0, SECONDS, "seconds").tag(sync=True, state=True)
 
     def run(self):
@@ -124,7 +120,7 @@ class MotionFigure(MovingFigure):
     @property
     def body(self):
         """What is drawn: 'racket', 'book' or, for other moments of inertia, 'block'."""
-        return next((name for name, moments in MOMENTS.items() if moments == self.moments), "block")
+        return body_of(self.moments)
 
     @property
     def flips(self):
@@ -140,6 +136,6 @@ class MotionFigure(MovingFigure):
 
     def plot(self):
         """Return the ``Drawing`` of how the drift has grown up to ``time``."""
-        from .stills import motion
+        from .sheet import Sheet
 
-        return motion.plot(self)
+        return pictures.plot(self, Sheet)

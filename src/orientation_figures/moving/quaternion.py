@@ -4,15 +4,15 @@ import math
 
 import traitlets
 
-from orientation.axis_angle import axis_angle_from_dcm, quaternion_from_axis_angle
+from orientation.axis_angle import quaternion_from_axis_angle
 from orientation.direction_cosines import nearest_dcm
 from orientation.euler_angles import dcm_from_body_fixed
 from orientation.quaternions import dcm_from_quaternion, interpolate_quaternions, quaternion_from_dcm
 
 from .figure import MovingFigure
+from .pictures.quaternion import SECONDS, angle_between
 from .state import Direction, Numbers
 
-SECONDS = 4  # as in js/quaternion.js
 FULL = 4 * math.pi
 STEP = 1e-4
 
@@ -100,7 +100,7 @@ class QuaternionFigure(MovingFigure):
         None stands for a way that does not exist: slerp between orientations half a turn apart, or blended
         entries to which several matrices are equally near.
         """
-        first, second = self._ends()
+        first, second = self.ends
         angles = [(1 - share) * start + share * end for start, end in zip(self.first, self.second)]
         return (
             _or_none(
@@ -114,7 +114,7 @@ class QuaternionFigure(MovingFigure):
 
     def blend(self, share):
         """Return the matrix whose entries lie part of the way between those of the ends; its rows are too short."""
-        first, second = self._ends()
+        first, second = self.ends
         return (1 - share) * first + share * second
 
     def speeds(self, share):
@@ -125,13 +125,10 @@ class QuaternionFigure(MovingFigure):
             for before, after in zip(self.ways(early), self.ways(late))
         )
 
-    def _ends(self):
+    @property
+    def ends(self):
+        """The matrices of A and B, shape ``(2, 3, 3)``."""
         return dcm_from_body_fixed((self.first, self.second), "zxy")
-
-
-def angle_between(before, after):
-    """Return the angle of the turn between two orientations, NaN where one of them is missing."""
-    return math.nan if before is None or after is None else float(axis_angle_from_dcm(after @ before.T)[1])
 
 
 def _or_none(compute):

@@ -5,12 +5,11 @@ import math
 import traitlets
 
 from orientation.axis_angle import axis_angle_from_dcm
-from orientation.direction_cosines import simple_dcm
 
 from .figure import MovingFigure
+from .pictures.common import chain
+from .pictures.successive import COMPARISONS, second_chain
 from .state import Numbers, Turns
-
-COMPARISONS = ("nothing", "1 and 2 exchanged", "2 and 3 exchanged", "3 and 4 exchanged", "body and space fixed")
 
 
 class SuccessiveFigure(MovingFigure):
@@ -102,23 +101,3 @@ class SuccessiveFigure(MovingFigure):
     def angle_between(self):
         """Angle of the turn from the end of the chain to E, radians, or None where nothing is compared."""
         return None if self.other is None else float(axis_angle_from_dcm(self.other @ self.dcm.T)[1])
-
-
-def second_chain(turns, kind, compare):
-    """Return the turns of the chain that is compared, and their kind."""
-    turns, k = list(turns), COMPARISONS.index(compare)
-    if k < 4:
-        turns[k - 1], turns[k] = turns[k], turns[k - 1]
-    else:
-        kind = "space" if kind == "body" else "body"
-    return turns, kind
-
-
-def chain(turns, kind):
-    """Return the direction cosine matrices of N and of every further frame with respect to N, as a list."""
-    frames = [simple_dcm("z", 0.0)]
-    for axis, angle in turns:
-        turn = simple_dcm(axis, angle)
-        # A turn about the frame's own unit vector multiplies from the left, one about N's from the right.
-        frames.append(turn @ frames[-1] if kind == "body" else frames[-1] @ turn)
-    return frames

@@ -40,15 +40,15 @@ def _arc(radius, thick, start, end):
     return list(_net(int(np.ceil((end - start) / 0.3)), 6, at))
 
 
-def _rod(top):
+def _rod(top, sides=9):
     def at(i, j):
         a, far = -TURN * j, 1 + (top - 1) * i
         return np.stack((far * np.cos(a), far * np.sin(a), i), axis=-1)
 
-    angles = np.linspace(0, TURN, 9, endpoint=False)
-    ring = np.stack((np.cos(angles), np.sin(angles), np.zeros(9)), axis=-1)
+    angles = np.linspace(0, TURN, sides, endpoint=False)
+    ring = np.stack((np.cos(angles), np.sin(angles), np.zeros(sides)), axis=-1)
     caps = [ring[::-1]] + ([ring * (top, top, 1) + (0, 0, 1)] if top else [])
-    return [*_net(1, 9, at), *caps]
+    return [*_net(1, sides, at), *caps]
 
 
 def _ball():
@@ -122,7 +122,7 @@ class Paper:
         if shape == "tube" or thick < THIN or (shape in ("rod", "arc") and alpha < FAINT):
             yield from self.thread(item)
             return
-        local = SHAPES[shape](*of)
+        local = _rod(*of, sides=40) if colour == "ground" else SHAPES[shape](*of)  # the largest is seen to be round
         both = shape == "ribbon"
         for face in local:
             points = np.array(origin) + (face * size) @ np.array(rows)
@@ -210,7 +210,7 @@ def picture(still, world, colours=None):
     end()
     outlines = {}
     for text, tex, colour, (x, y), _ in still["labels"]:
-        placed, _ink = typeset(f"${text}$" if tex else rf"$\mathrm{{{text}}}$")
+        placed, _ink = typeset(f"${text}$" if tex else "$\\mathrm{" + text.replace("-", "\u2010") + "}$")
         size = FINE * (0.02 if tex else 0.016)
         glyphs = "".join(
             f'<use transform="translate({at[0]:.0f} {at[1]:.0f}){"" if by == 1 else f" scale({by:.3g})"}" '

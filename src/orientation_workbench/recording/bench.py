@@ -657,7 +657,8 @@ class _Bench:
             equal = [one for one in equal if levels[id(one)][0] > most - 0.02]
         upwards = [one for one in equal if levels[id(one)][1] == 2] or equal
         reading = upwards[0]
-        level, axis = levels[id(reading)]
+        level, axis, against = levels[id(reading)]
+        called = "-" * against + "xyz"[axis] if level is not None else ""
         words = (
             f"{reading.order}; "
             + (
@@ -677,7 +678,7 @@ class _Bench:
             "equal readings": len(upwards),
         }
         if level is not None:
-            evidence["up along the ground's axes"] = f"{'xyz'[axis]}, to {np.degrees(np.arccos(min(1, level))):.1f}°"
+            evidence["up along the ground's axes"] = f"{called}, to {np.degrees(np.arccos(min(1, level))):.1f}°"
         self.facts[f"convention of the {kind}"] = reading
         wrong = ""
         if kind == "quaternion":
@@ -702,25 +703,32 @@ class _Bench:
             self.oriented = (group.time, matrices)
         if level is not None:
             lean = float(np.degrees(np.arccos(min(1, level))))
-            light = GREEN if lean < 3 else YELLOW
+            advice = "" if lean < 3 else "Was it tared while it was not level?"
+            if against:
+                advice += (
+                    " Either the ground's axis points down, or the accelerometer does, as in iPhones: then change "
+                )
+                advice += "the signs of the latter."
+            light = YELLOW if advice else GREEN
             self.say(
                 "level",
                 light,
-                f"up leans by {lean:.1f}° from the ground's {'xyz'[axis]} axis",
+                f"up leans by {lean:.1f}° from the ground's {called} axis",
                 {"°": round(lean, 2)},
-                "" if light == GREEN else "Was it tared while it was not level?",
+                advice.strip(),
             )
 
     def _level(self, time, matrices):
-        """How nearly up is along an axis of the ground, and which."""
+        """How nearly up is along an axis of the ground, which, and whether against it."""
         if self.forces is None:
-            return None, None
+            return None, None, False
         forces = _at(time, self.time, self.forces)
         ups = np.einsum("nji,nj->ni", matrices, forces)
         calm = np.abs(np.linalg.norm(forces, axis=1) - 1) < 0.1
         up = np.median(ups[calm] if calm.sum() > 10 else ups, axis=0)
         up = up / max(np.linalg.norm(up), 1e-9)
-        return float(np.abs(up).max()), int(np.abs(up).argmax())
+        axis = int(np.abs(up).argmax())
+        return float(abs(up[axis])), axis, bool(up[axis] < 0)
 
     # --- the filter -----------------------------------------------------------------------------
 

@@ -18,6 +18,8 @@ def run(chosen):
 
     try:
         source = chosen.files if len(chosen.files) > 1 else chosen.files[0]
+        if shown:
+            print("reading", end="", file=sys.stderr, flush=True)
         name = ", ".join(Path(one).name for one in chosen.files)
         found = examine(source, name, chosen.rate, not chosen.quick, progress if shown else None)
         if shown:

@@ -136,9 +136,19 @@ def as_fragment(examined):
         f"<figure>{picture}<figcaption>{escape(words)}</figcaption></figure>" for picture, words in plots(examined)
     )
     return (
-        f'<div class="on-the-bench"><style>{STYLE}</style><table>{rows}</table>{pictures}'
+        f'<div class="on-the-bench"><style>{STYLE}</style><p>{_in_short(examined)}</p><table>{rows}</table>{pictures}'
         f"<details><summary>The code that corrects it</summary><pre>{escape(as_code(examined))}</pre></details></div>"
     )
+
+
+def _in_short(examined):
+    """Which lights are not green, the worst first."""
+    found = []
+    for light in ("wrong", "look", "cannot tell"):
+        about = list(dict.fromkeys(verdict.about for verdict in examined.verdicts if verdict.light == light))
+        if about:
+            found.append(f"<b>{light.capitalize()}</b>: {escape(', '.join(about))}.")
+    return " ".join(found) or "All is as it should be."
 
 
 def as_html(examined, fragment=None):
@@ -187,7 +197,7 @@ def plots(examined):
     few = slice(None, None, max(1, len(examined.time) // 1500))
 
     def drawing(height):
-        figure = Figure(figsize=(9, height), layout="constrained")
+        figure = Figure(figsize=(6.2, height), layout="constrained")  # its words can be read on a telephone
         return figure, figure.subplots()
 
     def kept(figure, words):

@@ -290,7 +290,7 @@ def _read_function(question: Question, plain: Plain) -> Reading:
         try:
             numbers.append([_number(inner, results[leaf]) for leaf in _entries(inner, result)])
         except Fault as found:
-            raise Fault(found.note, f"{which} returned something else than was asked for. {found.message}") from None
+            raise Fault(found.note, f"{which} did not return what the question wants. {found.message}") from None
     if len(numbers) != len(question.calls):
         raise Fault("raised an error", "The function did not answer all calls.")
     return Reading(numbers)

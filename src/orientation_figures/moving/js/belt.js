@@ -1,25 +1,9 @@
-import { IDENTITY, add, dcmFromQuaternion, dot, scale } from './mathematics.js';
-import { Sheet, button, change, degrees, element, fixed, follow, glide, group, liveText, numberTable, onceAFrame, open, plain,
-  radians, readout, slider, stage } from './shared.js';
+import { add, degrees, radians, scale } from './mathematics.js';
+import { belt, fullTurns, picture, quaternionAt, SIZE } from './belt_picture.js';
+import { button, change, element, fixed, follow, glide, group, liveText, numberTable, onceAFrame,
+  open, plain, readout, Sheet, slider, stage } from './shared.js';
 
-// As in belt.py.
-const SIZE = 96, LENGTH = 3, WIDTH = 0.19, PIECES = 72, WALL = [0.9, 0.06, 0.9], PLATE = [0.62, 0.09, 0.44];
 const FULL = 4 * Math.PI;
-
-// After how many full turns the plate stands, 1 or 2; else 0.
-const fullTurns = (angle) => [1, 2].find((turns) => Math.abs(angle - 2 * Math.PI * turns) < 1e-8) ?? 0;
-
-// The unit quaternion of the belt at a share of its length, as BeltFigure.quaternion_at.
-export function quaternionAt(angle, passed, part) {
-  const share = Math.min(1, Math.max(0, 1.5 * part - 0.25));
-  const turns = fullTurns(angle);
-  if (turns === 2) {
-    const tilt = passed * Math.PI / 2, round = 2 * Math.PI * share, size = Math.cos(tilt);
-    return [1 - size * size * (1 - Math.cos(round)), 0, size * Math.sin(round), size * Math.sin(tilt) * (1 - Math.cos(round))];
-  }
-  const tilt = turns === 1 ? passed * Math.PI : 0, half = angle * share / 2;
-  return [Math.cos(half), 0, Math.cos(tilt) * Math.sin(half), Math.sin(tilt) * Math.sin(half)];
-}
 
 // A plate on a belt: one full turn leaves a twist that stays, two leave none.
 export function render({ model, el }) {
@@ -66,29 +50,16 @@ export function render({ model, el }) {
     round.disabled = !turns;
     passed.element.style.visibility = turns ? '' : 'hidden';
     table.show([0, 0.5, 1].map((share) => quaternionAt(theta, part, share).map((entry) => fixed(entry))));
-    sheet.draw(() => picture(sheet, theta, part));
+    const [frames, places] = belt(theta, part), plate = add(places.at(-1), scale(0.045, frames.at(-1)[1]));
+    sheet.draw(() => {
+      picture(sheet, theta, part);
+      sheet.grip(plate, 'plate', 40);
+    });
     text.say(sentence(theta, part, turns));
   }
 
   draw();
   return follow(model, ['angle', 'passed'], redraw);
-}
-
-function picture(sheet, theta, passed) {
-  const frames = Array.from({ length: PIECES + 1 }, (_, k) => dcmFromQuaternion(quaternionAt(theta, passed, k / PIECES)));
-  let place = [0, -LENGTH / 2, 0];
-  sheet.box(IDENTITY, WALL, 'N', add(place, [0, -0.03, 0]));
-  for (let k = 0; k < PIECES; k += 1) {
-    const next = add(place, scale(LENGTH / PIECES / 2, add(frames[k][1], frames[k + 1][1])));
-    const corner = (at, m, side) => add(at, scale(side * WIDTH, frames[k + m][0]));
-    sheet.area([corner(place, 0, -1), corner(place, 0, 1), corner(next, 1, 1), corner(next, 1, -1)],
-      dot(frames[k][2], sheet.view[2]) > 0 ? 'B' : 'D', 38, false);
-    place = next;
-  }
-  const end = frames.at(-1), plate = add(place, scale(0.045, end[1]));
-  sheet.box(end, PLATE, 'A', plate);
-  sheet.triad('A', end, { origin: plate, reach: 0.62, labels: false });
-  sheet.grip(plate, 'plate', 40);
 }
 
 function sentence(theta, passed, turns) {

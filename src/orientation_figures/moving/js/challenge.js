@@ -1,22 +1,13 @@
-import { AXES, IDENTITY, axisAngleFromDcm, multiply, scale, simpleDcm, transpose } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, group, hats, liveText, numberTable,
-  onceAFrame, open, plain, player, put, radians, readout, slider, stage, wrapped, write } from './shared.js';
+import { AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, radians, transpose } from './mathematics.js';
+import { picture, SIZE } from './challenge_picture.js';
+import { chain, partly } from './common_picture.js';
+import { button, change, choice, element, fixed, follow, followTurn, group, hats, liveText,
+  numberTable, onceAFrame, open, plain, player, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
 
-const REACH = 1.25, SIZE = 112, BOX = [1.1, 0.8, 0.35];   // as in challenge.py
 const MOST = 20, CLOSE = radians(2), SECONDS = 6;
 const [N, A] = ['n', 'a'].map(hats);
 const any = (list) => list[Math.floor(Math.random() * list.length)];
 const inDegrees = (angle) => `${plain(degrees(angle), 1).replace('-', '\u2212')}°`;
-
-// Every frame of a chain of turns, each about a unit vector of the frame before it.
-const framesOf = (turns, start = IDENTITY) => turns.reduce((frames, [axis, angle]) => [...frames, multiply(simpleDcm(axis, angle), frames.at(-1))], [start]);
-
-// The chain that has come part of the way: every turn begins and ends at rest.
-function partly(turns, share) {
-  const done = share * turns.length, whole = Math.min(Math.floor(done + 1e-9), turns.length), rest = Math.max(0, done - whole);
-  const [axis, angle] = turns[whole] ?? [];
-  return rest > 1e-9 ? [...turns.slice(0, whole), [axis, rest * rest * (3 - 2 * rest) * angle]] : turns.slice(0, whole);
-}
 
 // A new challenge: axes of which no two neighbours are equal, and angles that suit the task.
 function another(task) {
@@ -30,7 +21,7 @@ function another(task) {
 export function render({ model, el }) {
   let shown = false, share = 1;
   const state = () => ({ task: model.get('task'), given: model.get('given'), turns: model.get('turns') });
-  const start = () => (state().task === 'undo' ? framesOf(state().given).at(-1) : IDENTITY);
+  const start = () => (state().task === 'undo' ? chain(state().given).at(-1) : IDENTITY);
   const setLast = (angle) => change(model, { turns: [...state().turns.slice(0, -1), [state().turns.at(-1)[0], angle]] });
 
   const sheet = new Sheet({ bounds: [-180, -172, 180, 172], size: SIZE, changed: () => redraw(),
@@ -38,7 +29,7 @@ export function render({ model, el }) {
     grab(part, at) {
       const { task, turns } = state();
       if (!part || task === 'ghost' || !turns.length) return null;
-      const frames = framesOf(turns, start()), before = frames.at(-2), [axis, angle] = turns.at(-1);
+      const frames = chain(turns, 'body', start()), before = frames.at(-2), [axis, angle] = turns.at(-1);
       const follower = followTurn(sheet, { axis: before[AXES.indexOf(axis)], arm: before[part], angle, at });
       return (to) => setLast(wrapped(follower(to)));
     } });
@@ -78,8 +69,8 @@ export function render({ model, el }) {
 
   function draw() {
     const { task: now, given, turns: made } = state();
-    const goal = now === 'undo' ? IDENTITY : framesOf(given).at(-1), frames = framesOf(made, start()), dcm = frames.at(-1);
-    const { angle } = axisAngleFromDcm(multiply(goal, transpose(dcm)));
+    const goal = now === 'undo' ? IDENTITY : chain(given).at(-1), frames = chain(made, 'body', start()), dcm = frames.at(-1);
+    const [, angle] = axisAngleFromDcm(multiply(goal, transpose(dcm)));
     task.show(now);
     const full = made.length >= (now === 'ghost' ? given.length : MOST);
     for (const one of turns) one.disabled = full;
@@ -97,16 +88,8 @@ export function render({ model, el }) {
     put(bar.firstChild, 'style', `width:${(degrees(angle) / 1.8).toFixed(1)}%`);
     put(bar, 'aria-valuenow', plain(degrees(angle), 1));
     sheet.draw(() => {
-      if (now === 'ghost' || shown) {
-        const there = now === 'ghost' ? framesOf(partly(given, share)).at(-1) : goal;
-        sheet.faded = true;
-        sheet.box(there, BOX, 'E');
-        sheet.triad('E', there, { labels: false });
-        sheet.faded = false;
-      }
-      sheet.box(dcm, BOX, 'A');
-      sheet.triad('N', IDENTITY, { reach: REACH });
-      sheet.triad('A', dcm);
+      const goes = now === 'ghost' ? chain(partly(given, share)).at(-1) : shown ? goal : null;
+      picture(sheet, dcm, goes);
       if (now === 'ghost' || !made.length) return;
       dcm.forEach((row, k) => { if (AXES[k] !== made.at(-1)[0]) sheet.grip(row, String(k)); });
     });

@@ -1,11 +1,12 @@
-import { AXES, IDENTITY, SEQUENCES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, dcmFromSpaceFixed, determinant, dot, gimbalLockMargin, length, multiply, nearestDcm, quaternionFromDcm,
-  reversed, scale, spaceFixedFromDcm, transpose, unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, group, hats, liveText, numberTable, onceAFrame,
-  open, put, radians, readout, stage, write } from './shared.js';
+import { AXES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm, dcmFromAxisAngle, dcmFromBodyFixed,
+  dcmFromQuaternion, dcmFromSpaceFixed, degrees, determinant, dot, gimbalLockMargin, IDENTITY,
+  length, multiply, nearestDcm, quaternionFromDcm, radians, reversed, scale, SEQUENCES,
+  spaceFixedFromDcm, transpose, unit } from './mathematics.js';
+import { picture, SIZE } from './converter_picture.js';
 import { canTakeAway, languageChoice, textBox, textOf, textsIn } from './take_away.js';
+import { button, change, choice, element, fixed, follow, group, hats, liveText, numberTable,
+  onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
 
-const REACH = 1.25, SIZE = 112;   // as in stills/converter.py
 const [N, A] = ['n', 'a'].map(hats);
 const OTHER = 'another program', ANGLES = ['body fixed angles', 'space fixed angles'];
 const FORMS = { matrix: 9, quaternion: 4, [ANGLES[0]]: 3, [ANGLES[1]]: 3, 'axis times angle': 3 };
@@ -72,7 +73,7 @@ export function told(side, orientation) {
   }
   let values;
   if (side.form === 'axis times angle') {
-    const { axis, angle } = axisAngleFromDcm(dcm);
+    const [axis, angle] = axisAngleFromDcm(dcm);
     values = scale(angle, axis);
   } else values = (side.form === ANGLES[0] ? bodyFixedFromDcm : spaceFixedFromDcm)(dcm, side.sequence);
   return side.unit === 'degrees' ? values.map(degrees) : values;
@@ -86,8 +87,8 @@ export function byAxesOf(source, target, programs, dcm) {
     ? other[whose].map((way) => one[whose].map((from) => dot(WAYS[way], WAYS[from]))) : IDENTITY));
   if (determinant(body) !== determinant(world)) return { dcm, said: `One hand for another: of the world of ${one.world ? target.program : source.program} no manual says where its axes point to, so none are exchanged.` };
   const same = [body, world].every((rows) => rows.every((row, k) => row[k] === 1));
-  const told = [source, target].map(({ program }) => `of ${program} ${programs[program]?.body?.join(', ')}`).join(', ');
-  return { dcm: multiply(multiply(body, dcm), transpose(world)), said: same ? '' : `The axes are exchanged: x, y, z ${told}.` };
+  const whose = one.body && other.body ? 'body' : 'world', [from, to] = [source, target].map(({ program }) => `${programs[program]?.[whose]?.join(', ')} in ${program}`);
+  return { dcm: multiply(multiply(body, dcm), transpose(world)), said: same ? '' : `The axes are exchanged: x, y, z point ${from}, and ${to}.` };
 }
 
 // Twelve digits after the point: with nine, a program that looks at the length of a quaternion would refuse it.
@@ -246,10 +247,7 @@ export function render({ model, el }) {
     write(code, programmed || '\u2013');
     copy.disabled = !programmed;
     takeAway();
-    sheet.draw(() => {
-      sheet.triad('N', IDENTITY, { reach: REACH });
-      sheet.triad('A', dcm);
-    });
+    sheet.draw(() => picture(sheet, dcm));
     words.say(fault || [said, exchanged.said, note(to, numbers, programs)].filter(Boolean).join(' '));
   }
 

@@ -1,6 +1,6 @@
 import { AXES, SEQUENCES } from './mathematics.js';
-import { button, choice, element, group, liveText, onceAFrame, open } from './shared.js';
 import { colours, languageChoice, textBox, textOf, textsIn } from './take_away.js';
+import { button, choice, element, group, liveText, onceAFrame, open } from './shared.js';
 
 // Any formula of the module, in a language and a convention that the reader chooses; with a button at each function of
 // the page that can be taken away.

@@ -1,22 +1,11 @@
-import { AXES, IDENTITY, add, dot, gimbalLockMargin, length, multiply, PROPER_EULER, SEQUENCES, scale,
-  simpleDcm, subtract } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, glide, group, hats, liveText,
-  numberTable, onceAFrame, open, plain, put, radians, readout, slider, stage, turned, wrapped, write } from './shared.js';
+import { add, AXES, degrees, dot, gimbalLockMargin, length, PROPER_EULER, radians, scale, SEQUENCES,
+  subtract } from './mathematics.js';
+import { device, INNER, OUTER, picture, SIZE, SYMBOLS } from './gimbal_picture.js';
+import { button, change, choice, element, fixed, follow, followTurn, glide, group, hats, liveText,
+  numberTable, onceAFrame, open, plain, put, readout, Sheet, slider, stage, turned, wrapped, write } from './shared.js';
 
-// Radii of the rings of B and C, half the camera, where the axes end; as in gimbal.py.
-const OUTER = 1.05, INNER = 0.76, CAMERA = [0.62, 0.44, 0.46], END = 1.42, SIZE = 98;
-const BOUNDS = [-180, -185, 200, 185], INSET = [1.4, 1.1];   // the triads of A and D, right and up
-const SYMBOLS = ['$\\psi$', '$\\theta$', '$\\varphi$'], NAMES = ['psi', 'theta', 'phi'];
+const BOUNDS = [-180, -185, 200, 185], NAMES = ['psi', 'theta', 'phi'];
 const CLOSE = radians(10), LOCKED = radians(0.5);
-
-// Everything that follows from the state: frames as rows along A, the three axes, the margin.
-function device(angles, sequence) {
-  const turns = angles.map((angle, k) => simpleDcm(sequence[k], angle));
-  const A = IDENTITY, B = turns[0], C = multiply(turns[1], B), D = multiply(turns[2], C);
-  const at = [...sequence].map((axis) => AXES.indexOf(axis));
-  return { A, B, C, D, at, axes: [A[at[0]], B[at[1]], C[at[2]]], margin: gimbalLockMargin(angles, sequence),
-    normals: [B[3 - at[0] - at[1]], C[3 - at[1] - at[2]]] };
-}
 
 export function render({ model, el }) {
   let lit = null, stop = () => {};
@@ -84,20 +73,25 @@ export function render({ model, el }) {
     ...(more ? [readout(['Margin to gimbal lock', margin], bar)] : [])));
 
   function draw() {
-    const [angles, order] = state(), gimbal = device(angles, order), close = gimbal.margin < CLOSE;
+    const [angles, order] = state(), gimbal = device(angles, order), apartBy = gimbalLockMargin(angles, order), close = apartBy < CLOSE;
     sliders.forEach((one, k) => {
       one.show(angles[k]);
       one.mark(close && k !== 1 ? 'same' : '');
     });
     sequence.show(order);
     matrix.show(gimbal.D.map((row) => row.map((entry) => fixed(entry))));
-    const apart = plain(degrees(gimbal.margin), 1);
+    const apart = plain(degrees(apartBy), 1);
     write(margin, `${apart}°`);
     put(bar.firstChild, 'style', `width:${(apart / 0.9).toFixed(1)}%`);
     put(bar, 'aria-valuenow', apart);
     put(bar, 'aria-valuetext', `${apart} degrees`);
-    sheet.draw(() => picture(sheet, gimbal, close, lit));
-    text.say(lit ? inWords(gimbal.D, ...lit) : more ? situation(gimbal, apart) : 'Drag a ring or the camera. Touch a number to see what it measures.');
+    sheet.draw(() => {
+      picture(sheet, gimbal, close, lit);
+      sheet.gripLine(PLACES.B(gimbal, 40), 'B');
+      sheet.gripLine(PLACES.C(gimbal, 40), 'C');
+      sheet.grip(PLACES.D(gimbal)[0], 'D', 22);
+    });
+    text.say(lit ? inWords(gimbal.D, ...lit) : more ? situation(gimbal.axes, apartBy, apart) : 'Drag a ring or the camera. Touch a number to see what it measures.');
   }
 
   draw();
@@ -111,7 +105,7 @@ export function render({ model, el }) {
 const inWords = (D, i, j) => `$\\hat{d}_${AXES[i]}$ · $\\hat{a}_${AXES[j]}$ = ${fixed(D[i][j]).trim()}: `
   + 'the cosine of the angle between them.';
 
-function situation({ axes, margin }, apart) {
+function situation(axes, margin, apart) {
   if (margin >= CLOSE) {
     return `The axes of $\\psi$ and $\\varphi$ are ${apart}° apart: three sliders turn the camera in three ways.`;
   }
@@ -133,77 +127,3 @@ const PLACES = {
   // Beside the axis that the camera turns about.
   D: ({ D, at }) => [scale(0.3, D[at[2] === 0 ? 2 : 0])],
 };
-
-function picture(sheet, gimbal, close, lit) {
-  const { A, B, C, D, at, axes, normals } = gimbal;
-  const near = (direction) => (dot(direction, sheet.view[2]) < 0 ? -1 : 1);
-  const pin = (axis, from, to, colour, layer) => {
-    sheet.layer = layer * near(axis);
-    sheet.line([scale(from, axis), scale(to, axis)], colour, 'tube slim');
-  };
-  const ring = (normal, radius, colour, layer) => {
-    for (const [half, side] of [['back', -1], ['front', 1]]) {
-      sheet.layer = layer * side;
-      sheet.circle(normal, { radius, colour, kind: 'tube', half });
-    }
-  };
-  const down = scale(-1, axes[0]);
-  sheet.layer = 6 * near(down);
-  sheet.cylinder(scale(1.3, down), scale(1.86, down), 0.13, 'A');
-  sheet.cylinder(scale(1.13, down), scale(1.3, down), 0.2, 'A');
-  ring(normals[0], OUTER, 'B', 5);
-  ring(normals[1], INNER, 'C', 3);
-  for (const side of [1, -1]) {
-    pin(scale(side, axes[1]), INNER, OUTER, 'B', 4);
-    // Not before the lens.
-    if (side < 0 || at[2] !== 1) pin(scale(side, axes[2]), 0.2, INNER, 'C', 2);
-  }
-  // The lens looks along d_y, as in the essay.
-  sheet.layer = 0;
-  sheet.box(D, CAMERA, 'D');
-  sheet.layer = 0.5 * near(D[1]);
-  sheet.cylinder(scale(CAMERA[1] / 2, D[1]), scale(0.5, D[1]), 0.15, 'D');
-  if (near(D[1]) > 0) {
-    sheet.layer = 0.6;
-    sheet.circle(D[1], { radius: 0.09, origin: scale(0.5, D[1]), colour: 'D', kind: 'fill-38' });
-  }
-
-  // The axes, outside of what they carry.
-  const before = [A, B, C];
-  axes.forEach((axis, k) => {
-    const same = close && k !== 1, colour = same ? 'accent' : 'ink', rest = before[k][at[k === 2 ? 1 : k + 1]];
-    for (const side of [1, -1]) {
-      sheet.layer = 7 * near(scale(side, axis));
-      const begin = (k === 2 ? INNER : OUTER) + 0.1;
-      sheet.line([scale(side * begin, axis), scale(side * END, axis)], colour, same ? 'thick' : 'guide');
-    }
-    // At lock the names of the two axes stand side by side, also where the axes point opposite ways.
-    const end = scale(same && dot(axis, axes[0]) < 0 ? -END : END, axis);
-    sheet.layer = 7 * near(end);
-    sheet.turn(axis, 4.4, rest, { radius: 0.16, origin: scale(0.9, end), colour });   // which way is positive
-    const place = sheet.onSheet(end), out = Math.hypot(...place);
-    const outward = out > 20 ? scale(17 / out, place) : [16, -16];
-    sheet.label(end, SYMBOLS[k], colour, same && k === 2 ? add(outward, [22, 0]) : outward);
-  });
-  sheet.layer = 8;
-  if (close) sheet.line([scale(-END, axes[0]), scale(END, axes[0])], 'accent', 'guide');
-
-  sheet.label(scale(1.62, down), '$A$', 'A', [24, 4]);
-  sheet.labelBeyond(scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]]))), '$B$', 'B', 20);
-  sheet.labelBeyond(scale(INNER, add(scale(0.71, C[at[1]]), scale(-0.71, C[at[2]]))), '$C$', 'C', 20);
-  sheet.labelBeyond(scale(0.26, D[2]), '$D$', 'D', 14);
-
-  // The triads of A and D, which the matrix compares.
-  const corner = add(scale(INSET[0], sheet.view[0]), scale(INSET[1], sheet.view[1]));
-  for (const [letter, rows, index, reach] of [['A', A, 1, 0.54], ['D', D, 0, 0.3]]) {
-    rows.forEach((row, k) => {
-      sheet.faded = lit !== null && lit[index] !== k;
-      sheet.arrow(add(corner, scale(reach, row)), { start: corner, colour: letter, size: 17,
-        label: `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$` });
-    });
-  }
-  sheet.faded = false;
-  sheet.gripLine(PLACES.B(gimbal, 40), 'B');
-  sheet.gripLine(PLACES.C(gimbal, 40), 'C');
-  sheet.grip(PLACES.D(gimbal)[0], 'D', 22);
-}

@@ -1,38 +1,10 @@
-import { AXES, IDENTITY, add, multiply, scale, simpleDcm, times, transpose } from './mathematics.js';
-import { Sheet, button, change, choice, element, fixed, follow, group, liveText, numberTable, onceAFrame, open, radians,
-  readout, slider, stage, write, writeWords } from './shared.js';
+import { AXES, IDENTITY, multiply, radians, simpleDcm, transpose } from './mathematics.js';
+import { picture, SIZE } from './graph_picture.js';
+import { button, change, choice, element, fixed, follow, group, liveText, numberTable, onceAFrame,
+  open, readout, Sheet, slider, stage, write, writeWords } from './shared.js';
 
-const SIZE = 96, REACH = 0.5, ACROSS = 100, DOWN = 100, LEFT = -130;   // as in graph.py
-const SHORT = 14, CORNERS = [[-19, 18], [-19, -18], [19, 18], [19, -18]];   // pixels
 const LETTERS = 'NABCDE';
 const dcmName = (target, source) => `\${}^${target}\\mathbf{C}^${source}$`;
-
-// Where each frame is drawn: its depth in the tree, and its line.
-function places(edges) {
-  const children = { N: [] }, depth = { N: 0 }, line = {};
-  for (const [frame, reference] of edges) {
-    children[reference].push(frame);
-    children[frame] = [];
-    depth[frame] = depth[reference] + 1;
-  }
-  let used = 0;
-  const walk = (frame) => {
-    const kept = children[frame];
-    kept.forEach(walk);
-    line[frame] = kept.length ? (line[kept[0]] + line[kept.at(-1)]) / 2 : used;
-    if (!kept.length) used += 1;
-  };
-  walk('N');
-  const across = Math.min(ACROSS, 280 / Math.max(1, ...Object.values(depth))), down = Math.min(DOWN, 190 / used);
-  return Object.fromEntries(Object.keys(depth).map((name) => [name, [LEFT + across * depth[name], down * (line[name] - (used - 1) / 2)]]));
-}
-
-// The arrows grow shorter where many frames crowd.
-const reachOf = (spots) => {
-  const all = Object.values(spots);
-  const near = all.flatMap((one, k) => all.slice(k + 1).map((other) => Math.hypot(one[0] - other[0], one[1] - other[1])));
-  return Math.min(REACH, 0.44 * Math.min(...near) / SIZE);
-};
 
 // The frames from target to source: up from both to where they meet.
 function pathOf(edges, target, source) {
@@ -99,23 +71,7 @@ export function render({ model, el }) {
     writeWords(title, dcmName(to, from));
     result.show(multiply(dcms[to], transpose(dcms[from])).map((row) => row.map((entry) => fixed(entry))));
     const made = all.filter(([name, parent]) => path.includes(name) && path.includes(parent));
-    sheet.draw(() => {
-      const back = transpose(sheet.view), spots = places(all), at = ([x, y]) => times(back, [x / SIZE, -y / SIZE, 0]);
-      for (const edge of all) sheet.line([at(spots[edge[1]]), at(spots[edge[0]])], ...(made.includes(edge) ? ['accent', 'thick'] : ['muted', 'guide']));
-      sheet.layer = 1;
-      const reach = reachOf(spots);
-      for (const name of names) {
-        const place = at(spots[name]);
-        sheet.triad(name, dcms[name], { origin: place, reach, labels: false });
-        const tips = dcms[name].map((row) => sheet.onSheet(scale(reach, row)));
-        // An arrow that points at the reader or away has no room for its letter.
-        dcms[name].forEach((row, k) => {
-          if (Math.hypot(...tips[k]) > SHORT) sheet.label(add(place, scale(reach + 0.1, row)), `$${AXES[k]}$`, name, [0, 0], 14);
-        });
-        const free = (corner) => Math.min(...tips.map((tip) => Math.hypot(tip[0] - corner[0], tip[1] - corner[1])));
-        sheet.label(place, `$${name}$`, name, CORNERS.reduce((best, corner) => (free(corner) > free(best) + 1e-6 ? corner : best)));
-      }
-    });
+    sheet.draw(() => picture(sheet, all, dcms, path));
     text.say(sentence(to, from, path, made));
   }
 

@@ -1,9 +1,9 @@
-import { AXES, IDENTITY, cross, dcmFromQuaternion, dot, multiply, multiplyQuaternions, quaternionFromAxisAngle,
-  quaternionFromDcm, scale, slerp, subtract, transpose, unit } from './mathematics.js';
-import { Sheet, button, change, degrees, fixed, follow, glide, group, hats, liveText, numberTable, onceAFrame, open, plain,
-  put, radians, readout, element, stage } from './shared.js';
+import { AXES, cross, dcmFromQuaternion, degrees, dot, IDENTITY, multiply, multiplyQuaternions,
+  quaternionFromAxisAngle, quaternionFromDcm, radians, scale, slerp, subtract, unit } from './mathematics.js';
+import { APART, picture, SIZE } from './hands_picture.js';
+import { button, change, element, follow, glide, group, hats, liveText, numberTable, onceAFrame,
+  open, plain, put, readout, Sheet, stage } from './shared.js';
 
-const REACH = 1.0, SIZE = 76, APART = 1.3;   // as in hands.py
 const STEP = 15;
 const [N, M] = ['n', 'm'].map(hats);
 
@@ -63,12 +63,8 @@ export function render({ model, el }) {
     const triple = dot(cross(rows[0], rows[1]), rows[2]);
     hand.textContent = `of N: +1, of the image: ${triple > 0 ? '+1' : '\u22121'}`;
     sheet.draw(() => {
-      const right = sheet.view[0], left = scale(together ? 0 : -APART, right);
-      IDENTITY.forEach((row, k) => sheet.arrow(scale(REACH, row).map((entry, n) => entry + left[n]), { start: left, colour: 'N', label: N[k] }));
-      if (!together) sheet.line([scale(-1.2, sheet.view[1]), scale(1.2, sheet.view[1])], 'muted', 'guide');
-      const origin = place();
-      rows.forEach((row, k) => sheet.arrow(row.map((entry, n) => entry + origin[n]), { start: origin, colour: 'E', label: M[k] }));
-      sheet.grip(origin, 'image', 80);
+      picture(sheet, rows, together);
+      sheet.grip(place(), 'image', 80);
     });
     text.say(sentence(image, angles));
   }

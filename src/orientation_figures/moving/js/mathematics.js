@@ -48,6 +48,17 @@ export function solve(matrix, v) {
 export const determinant = ([x, y, z]) => dot(cross(x, y), z);
 export const distance = (first, second) => Math.hypot(...first.flatMap((row, k) => subtract(row, second[k])));
 
+export const degrees = (angle) => angle * 180 / Math.PI;
+export const radians = (angle) => angle * Math.PI / 180;
+
+// Loops, as the pictures that are translated from Python have them.
+
+export const range = (first, end) => Array.from({ length: end === undefined ? first : end - first },
+  (_, k) => (end === undefined ? k : first + k));
+export const enumerate = (list) => [...list].map((one, k) => [k, one]);
+export const zip = (first, ...others) => [...first].map((one, k) => [one, ...others.map((list) => list[k])]);
+export const sum = (numbers) => numbers.reduce((before, one) => before + one, 0);
+
 // What a matrix is, and which is near.
 
 // As Python writes '%.6g', so that messages agree.
@@ -151,14 +162,12 @@ export const spaceFixedFromDcm = (dcm, sequence) => reversed(bodyFixedFromDcm(dc
 
 export function axisAngleFromQuaternion(quaternion) {
   const [x, y, z, angle] = axisAngleComponents(quaternion);
-  return { axis: [x, y, z], angle };
+  return [[x, y, z], angle];
 }
 
 export const axisAngleFromDcm = (dcm) => axisAngleFromQuaternion(quaternionFromDcm(dcm));
 
 // Quaternions.
-
-export const conjugate = ([s, x, y, z]) => [s, -x, -y, -z];
 
 // Along the great arc from one unit quaternion to another at constant speed. For the short way turn the
 // sign of one where their dot product is negative. Opposite ones have no one arc between them.

@@ -1,19 +1,14 @@
-import { AXES, IDENTITY, add, angularAcceleration, angularVelocityMatrix, axisAngleFromDcm, bodyFixedFromDcm, cross,
-  dcmFromBodyFixed, dcmFromQuaternion, dcmFromRotationVector, dcmRate, dot, gimbalLockMargin, length, multiply,
-  multiplyQuaternions, nearestDcm, quaternionFromAxisAngle, quaternionRate, scale, solve, times, transpose,
-  unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, follow, group, liveText, onceAFrame, open, plain, player, put, slider,
-  stage, write, writeWords } from './shared.js';
+import { add, angularAcceleration, angularVelocityMatrix, AXES, axisAngleFromDcm, bodyFixedFromDcm,
+  cross, dcmFromBodyFixed, dcmFromQuaternion, dcmFromRotationVector, dcmRate, degrees, dot,
+  gimbalLockMargin, IDENTITY, length, multiply, multiplyQuaternions, nearestDcm,
+  quaternionFromAxisAngle, quaternionRate, scale, solve, times, transpose, unit } from './mathematics.js';
+import { across, axes, bodyOf, COLOURS, down, ERROR, FAULT, LEFT, MARGIN, MOMENTS, picture, RIGHT,
+  ROUNDING, SAMPLE, SECONDS, SIZE } from './motion_picture.js';
+import { button, change, choice, element, follow, group, liveText, onceAFrame, open, plain, player,
+  put, Sheet, slider, stage, write, writeWords } from './shared.js';
 
-// As in motion.py.
-const MOMENTS = { racket: [1.2, 16, 17], book: [6.9, 13.3, 19.7] };   // g m^2
 const DESCRIPTIONS = { matrix: 'Matrix', quaternion: 'Quaternion', angles: 'Euler angles' };
-const COLOURS = { matrix: 'A', quaternion: 'D', angles: 'C' };
-const SPIN = 4, SECONDS = 20, FINER = 10, LARGEST = 1e4, SAMPLE = 0.1;
-const SIZE = 118, LONGEST = 1.25, LEFT = -128, RIGHT = 168;
-const FAULT = [24, 124, -16, 2], ERROR = [156, 256, -12, 1], MARGIN = [288, 324, 0, 90];
-// What is below it is the rounding of one processor, and is drawn here.
-const ROUNDING = 1e-15;
+const SPIN = 4, FINER = 10, LARGEST = 1e4;
 
 // ---- the integration -----------------------------------------------------------------------------------
 
@@ -73,7 +68,7 @@ export const fault = (matrix) => Math.max(...multiply(matrix, transpose(matrix))
 
 export function error(matrix, truth) {
   const { dcm } = nearestDcm(multiply(matrix, transpose(truth)));
-  return dcm ? axisAngleFromDcm(dcm).angle : NaN;
+  return dcm ? axisAngleFromDcm(dcm)[1] : NaN;
 }
 
 // A run is computed step by step as far as it is asked for, and keeps what it has computed.
@@ -137,61 +132,6 @@ export class Run {
     const data = this.curves.get(name) ?? '';
     this.curves.set(name, `${data}${data ? 'L' : 'M'}${across(this.step * this.last).toFixed(1)} ${down(part, value).toFixed(1)}`);
   }
-}
-
-const across = (time) => LEFT + (RIGHT - LEFT) * time / SECONDS;
-const down = ([top, bottom, least, most], value) => bottom
-  - (bottom - top) * (Math.max(least, Math.min(most, value)) - least) / (most - least);
-
-// ---- the bodies, along A -------------------------------------------------------------------------------
-
-const HEAD = Array.from({ length: 29 }, (_, k) => [0.45 + 0.47 * Math.cos(Math.PI * k / 14), 0.36 * Math.sin(Math.PI * k / 14), 0]);
-const STRINGS = [
-  ...[0.12, 0.285, 0.45, 0.615, 0.78].flatMap((x) => [-1, 1].map((side) => [x, side * 0.36 * Math.sqrt(1 - ((x - 0.45) / 0.47) ** 2), 0])),
-  ...[-0.2, 0, 0.2].flatMap((y) => [-1, 1].map((side) => [0.45 + side * 0.47 * Math.sqrt(1 - (y / 0.36) ** 2), y, 0]))];
-const THROAT = [[0.065, 0.206, 0], [-0.24, 0, 0], [0.065, -0.206, 0]], HANDLE = [[-0.24, 0, 0], [-0.85, 0, 0]];
-const COVER = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]], LONGEST_EDGE = 1.4;   // the widest cut through the middle
-
-// The edges of a uniform block: about each axis the moment is that of the two other edges squared.
-function edgesOf(moments) {
-  const half = moments.reduce((sum, moment) => sum + moment) / 2, edges = moments.map((moment) => Math.sqrt(Math.max(half - moment, 0)));
-  return scale(LONGEST_EDGE / Math.max(...edges), edges);
-}
-
-const bodyOf = (moments) => Object.keys(MOMENTS).find((name) => MOMENTS[name].every((moment, k) => moment === moments[k])) ?? 'block';
-const shapesOf = (moments) => {
-  if (bodyOf(moments) === 'racket') return [HEAD, THROAT, HANDLE];
-  const edges = edgesOf(moments), thin = edges.indexOf(Math.min(...edges));
-  return [COVER.map(([u, v]) => edges.map((edge, k) => [0, u, v][(k - thin + 3) % 3] * edge / 2))];
-};
-
-// Components along N of points given along A: the rows of the matrix are A's unit vectors, skewed or not.
-const placed = (points, matrix) => { const columns = transpose(matrix); return points.map((point) => times(columns, point)); };
-
-function drawRacket(sheet, matrix) {
-  const near = dot(matrix[0], sheet.view[2]) > 0;
-  sheet.layer = near ? 2 : 4;
-  sheet.line(placed(THROAT, matrix), 'A', 'thick');
-  sheet.line(placed(HANDLE, matrix), 'A', 'tube');
-  sheet.layer = 3;
-  const head = placed(HEAD, matrix).map((point) => sheet.onSheet(point));
-  sheet.path(`M${'L'.repeat(27)}Z`, head.slice(1), `fill-${dot(matrix[2], sheet.view[2]) > 0 ? 8 : 38} bare A`, 0);
-  sheet.path('ML'.repeat(STRINGS.length / 2), placed(STRINGS, matrix).map((point) => sheet.onSheet(point)), 'faint A', 1);
-  sheet.path(`M${'L'.repeat(28)}`, head, 'thick A', 2);
-}
-
-function drawBlock(sheet, matrix, edges) {
-  const half = matrix.map((row, k) => scale(edges[k] / 2, row));
-  sheet.layer = 3;
-  [26, 26, 8].forEach((fill, k) => {
-    const u = half[(k + 1) % 3], v = half[(k + 2) % 3];
-    const corners = [add(u, v), add(v, scale(-1, u)), scale(-1, add(u, v)), add(u, scale(-1, v))];
-    for (const side of [-1, 1]) {
-      // Cross products of the edges: the faces of a skewed box do not look along the rows.
-      if (side * dot(cross(u, v), sheet.view[2]) <= 0) continue;
-      sheet.area(corners.map((p) => add(p, scale(side, half[k]))), 'A', k === 2 && side < 0 ? 38 : fill);
-    }
-  });
 }
 
 // ---- words ---------------------------------------------------------------------------------------------
@@ -335,7 +275,8 @@ export function render({ model, el }) {
       return [row.name, value];
     }));
     const matrix = MATRICES[name](run.states[k]);
-    sheet.draw(() => picture(settings.moments, matrix, run.truth(k)));
+    sheet.size = SIZE;
+    sheet.draw(() => picture(sheet, settings.moments, matrix, run.truth(k), run.momentum));
     plot.draw(() => curves(name, k));
     text.say(refused ? `${impossible(refused)} Still drawn: ${listed(settings.moments)}.` : told(name, k, settings, values[name], matrix));
   }
@@ -357,41 +298,10 @@ export function render({ model, el }) {
     return `${begin}${title}, not restored, is not orthogonal by ${power(faulty)}${seen}. The orientation is wrong by ${power(wrong)} rad.`;
   }
 
-  function picture(inertia, matrix, truth) {
-    const what = bodyOf(inertia);
-    sheet.size = SIZE;
-    sheet.triad('N', IDENTITY, { origin: times(transpose(sheet.view), [-136 / SIZE, -108 / SIZE, 0]), reach: 0.28 });
-    sheet.layer = 1;
-    sheet.arrow(scale(1.4, run.momentum), { colour: 'accent', label: '$\\mathbf{H}$' });
-    // A body that has grown out of the sheet is drawn smaller, and with it what it really is.
-    sheet.size = SIZE * Math.min(1, LONGEST / Math.max(...matrix.map(length)));
-    if (what === 'racket') drawRacket(sheet, matrix); else drawBlock(sheet, matrix, edgesOf(inertia));
-    matrix.forEach((row, i) => {
-      sheet.layer = i === 2 && dot(row, sheet.view[2]) <= 0 ? 1.5 : 5;
-      sheet.arrow(row, { colour: 'A', label: `$\\hat{a}_${AXES[i]}$` });
-    });
-    sheet.layer = 6;
-    for (const outline of shapesOf(inertia)) sheet.line(placed(outline, truth), 'muted', 'guide');
-  }
-
   function curves(drawn, k) {
-    const parts = [[FAULT, '\\mathrm{not\\ orthogonal\\ by}', { '10^{-15}': -15, '10^{-10}': -10, '10^{-5}': -5, 1: 0 }],
-      [ERROR, '\\mathrm{error\\ (rad)}', { '10^{-10}': -10, '10^{-5}': -5, 1: 0 }],
-      [MARGIN, '\\mathrm{margin\\ to\\ gimbal\\ lock\\ (degrees)}', { 0: 0, 90: 90 }]];
+    axes(plot);
     const now = across(run.step * k);
-    for (const [part, title, marks] of parts) {
-      const [top, bottom] = part;
-      plot.text(title, [(LEFT + RIGHT) / 2, top - 13], 'ink', 16);
-      const lines = [0, 5, 10, 15, 20].map((second) => [[across(second), top], [across(second), bottom]]);
-      for (const [mark, value] of Object.entries(marks)) {
-        lines.push([[LEFT, down(part, value)], [RIGHT, down(part, value)]]);
-        plot.text(mark, [LEFT - 26, down(part, value)], 'muted', 14);
-      }
-      plot.path('ML'.repeat(lines.length), lines.flat(), 'faint muted');
-      plot.path('ML', [[now, top], [now, bottom]], 'accent');
-    }
-    [0, 5, 10, 15, 20].forEach((second) => plot.text(String(second), [across(second), MARGIN[1] + 13], 'muted', 14));
-    plot.text('t\\ \\mathrm{(s)}', [across(17.5), MARGIN[1] + 15], 'ink', 16);
+    for (const [top, bottom] of [FAULT, ERROR, MARGIN]) plot.path('ML', [[now, top], [now, bottom]], 'accent');
     for (const [name, data] of run.curves) {
       const colour = COLOURS[name.split(' ')[1]];
       plot.marks.push({ kind: colour ? `axis ${colour}` : 'ink', data, depth: 1 });

@@ -1,9 +1,8 @@
-import { AXES, IDENTITY, add, checkDcm, conditions, cross, determinant, length, nearestDcm, scale, subtract,
-  unit } from './mathematics.js';
-import { Sheet, button, change, element, fixed, follow, glide, grid, group, hats, liveText, numberField, onceAFrame,
-  open, put, readout, stage, write } from './shared.js';
+import { add, AXES, checkDcm, conditions, determinant, nearestDcm, scale, subtract } from './mathematics.js';
+import { picture, SIZE, SMALL } from './nine_numbers_picture.js';
+import { button, change, element, fixed, follow, glide, grid, group, hats, liveText, numberField,
+  onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
 
-const REACH = 1.2, SIZE = 116;   // as in nine_numbers.py
 const A = hats('a'), N = hats('n');
 const GOOD = [[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0.36, -0.48, 0.8]];
 // What readers meet: a matrix that is valid to the last digit, and five that are not.
@@ -16,7 +15,6 @@ const EXAMPLES = [
   ['Left-handed', [...GOOD.slice(0, 2), [-0.36, 0.48, -0.8]]],
 ];
 const PAIRS = [[0, 1], [1, 2], [2, 0]];
-const SMALL = 1e-9;
 
 export function render({ model, el }) {
   let stop = () => {};
@@ -84,7 +82,10 @@ export function render({ model, el }) {
       write(checks[k].verdict, holds ? '\u2713 holds' : `\u2717 not ${wanted}`);
       put(checks[k].line, 'class', holds ? '' : 'fails');
     });
-    sheet.draw(() => picture(sheet, matrix, near.dcm));
+    sheet.draw(() => {
+      picture(sheet, matrix, near.dcm);
+      matrix.forEach((row, k) => sheet.grip(row, String(k)));
+    });
     text.say(fault ? `${fault}.` : 'A direction cosine matrix: rows of length 1, at right angles, right-handed.');
   }
 
@@ -94,34 +95,4 @@ export function render({ model, el }) {
     stop();
     unfollow();
   };
-}
-
-function picture(sheet, matrix, dcm) {
-  sheet.triad('N', IDENTITY, { reach: REACH });
-  sheet.layer = -1;
-  dcm?.forEach((row, k) => {
-    sheet.arrow(row, { colour: 'D' });
-    sheet.line([row, matrix[k]], 'D', 'guide');
-  });
-  sheet.layer = 0;
-  matrix.forEach((row, k) => {
-    sheet.arrow(row, { colour: 'A' });
-    sheet.labelBeyond(length(row) < 1 ? unit(row) : row, A[k], 'A');
-  });
-  sheet.layer = 1;
-  conditions(matrix).forEach(({ rows: [i, j], fault }) => {
-    const fails = Math.abs(fault) > SMALL, [u, v] = [matrix[i], matrix[j]].map(unit);
-    if (i !== j) {
-      // The corner between two rows: a square, or what has become of it.
-      sheet.line([u, add(u, v), v].map((p) => scale(0.2, p)), fails ? 'B' : 'muted', fails ? 'thick' : '');
-    } else if (fails) {
-      // Where the tip should be, and what is missing or too much.
-      sheet.line([matrix[i], u], 'B', 'thick');
-      sheet.ring(u, 'B', 5);
-    }
-  });
-  // Where the third row of a right-handed matrix would point.
-  const third = cross(matrix[0], matrix[1]);
-  if (determinant(matrix) < 0) sheet.arrow(third, { colour: 'B', label: '$\\hat{a}_x\\times\\hat{a}_y$' });
-  matrix.forEach((row, k) => sheet.grip(row, String(k)));
 }

@@ -1,9 +1,9 @@
-import { AXES, IDENTITY, add, bodyFixedFromDcm, dcmFromBodyFixed, dcmFromQuaternion, dot, length, quaternionFromDcm, scale,
-  slerp, transpose } from './mathematics.js';
-import { Sheet, button, change, degrees, element, fixed, follow, group, hats, liveText, numberTable, onceAFrame, open,
-  plain, player, radians, readout, slider, stage, wrapped } from './shared.js';
+import { AXES, bodyFixedFromDcm, dcmFromBodyFixed, dcmFromQuaternion, degrees, dot, length,
+  quaternionFromDcm, radians, scale, slerp, transpose } from './mathematics.js';
+import { picture, SIZE } from './phone_picture.js';
+import { button, change, element, fixed, follow, group, hats, liveText, numberTable, onceAFrame,
+  open, plain, player, readout, Sheet, slider, stage, wrapped } from './shared.js';
 
-const BODY = [0.62, 1.24, 0.1], SCREEN = [0.27, 0.54], REACH = 1.3, SIZE = 112;   // as in stills/phone.py
 const GRAVITY = 9.80665, RECORD_SECONDS = 10, PATIENCE = 3000;
 const [N, B] = ['n', 'b'].map(hats);
 const ANGLES = ['alpha', 'beta', 'gamma'];
@@ -210,15 +210,4 @@ export function render({ model, el }) {
   film.at(0);
   const quiet = follow(model, ['angles'], redraw);
   return () => { stop(); quiet(); };
-}
-
-function picture(sheet, dcm) {
-  const [across, along, out] = dcm, front = scale(BODY[2] / 2 + 1e-3, out);
-  sheet.triad('N', IDENTITY, { reach: REACH });
-  sheet.box(dcm, BODY, 'B');
-  if (dot(out, sheet.view[2]) > 0) {
-    sheet.area([[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => add(front, scale(x * SCREEN[0], across),
-      scale(y * SCREEN[1], along))), 'ink', 8);
-  }
-  sheet.triad('B', dcm);
 }

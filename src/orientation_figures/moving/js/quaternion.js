@@ -1,22 +1,21 @@
-import { AXES, IDENTITY, add, axisAngleFromDcm, dcmFromBodyFixed, dcmFromQuaternion, dot, length, multiply,
-  nearestDcm, quaternionFromAxisAngle, quaternionFromDcm, scale, slerp, subtract, times, transpose, unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, glide,
-  group, liveText, numberField, numberTable, onceAFrame, open, plain, player, put, radians, readout, slider, stage } from './shared.js';
+import { add, AXES, dcmFromBodyFixed, dcmFromQuaternion, degrees, dot, IDENTITY, length, nearestDcm,
+  quaternionFromAxisAngle, quaternionFromDcm, radians, scale, slerp, subtract, times, unit } from './mathematics.js';
+import { angleBetween, BALL, double, KNOB, MIDDLE, onCircle, plotted, RADIUS, SAMPLES, SECONDS,
+  SIZE, WAYS, ways } from './quaternion_picture.js';
+import { button, change, choice, element, fixed, follow, followSphere, followTurn, glide, group,
+  liveText, numberField, numberTable, onceAFrame, open, plain, player, put, readout, Sheet, slider,
+  stage } from './shared.js';
 
-// As in quaternion.py: pixels, places on the sheet, seconds.
-const SIZE = 96, KNOB = 1.32, MIDDLE = [142, 130], RADIUS = 70, SECONDS = 4, BALL = 104, SAMPLES = 60;
-const PLOT = { left: -120, right: 150, top: 144, bottom: 196 }, TOPS = [30, 60, 90, 120, 180, 360, 720];
-const WAYS = ['C', 'D', 'E'], SEQUENCE = 'zxy', FULL = 4 * Math.PI;
+const SEQUENCE = 'zxy', FULL = 4 * Math.PI;
 const number = (value, digits = 3) => fixed(value, digits).trim();
 const inDegrees = (angle) => `${number(degrees(angle), 1)}°`;
-const between = (first, second) => axisAngleFromDcm(multiply(second, transpose(first))).angle;
 
 export function render({ model, el }) {
-  const double = doubleView(model), way = wayView(model);
-  const views = { double, way };
+  const [both, way] = [doubleView(model), wayView(model)];
+  const views = { double: both, way };
   const switches = [['double', '$q$ and $-q$'], ['way', 'From $A$ to $B$']].map(([name, text]) => button(text, () => change(model, { view: name })));
   const across = model.get('more') !== false ? [element('div', { class: 'across' }, group('What is shown', 'row-of-controls', ...switches))] : [];
-  const root = open(el, ...across, ...double.parts, ...(model.get('more') !== false ? way.parts : []));
+  const root = open(el, ...across, ...both.parts, ...(model.get('more') !== false ? way.parts : []));
   root.classList.toggle('two-views', model.get('more') !== false);
 
   function draw() {
@@ -28,7 +27,7 @@ export function render({ model, el }) {
     views[shown].draw();
   }
   const redraw = onceAFrame(draw);
-  double.redraw = way.redraw = redraw;
+  both.redraw = way.redraw = redraw;
   draw();
   return follow(model, ['view', 'axis', 'angle', 'first', 'second', 'unit_vector', 'share'], redraw);
 }
@@ -103,7 +102,20 @@ function doubleView(model) {
     angle.show(theta);
     quaternions.show([q, scale(-1, q)].slice(0, more ? 2 : 1).map((one) => one.map((entry) => fixed(entry))));
     matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
-    sheet.draw(() => doublePicture(sheet, axis, theta, dcm, lit, more));
+    sheet.draw(() => {
+      double(sheet, axis, theta, dcm, more);
+      const half = theta / 2, [q, opposite] = [RADIUS, -RADIUS].map((radius) => onCircle(sheet, radius, half));
+      if (lit) {
+        const tip = lit[0] ? opposite : q, [x, y] = sheet.onSheet(tip);
+        const foot = lit[1] ? sheet.placed(MIDDLE[0], y) : sheet.placed(x, MIDDLE[1]);
+        sheet.line([tip, foot], 'ink', 'guide');
+        sheet.line([onCircle(sheet, 0, 0), foot], 'ink', 'shadow');
+      }
+      sheet.grip(scale(KNOB, axis), 'axis');
+      dcm.forEach((row, n) => sheet.grip(row, String(n)));
+      sheet.grip(q, 'q');
+      if (more) sheet.grip(opposite, '-q');
+    });
     text.say(lit ? componentText(q, axis, theta, lit) : doubleText(theta, more));
   };
   return self;
@@ -126,56 +138,6 @@ function componentText(q, axis, theta, [i, j]) {
       + `${number(Math.sin(theta / 2))}, times the component of $\\hat{e}$.`;
 }
 
-// A point of N that is seen at a place of the sheet.
-const placed = (sheet, [x, y]) => times(transpose(sheet.view), [x / sheet.size, -y / sheet.size, 0]);
-
-function doublePicture(sheet, axis, theta, dcm, lit, more) {
-  const knob = scale(KNOB, axis), far = axis.map(Math.abs), k = far.indexOf(Math.min(...far));
-  const arm = subtract(IDENTITY[k], scale(dot(IDENTITY[k], axis), axis));
-  sheet.line([scale(-0.6, axis), knob], 'accent', 'guide');
-  sheet.triad('N', IDENTITY, { reach: 1.25 });
-  sheet.triad('A', dcm);
-  sheet.arrow(axis, { colour: 'accent' });
-  sheet.dot(knob, 'accent', 5);
-  sheet.label(knob, '$\\hat{e}$', 'accent', [17, 2]);
-  // The angle, on its second turn outside the first.
-  const rest = theta - 2 * Math.PI;
-  if (rest > 1e-9) sheet.turn(axis, 2 * Math.PI, arm, { radius: 0.5, colour: 'accent', head: false });
-  if (theta > 0) sheet.turn(axis, rest > 1e-9 ? rest : theta, arm, { radius: rest > 1e-9 ? 0.6 : 0.5, label: '$\\theta$', colour: 'accent', kind: 'thick' });
-  sheet.grip(knob, 'axis');
-  dcm.forEach((row, n) => sheet.grip(row, String(n)));
-  circle(sheet, theta / 2, lit, more);
-}
-
-function circle(sheet, half, lit, more) {
-  const at = (radius, angle) => placed(sheet, [MIDDLE[0] + radius * Math.cos(angle), MIDDLE[1] - radius * Math.sin(angle)]);
-  const middle = at(0, 0), round = (radius, to) => Array.from({ length: 49 }, (_, k) => at(radius, k / 48 * to));
-  sheet.layer = 1;
-  sheet.line([at(-RADIUS - 12, 0), at(RADIUS + 12, 0)], 'muted', 'faint');
-  sheet.line([at(-RADIUS - 12, Math.PI / 2), at(RADIUS + 12, Math.PI / 2)], 'muted', 'faint');
-  sheet.line(round(RADIUS, 2 * Math.PI), 'muted');
-  sheet.label(at(RADIUS + 12, 0), '$q_0$', 'ink', [3, 13], 16);
-  sheet.label(at(RADIUS + 12, Math.PI / 2), '$\\hat{e}$', 'accent', [12, 2], 16);
-  sheet.layer = 2;
-  if (half > 1e-9) {
-    sheet.line(round(RADIUS, half), 'accent', 'thick');
-    sheet.line(round(22, half), 'accent');
-    sheet.label(at(40, half / 2), '$\\theta/2$', 'accent', [0, 0], 16);
-  }
-  const [q, opposite] = [0, Math.PI].map((turn) => at(RADIUS, half + turn));
-  if (lit) {
-    const [i, j] = lit, tip = i ? opposite : q, [x, y] = sheet.onSheet(tip);
-    const foot = placed(sheet, j ? [MIDDLE[0], y] : [x, MIDDLE[1]]);
-    sheet.line([tip, foot], 'ink', 'guide');
-    sheet.line([middle, foot], 'ink', 'shadow');
-  }
-  sheet.arrow(q, { start: middle, colour: 'accent', label: '$q$' });
-  sheet.grip(q, 'q');
-  if (!more) return;
-  sheet.arrow(opposite, { start: middle, colour: 'muted', label: '$-q$' });
-  sheet.grip(opposite, '-q');
-}
-
 // ---- from one orientation to another -------------------------------------------------------------------
 
 // The three ways, as functions of the share of the way; null where there is none.
@@ -194,7 +156,7 @@ function waysBetween(first, second) {
 function speedAt(way, share) {
   const before = way(Math.max(0, share - 1e-4)), after = way(Math.min(1, share + 1e-4));
   const passed = SECONDS * (Math.min(1, share + 1e-4) - Math.max(0, share - 1e-4));
-  return before && after ? between(before, after) / passed : NaN;
+  return angleBetween(before, after) / passed;
 }
 
 function wayView(model) {
@@ -232,21 +194,21 @@ function wayView(model) {
     tip.show(AXES[k]);
     way.at(share * SECONDS);
     const now = kept.dcms.map((at) => at(share)), speeds = kept.dcms.map((at) => speedAt(at, share)), raw = kept.raw(share);
-    table.show(now.map((dcm, n) => (dcm ? [`${fixed(degrees(between(kept.from, dcm)), 1)}°`,
+    table.show(now.map((dcm, n) => (dcm ? [`${fixed(degrees(angleBetween(kept.from, dcm)), 1)}°`,
       Number.isNaN(speeds[n]) ? '–' : `${fixed(degrees(speeds[n]), 1)} °/s`] : ['–', '–'])));
     const sizes = raw.map(length);
     lengths.show([sizes.map((size) => fixed(size))]);
-    sheet.draw(() => wayPicture(sheet, kept, now, raw[k], k, share));
+    sheet.draw(() => ways(sheet, [kept.from, kept.to], kept.tracks, kept.speeds, now, raw[k], k, share));
     text.say(wayText(kept, now, sizes));
   };
   return self;
 }
 
 // What is drawn of the ways: orientations at even times and the speeds between them.
-function sampled(ways) {
-  const tracks = ways.dcms.map((at) => Array.from({ length: SAMPLES + 1 }, (_, k) => at(k / SAMPLES)));
-  const speeds = tracks.map((track) => track.slice(1).map((dcm, k) => (dcm && track[k] ? between(track[k], dcm) * SAMPLES / SECONDS : NaN)));
-  return { ...ways, tracks, speeds, angle: between(ways.from, ways.to), range: slowestAndFastest(ways.dcms[1]) };
+function sampled(between) {
+  const tracks = between.dcms.map((at) => Array.from({ length: SAMPLES + 1 }, (_, k) => at(k / SAMPLES)));
+  const speeds = tracks.map((track) => track.slice(1).map((dcm, k) => angleBetween(track[k], dcm) * SAMPLES / SECONDS));
+  return { ...between, tracks, speeds, angle: angleBetween(between.from, between.to), range: slowestAndFastest(between.dcms[1]) };
 }
 
 // The least and the greatest speed that the table shows on a way, also between the even times.
@@ -268,63 +230,9 @@ function wayText({ angle, speeds, range }, [slerped, , repaired], sizes) {
   if (!slerped) return '$A$ and $B$ are half a turn apart: both ways round are equally long, and slerp has no shorter one to take.';
   if (!repaired) return 'The blended entries are as near to one orientation as to another: no matrix is the nearest to them.';
   const [slow, fast] = range.map(degrees), short = Math.min(...sizes);
-  const { beyond } = plotted(speeds);
+  const [, , beyond] = plotted(speeds);
   const way = speeds[1].reduce((sum, speed) => sum + speed, 0) * SECONDS / SAMPLES;
   return `Slerp turns through ${inDegrees(angle)} at ${number(degrees(angle) / SECONDS, 1)} °/s. Euler angles turn through ${inDegrees(way)} in all, `
     + `at ${number(slow, 1)} to ${number(fast, 1)} °/s. ${short < 0.9995 ? `The blended rows are too short now, the shortest ${number(short)}.` : ''}${
     beyond ? ` The plot is cut off: the fastest speed is ${number(Math.max(beyond, fast), 0)} °/s.` : ''}`;
-}
-
-function wayPicture(sheet, { from, to, tracks, speeds }, now, raw, k, share) {
-  const hat = (letter) => `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$`;
-  sheet.circle(sheet.view[2], { colour: 'muted', kind: 'faint' });
-  sheet.circle([0, 0, 1], { half: 'front', colour: 'muted', kind: 'faint' });
-  sheet.circle([0, 0, 1], { half: 'back', colour: 'muted', kind: 'guide faint' });
-  sheet.line([from[k], to[k]], 'E', 'guide');
-  // E goes the same way round as C, at another pace: dots a fifth of a second apart.
-  tracks.slice(0, 2).forEach((track, n) => {
-    if (track[0]) sheet.line(track.map((dcm) => dcm[k]), WAYS[n], 'axis trace');
-  });
-  tracks[2].forEach((dcm, n) => { if (dcm && n % 3 === 0) sheet.dot(dcm[k], 'E', 3); });
-  sheet.arrow(from[k], { colour: 'A', label: hat('A') });
-  sheet.arrow(to[k], { colour: 'B', label: hat('B') });
-  sheet.layer = 1;
-  if (length(subtract(raw, scale(1 / (length(raw) || 1), raw))) > 1e-6) sheet.line([[0, 0, 0], raw], 'E');
-  sheet.dot(raw, 'E', 4);
-  const moving = share > 1e-9 && share < 1 - 1e-9;
-  now.forEach((dcm, n) => {
-    if (!dcm) return;
-    if (moving) sheet.arrow(dcm[k], { colour: WAYS[n], label: hat(WAYS[n]) });
-    else sheet.dot(dcm[k], WAYS[n], 5);
-  });
-  plot(sheet, speeds, share);
-}
-
-// The scale is that of all three ways. What is faster than it is cut off, and the figure says so.
-export function plotted(speeds) {
-  const fast = degrees(Math.max(0, ...speeds.flat().filter((speed) => speed >= 0)));
-  const highest = TOPS.find((one) => one >= fast) ?? TOPS.at(-1);
-  const pieces = speeds.map((track) => {
-    const runs = [[]];
-    track.forEach((speed, k) => {
-      if (degrees(speed) <= highest) runs.at(-1).push([(k + 0.5) / SAMPLES, degrees(speed)]);
-      else if (runs.at(-1).length) runs.push([]);
-    });
-    return runs.filter((run) => run.length > 1);
-  });
-  return { highest, pieces, beyond: fast > highest ? fast : 0 };
-}
-
-function plot(sheet, speeds, share) {
-  const { left, right, top, bottom } = PLOT, { highest, pieces, beyond } = plotted(speeds);
-  const at = (part, speed) => placed(sheet, [left + part * (right - left), bottom - speed / highest * (bottom - top)]);
-  sheet.line([at(0, 0), at(1, 0)], 'muted');
-  sheet.line([at(0, 0), at(0, highest)], 'muted');
-  sheet.line([at(0, highest), at(1, highest)], 'muted', 'faint');
-  sheet.label(at(0, highest), `$${highest}^\\circ/\\mathrm{s}$`, 'ink', [-30, 0], 14);
-  sheet.label(at(0, 0), '$0$', 'ink', [-11, 0], 14);
-  sheet.label(at(1, 0), `$${SECONDS}\\,\\mathrm{s}$`, 'ink', [0, 14], 14);
-  if (beyond) sheet.label(at(0.5, highest), '$\\mathrm{cut\\ off}$', 'ink', [0, -9], 14);
-  sheet.line([at(share, 0), at(share, highest)], 'ink', 'guide');
-  pieces.forEach((runs, n) => runs.forEach((run) => sheet.line(run.map(([part, speed]) => at(part, speed)), WAYS[n], 'axis thin')));
 }

@@ -1,11 +1,11 @@
 // What the moving figures share: a sheet to draw on, in the look of orientation_figures.drawing, and controls that
 // work by pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
 // contract; on a page of the book without a kernel, `start` gives it a model of its own.
-import { AXES, IDENTITY, add, cross, dcmFromRotationVector, dot, length, multiply, scale, simpleDcm, subtract, times,
-  transpose, unit } from './mathematics.js';
+import { add, AXES, cross, dcmFromRotationVector, degrees, dot, IDENTITY, length, multiply, radians,
+  scale, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
+import { carriedBy, fragmentOf } from './address.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
-import { carriedBy, fragmentOf } from './address.js';
 
 // ---- elements and words --------------------------------------------------------------------------------
 
@@ -79,8 +79,6 @@ export function fixed(value, digits = 3) {
   return (value < 0 && Number(text) !== 0 ? '\u2212' : '\u2007') + text;
 }
 
-export const degrees = (angle) => angle * 180 / Math.PI;
-export const radians = (angle) => angle * Math.PI / 180;
 // '35', '-12.5': degrees for a field, without the noise of the conversion.
 export const plain = (value, digits = 2) => String(Number(value.toFixed(digits)) + 0);
 
@@ -258,6 +256,11 @@ export class Sheet {
     this.text(text, add(this.onSheet(point), shift), colour, size);
   }
 
+  // The point of N that is seen at a place of the sheet.
+  placed(right, down) {
+    return times(transpose(this.view), [right / this.size, -down / this.size, 0]);
+  }
+
   // A label beyond a point as seen from the origin.
   labelBeyond(point, text, colour = 'ink', pixels = 17) {
     this.label(point, text, colour, scale(pixels, unit(this.onSheet(point))));
@@ -328,9 +331,8 @@ export class Sheet {
   }
 
   // The unit vectors of a frame are the rows of its direction cosine matrix.
-  triad(letter, dcm, { origin = [0, 0, 0], reach = 1, labels = true } = {}) {
-    dcm.forEach((row, k) => this.arrow(add(origin, scale(reach, row)), { start: origin, colour: letter,
-      label: labels ? `$\\hat{${letter.toLowerCase()}}_${AXES[k]}$` : '' }));
+  triad(letter, dcm, { origin = [0, 0, 0], length: far = 1, labels = hats(letter.toLowerCase()) } = {}) {
+    dcm.forEach((row, k) => this.arrow(add(origin, scale(far, row)), { start: origin, colour: letter, label: labels[k] }));
   }
 
   // The arc swept by the direction `start`, turned through `angle` about `axis`.
@@ -387,7 +389,7 @@ export class Sheet {
   }
 
   // A box with edges `size` along the rows of `dcm`: the faces that are seen.
-  box(dcm, size, colour, origin = [0, 0, 0]) {
+  box(dcm, size, { origin = [0, 0, 0], colour = 'ink' } = {}) {
     const half = dcm.map((row, k) => scale(size[k] / 2, row));
     [26, 16, 8].forEach((fill, i) => {
       const [u, v] = [half[(i + 1) % 3], half[(i + 2) % 3]];

@@ -1,11 +1,11 @@
-import { AXES, IDENTITY, add, scale, simpleDcm } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, group, hats, liveText, numberTable,
-  onceAFrame, open, plain, radians, readout, slider, stage, wrapped } from './shared.js';
+import { AXES, degrees, IDENTITY, radians, scale, simpleDcm } from './mathematics.js';
+import { picture, REACH, SIZE } from './simple_picture.js';
+import { button, change, choice, element, fixed, follow, followTurn, group, hats, liveText,
+  numberTable, onceAFrame, open, plain, readout, Sheet, slider, stage, wrapped } from './shared.js';
 
-const REACH = 1.25, SIZE = 112, FLAT = 84;   // REACH and SIZE as in simple.py
+const FLAT = 84;
 const [N, A] = ['n', 'a'].map(hats);
 const STEP = radians(5);
-const VANE = [[-0.72, 0.5], [-0.5, 0.36], [0.4, 0.36], [0.4, 0.46], [0.68, 0.3], [0.4, 0.14], [0.4, 0.24], [-0.5, 0.24], [-0.72, 0.1], [-0.62, 0.3]];
 const number = (value) => fixed(value).trim();
 
 // One turn about a unit vector that two frames share: in space, down that vector, and as a matrix.
@@ -55,7 +55,7 @@ export function render({ model, el }) {
     angle.show(theta);
     axis.show(AXES[k]);
     matrix.show(now.dcm.map((row) => row.map((entry) => fixed(entry))));
-    for (const sheet of [space, flat]) sheet.draw(() => picture(sheet, now, lit));
+    for (const sheet of [space, flat]) sheet.draw(() => drawn(sheet, now, lit));
     text.say(lit ? meaning(now, ...lit) : `$A$ is turned from $N$ through $\\theta$ = ${plain(degrees(theta))}° about ${N[k]} = ${A[k]}.`
       + ' Touch a number to see the shadow that it measures.');
   }
@@ -64,18 +64,11 @@ export function render({ model, el }) {
   return follow(model, ['axis', 'angle'], redraw);
 }
 
-function picture(sheet, { k, theta, dcm }, lit) {
-  const axis = IDENTITY[k], [i, j] = lit ?? [], pointer = dcm[(k + 1) % 3];
+function drawn(sheet, { k, theta, dcm }, lit) {
+  const [i, j] = lit ?? [];
   sheet.faded = Boolean(lit);
-  // The vane, upright on the shared unit vector; looking down that, it is seen edge on.
-  sheet.area(VANE.map(([along, up]) => add(scale(along, pointer), scale(up, axis))), 'A', 26);
-  sheet.triad('N', IDENTITY, { reach: REACH });
-  dcm.forEach((row, m) => { if (m !== k) sheet.arrow(row, { colour: 'A', label: A[m] }); });
-  sheet.arrow(axis, { colour: 'A' });
-  for (const m of [(k + 1) % 3, (k + 2) % 3]) {
-    sheet.turn(axis, theta, IDENTITY[m], { radius: 0.5, label: '$\\theta$', colour: 'accent' });
-    sheet.grip(dcm[m], String(m));
-  }
+  picture(sheet, k, theta, dcm);
+  for (const m of [(k + 1) % 3, (k + 2) % 3]) sheet.grip(dcm[m], String(m));
   if (lit) {
     sheet.faded = false;
     sheet.layer = 1;

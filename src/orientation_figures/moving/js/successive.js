@@ -1,39 +1,14 @@
-import { AXES, IDENTITY, add, axisAngleFromDcm, dot, multiply, scale, simpleDcm, subtract, times, transpose,
-  unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followTurn, group, liveText,
-  numberTable, onceAFrame, open, player, put, readout, slider, stage, wrapped, write, writeWords } from './shared.js';
+import { add, AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, simpleDcm, transpose } from './mathematics.js';
+import { chain, partly } from './common_picture.js';
+import { axisOf, COMPARISONS, LETTERS, picture, secondChain, SIZE } from './successive_picture.js';
+import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable,
+  onceAFrame, open, player, put, readout, Sheet, slider, stage, wrapped, write, writeWords } from './shared.js';
 
-const REACH = 1.25, BEFORE = 0.66, SIZE = 96, SECONDS = 6;   // as in successive.py
-const LETTERS = 'NABCD';
-const NOTHING = 'nothing', OTHER = 'body and space fixed';
-const PAIRS = ['1 and 2 exchanged', '2 and 3 exchanged', '3 and 4 exchanged'];
+const SECONDS = 6;
+const [NOTHING, ...PAIRS] = COMPARISONS, OTHER = PAIRS.pop();
 const hat = (letter, axis) => `$\\hat{${letter.toLowerCase()}}_${axis}$`;
 const dcmName = (target, source) => `\${}^${target}\\mathbf{C}^${source}$`;
 const angleText = (angle, digits = 1) => `${fixed(degrees(angle), digits).trim()}°`;
-
-// Every frame of a chain along N: a turn about the frame's own unit vector multiplies from the left, a turn
-// about one of N from the right.
-function framesOf(turns, fixed) {
-  return turns.reduce((frames, [axis, angle]) => {
-    const turn = simpleDcm(axis, angle), last = frames.at(-1);
-    return [...frames, fixed === 'body' ? multiply(turn, last) : multiply(last, turn)];
-  }, [IDENTITY]);
-}
-
-// The chain that has come part of the way: every turn begins and ends at rest.
-function partly(turns, share) {
-  const done = share * turns.length, whole = Math.min(Math.floor(done + 1e-9), turns.length), rest = Math.max(0, done - whole);
-  const [axis, angle] = turns[whole] ?? [];
-  return rest > 1e-9 ? [...turns.slice(0, whole), [axis, rest * rest * (3 - 2 * rest) * angle]] : turns.slice(0, whole);
-}
-
-function compared(turns, fixed, compare) {
-  if (compare === NOTHING) return null;
-  if (compare === OTHER) return { turns, fixed: fixed === 'body' ? 'space' : 'body' };
-  const k = PAIRS.indexOf(compare), other = [...turns];
-  [other[k], other[k + 1]] = [turns[k + 1], turns[k]];
-  return { turns: other, fixed };
-}
 
 export function render({ model, el }) {
   let lit = null;
@@ -45,7 +20,7 @@ export function render({ model, el }) {
     grab(part, at) {
       if (!part) return null;
       const { turns, kind, share } = state(), now = partly(turns, share), k = now.length - 1, [axis, angle] = turns[k];
-      const frames = framesOf(now, kind);
+      const frames = chain(now, kind);
       const follower = followTurn(sheet, { axis: axisOf(frames, now, kind, k), arm: frames[k][part], angle, at });
       return (to) => setTurn(k, [axis, wrapped(follower(to))]);
     } });
@@ -77,7 +52,7 @@ export function render({ model, el }) {
   const compare = choice({ name: 'Compare with', options: [NOTHING, ...PAIRS.map((pair) => [pair, `turns ${pair}`]), [OTHER, '']],
     change: (value) => change(model, { compare: value }) });
   const options = [...compare.element.querySelectorAll('option')];
-  const chain = player({ name: 'Time in the chain', seconds: SECONDS, show: (time) => change(model, { share: time / SECONDS }) });
+  const clock = player({ name: 'Time in the chain', seconds: SECONDS, show: (time) => change(model, { share: time / SECONDS }) });
 
   const factors = LETTERS.slice(1).split('').map(factor);
   const product = element('div', { class: 'factors', role: 'group', 'aria-label': 'The product, factor by factor' }, ...factors.map((one) => one.element));
@@ -90,7 +65,7 @@ export function render({ model, el }) {
     } });
   const text = liveText();
   open(el, stage(sheet, text),
-    element('div', { class: 'controls chain' }, chain.element,
+    element('div', { class: 'controls chain' }, clock.element,
       ...(model.get('more') !== false ? [element('div', { class: 'row-of-controls' }, about.element, compare.element)] : []), ...rows.map((row) => row.element),
       element('div', { class: 'row-of-controls' }, more, fewer)),
     element('div', { class: 'readouts' },
@@ -99,8 +74,9 @@ export function render({ model, el }) {
 
   function draw() {
     const { turns, kind, share, compare: comparison } = state(), now = partly(turns, share);
-    const dcm = framesOf(now, kind).at(-1), end = LETTERS[now.length], other = compared(turns, kind, comparison);
-    const otherDcm = other && framesOf(partly(other.turns, share), other.fixed).at(-1);
+    const dcm = chain(now, kind).at(-1), end = LETTERS[now.length];
+    const other = comparison === NOTHING ? null : secondChain(turns, kind, comparison);
+    const otherDcm = other && chain(partly(other[0], share), other[1]).at(-1);
     about.show(kind);
     compare.show(comparison);
     PAIRS.forEach((_, k) => { options[k + 1].hidden = options[k + 1].disabled = k > turns.length - 2; });
@@ -114,12 +90,17 @@ export function render({ model, el }) {
     });
     more.disabled = turns.length === 4;
     fewer.disabled = turns.length === 1;
-    chain.at(share * SECONDS);
+    clock.at(share * SECONDS);
     factors.forEach((one, k) => one.show(now[k] ?? turns[k], k < now.length, kind, turns.length));
     writeWords(title, `${dcmName(end, 'N')} as a product, newest turn on the ${kind === 'body' ? 'left' : 'right'}`);
     heads.forEach((head, k) => writeWords(head, hat(end, AXES[k])));
     result.show(dcm.map((row) => row.map((entry) => fixed(entry))));
-    sheet.draw(() => picture(sheet, { turns, kind, share, other, lit }));
+    sheet.draw(() => {
+      picture(sheet, turns, kind, share, comparison, Boolean(lit));
+      sheet.layer = 1;
+      if (lit) sheet.shadow(dcm[lit[0]], IDENTITY[lit[1]]);
+      if (now.length) dcm.forEach((row, k) => { if (AXES[k] !== now.at(-1)[0]) sheet.grip(row, String(k)); });
+    });
     text.say(sentence(end, kind, dcm, comparison, otherDcm, lit, model.get('more') !== false));
   }
 
@@ -155,79 +136,15 @@ function sentence(end, kind, dcm, compare, otherDcm, lit, more) {
     return `Row ${AXES[i]}, column ${AXES[j]}: ${hat(end, AXES[i])} · ${hat('n', AXES[j])} = ${fixed(dcm[i][j]).trim()}, the shadow of `
       + `${hat(end, AXES[i])} on the line of ${hat('n', AXES[j])}.`;
   }
-  const { axis, angle } = axisAngleFromDcm(dcm);
+  const [axis, angle] = axisAngleFromDcm(dcm);
   if (!otherDcm) {
     return (kind === 'body' ? `Each turn is about an axis of the frame before it${more ? ' (body fixed)' : ''}. `
       : 'Each turn is about an axis of $N$ (space fixed). ')
       + (angle < 1e-9 ? end === 'N' ? 'No turn has been made yet: press Play.' : `Together the turns so far bring $${end}$ to where $N$ is.` : `From $N$ to $${end}$ they are one turn of ${angleText(angle)} about (${
         axis.map((entry) => fixed(entry, 2).trim()).join(', ')}).`);
   }
-  const apart = axisAngleFromDcm(multiply(otherDcm, transpose(dcm))).angle;
+  const apart = axisAngleFromDcm(multiply(otherDcm, transpose(dcm)))[1];
   const what = compare === OTHER ? `The same turns, ${kind === 'body' ? 'space' : 'body'} fixed, lead` : `With turns ${compare} the chain leads`;
   return apart < 1e-7 ? `${what} to the same orientation: here $E$ is where $${end}$ is.`
     : `${what} to $E$ instead of $${end}$. A turn of ${angleText(apart)} lies between the two.`;
-}
-
-// The direction that turn k of a chain is about, along N.
-const axisOf = (frames, turns, kind, k) => (kind === 'body' ? frames[k] : IDENTITY)[AXES.indexOf(turns[k][0])];
-
-function picture(sheet, { turns, kind, share, other, lit }) {
-  const now = partly(turns, share), frames = framesOf(now, kind), last = now.length, end = frames.at(-1);
-  sheet.triad('N', IDENTITY, { reach: REACH });
-  sheet.faded = Boolean(lit || other);
-  for (let k = 1; k < last; k += 1) sheet.triad(LETTERS[k], frames[k], { reach: BEFORE, labels: false });
-  if (last && !other) {
-    const axis = axisOf(frames, now, kind, last - 1), angle = now[last - 1][1];
-    sheet.line([scale(-0.35, axis), scale(REACH, axis)], 'accent', 'guide');
-    frames[last - 1].forEach((row) => around(sheet, axis, angle, row));
-  }
-  sheet.faded = false;
-  if (last) sheet.triad(LETTERS[last], end);
-  if (lit) {
-    sheet.layer = 1;
-    sheet.shadow(end[lit[0]], IDENTITY[lit[1]]);
-    sheet.layer = 0;
-  }
-  let otherFrames = null;
-  if (other) {
-    const otherNow = partly(other.turns, share);
-    otherFrames = framesOf(otherNow, other.fixed);
-    if (last) {
-      const { axis, angle } = axisAngleFromDcm(multiply(otherFrames.at(-1), transpose(end)));
-      // The axis between two orientations has the same components in both: along N it is found through either.
-      const along = times(transpose(end), axis);
-      if (angle > 0.02) end.forEach((row) => around(sheet, along, angle, row));
-      sheet.triad('E', otherFrames.at(-1));
-    }
-    strip(sheet, otherFrames, otherNow, other.fixed, turns.length, 195, 22, (k) => (k === turns.length ? 'E' : k ? 'muted' : 'N'));
-  }
-  strip(sheet, frames, now, kind, turns.length, other ? 143 : 168, other ? 22 : 27, (k) => LETTERS[k]);
-  const [axis] = last ? [now[last - 1][0]] : [];
-  end.forEach((row, k) => { if (last && AXES[k] !== axis) sheet.grip(row, String(k)); });
-}
-
-// The way of a tip about an axis.
-function around(sheet, axis, angle, start) {
-  const foot = scale(dot(start, axis), axis), arm = subtract(start, foot);
-  const radius = Math.hypot(...arm);
-  if (radius > 1e-6) sheet.turn(axis, angle, arm, { radius, origin: foot, colour: 'muted', head: false });
-}
-
-// What a turn is about: the frames on the way of the second chain have no names.
-const aboutName = (kind, letter, axis) => (kind === 'space' ? hat('N', axis) : letter === 'muted' ? `$${axis}$` : hat(letter, axis));
-
-// The frames side by side in their order, with the unit vector that each turn is about.
-function strip(sheet, frames, turns, kind, count, y, radius, colour) {
-  const back = transpose(sheet.view), width = 340 / (count + 1);
-  const at = (x, down = 0) => times(back, [x / sheet.size, -(y + down) / sheet.size, 0]);
-  frames.forEach((dcm, k) => {
-    const x = (k - count / 2) * width, origin = at(x), reach = radius / sheet.size;
-    sheet.box(dcm, [1.1 * reach, 0.8 * reach, 0.28 * reach], colour(k), origin);
-    sheet.triad(colour(k), dcm, { origin, reach, labels: false });
-    if (colour(k) !== 'muted') sheet.label(at(x - radius + 1, -radius + 1), `$${colour(k)}$`, colour(k), [0, 0], 16);
-    if (!k) return;
-    const from = x - width + radius + 7, to = x - radius - 3, short = Math.max(0, (to - from - 26) / 2);
-    sheet.arrow(at(to - short, 4), { start: at(from + short, 4), colour: 'muted' });
-    sheet.label(at((from + to) / 2, -8), aboutName(kind, colour(k - 1), turns[k - 1][0]), 'ink', [0, 0], 15);
-  });
 }

@@ -2,9 +2,8 @@ import { button, choice, element, group, write } from './shared.js';
 
 // The formulas of the module in other languages, written when the pages were made: one script for each language, which
 // is asked for when that language is chosen.
-export const LANGUAGES = ['C', 'C++', 'Rust', 'Julia', 'Octave', 'JavaScript', 'GLSL'];
-const FILES = { 'C++': 'cpp' };
 const ENDINGS = { C: 'c', 'C++': 'cpp', Rust: 'rs', Julia: 'jl', Octave: 'm', JavaScript: 'js', GLSL: 'glsl' };
+export const LANGUAGES = Object.keys(ENDINGS);
 // Where the scripts of the figures lie; in a notebook there is no such place, and Python writes formulas itself.
 const PLACE = globalThis.document?.currentScript?.src ?? '';
 const asked = new Map();
@@ -15,7 +14,7 @@ export const canTakeAway = () => Boolean(PLACE);
 // What a language has: texts by the words of formula, sequence or axis, matrix, scalar and unit.
 export function textsIn(language) {
   if (!asked.has(language)) {
-    const script = element('script', { src: beside(`formulas-${FILES[language] ?? language.toLowerCase()}.js`) });
+    const script = element('script', { src: beside(`formulas-${language.toLowerCase().replace('++', 'pp')}.js`) });
     asked.set(language, new Promise((resolve, reject) => {
       script.addEventListener('load', () => resolve(globalThis.orientationFormulas[language]));
       script.addEventListener('error', () => reject(new Error('The formulas could not be loaded.')));

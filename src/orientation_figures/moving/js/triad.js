@@ -1,9 +1,11 @@
-import { AXES, IDENTITY, bodyFixedFromDcm, dcmFromAxisAngle, dot, gimbalLockMargin, length, multiply,
-  quaternionFromAxisAngle, SEQUENCES, scale, simpleDcm, subtract, unit } from './mathematics.js';
-import { Sheet, button, change, choice, degrees, element, fixed, follow, followSphere, followTurn, group, hats, liveText,
-  numberField, numberTable, onceAFrame, open, plain, radians, readout, slider, stage, turned, wrapped } from './shared.js';
+import { AXES, bodyFixedFromDcm, dcmFromAxisAngle, degrees, dot, gimbalLockMargin, IDENTITY, length,
+  multiply, quaternionFromAxisAngle, radians, scale, SEQUENCES, simpleDcm, subtract, unit } from './mathematics.js';
+import { around } from './common_picture.js';
+import { KNOB, picture, REACH, SIZE } from './triad_picture.js';
+import { button, change, choice, element, fixed, follow, followSphere, followTurn, group, hats,
+  liveText, numberField, numberTable, onceAFrame, open, plain, readout, Sheet, slider, stage,
+  turned, wrapped } from './shared.js';
 
-const REACH = 1.25, KNOB = 1.55, SIZE = 112;   // as in triad.py
 const ANGLES = ['$\\psi$', '$\\theta$', '$\\varphi$'];
 const [N, A] = ['n', 'a'].map(hats);
 const number = (value, digits = 3) => fixed(value, digits).trim();
@@ -75,8 +77,11 @@ export function render({ model, el }) {
     quaternion.show([now.quaternion.map((entry) => fixed(entry))]);
     const meaning = lit && MEANINGS[lit.kind](now, lit.i, lit.j);
     sheet.draw(() => {
-      picture(sheet, now, Boolean(meaning));
+      sheet.faded = Boolean(meaning);
+      picture(sheet, now.axis, now.angle, now.dcm);
       sheet.faded = false;
+      now.dcm.forEach((row, k) => sheet.grip(row, String(k)));
+      sheet.grip(scale(KNOB, now.axis), 'axis');
       sheet.layer = 1;
       meaning?.draw(sheet);
     });
@@ -86,26 +91,6 @@ export function render({ model, el }) {
 
   draw();
   return follow(model, ['axis', 'angle', 'sequence'], redraw);
-}
-
-function picture(sheet, { axis, angle, dcm }, faded) {
-  sheet.faded = faded;
-  sheet.line([scale(-1, axis), scale(KNOB, axis)], 'accent', 'guide');
-  IDENTITY.forEach((start) => around(sheet, axis, angle, start, { colour: 'muted', head: false }));
-  sheet.triad('N', IDENTITY, { reach: REACH });
-  sheet.triad('A', dcm);
-  sheet.arrow(axis, { colour: 'accent' });
-  const knob = scale(KNOB, axis);
-  sheet.dot(knob, 'accent', 5);
-  sheet.label(knob, '$\\hat{e}$', 'accent', [15, -9]);
-  dcm.forEach((row, k) => sheet.grip(row, String(k)));
-  sheet.grip(knob, 'axis');
-}
-
-// The way of the tip of `start` when it turns about the axis.
-function around(sheet, axis, angle, start, options) {
-  const foot = scale(dot(start, axis), axis), arm = subtract(start, foot);
-  if (length(arm) > 1e-6) sheet.turn(axis, angle, arm, { radius: length(arm), origin: foot, ...options });
 }
 
 // What each number means: words, and what lights up in the drawing.
@@ -135,13 +120,13 @@ const MEANINGS = {
       words: `${ANGLES[k]} = ${inDegrees(euler[k])}: the ${['first', 'second', 'third'][k]} turn, about ${about}.`
         + (margin < radians(1) ? ' Here this sequence is at gimbal lock: the first and the third turn have one axis.' : ''),
       draw(sheet) {
-        const frame = (rows, letter) => (letter ? sheet.triad(letter, rows, { reach: letter === 'N' ? REACH : 1 })
+        const frame = (rows, letter) => (letter ? sheet.triad(letter, rows, { length: letter === 'N' ? REACH : 1 })
           : rows.forEach((row) => sheet.arrow(row, { colour: 'muted' })));
         frame(before, k === 0 ? 'N' : '');
         frame(after, k === 2 ? 'A' : '');
         sheet.line([scale(-1, axis), scale(REACH, axis)], 'accent', 'guide');
         sheet.arrow(axis, { colour: 'accent' });
-        before.forEach((row) => around(sheet, axis, euler[k], scale(0.8, row), { colour: 'accent', kind: 'thick' }));
+        before.forEach((row) => around(sheet, axis, euler[k], scale(0.8, row), { head: true, colour: 'accent', kind: 'thick' }));
         const clear = before.find((row) => Math.abs(dot(row, axis)) < 0.5);
         sheet.turn(axis, euler[k], clear, { radius: 0.8, label: ANGLES[k], colour: 'accent', kind: 'thick' });
       },

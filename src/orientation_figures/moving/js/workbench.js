@@ -1,10 +1,10 @@
-import { IDENTITY, dcmFromQuaternion, quaternionFromDcm, determinant, scale, slerp } from './mathematics.js';
-import { explain, drawnDcms, eigenLine, formulaOf, mendingLine, taughtBy } from './mismatch.js';
+import { dcmFromQuaternion, determinant, IDENTITY, quaternionFromDcm, slerp } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
-import { Sheet, button, calm, change, choice, element, follow, glide, group, liveText, numberField, onceAFrame, open, put, readout, stage,
-  write } from './shared.js';
+import { drawnDcms, eigenLine, explain, formulaOf, mendingLine, taughtBy } from './mismatch.js';
+import { picture, SIZE } from './workbench_picture.js';
+import { button, calm, change, choice, element, follow, glide, group, liveText, numberField,
+  onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
 
-const REACH = 1.25, APART = 165, SIZE = 100;   // as in stills/workbench.py
 const UNKNOWN = 'not known', SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'xzy', 'yzx', 'zxz', 'zyz', 'xyx', 'xzx', 'yxy', 'yzy'];
 const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector', 'axis and angle'];
 // Of one engine and its prose: what the answer is called.
@@ -145,13 +145,7 @@ export function render({ model, el }) {
   }
 
   function draw() {
-    sheet.draw(() => {
-      for (const [k, letter] of ['A', 'B'].entries()) {
-        const origin = scale((2 * k - 1) * APART / SIZE, sheet.view[0]);
-        sheet.triad('N', IDENTITY, { origin, reach: REACH });
-        sheet.triad(letter, shown[k], { origin });
-      }
-    });
+    sheet.draw(() => picture(sheet, shown));
   }
 
   // An address is taken up when the page opens with it, and when it is put into an open page.

@@ -7,7 +7,7 @@
 import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
   dcmFromQuaternion, dot, length, multiply, quaternionFromAxisAngle, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
   times, transpose, unit } from '../../moving/js/mathematics.js';
-import { quaternionAt } from '../../moving/js/belt.js';
+import { quaternionAt } from '../../moving/js/belt_picture.js';
 import { STOPS } from './stops.js';
 
 const PI = Math.PI;
@@ -331,7 +331,7 @@ export const wholeWays = () => { whole ??= Array.from({ length: 73 }, (_, k) => 
 
 // How far a way turns in all, in radians: the sum of its small turns.
 export const turnedAlong = (list) => list.slice(1).reduce((sum, dcm, k) => sum + apart(list[k], dcm), 0);
-export const apart = (first, second) => axisAngleFromDcm(multiply(second, transpose(first))).angle;
+export const apart = (first, second) => axisAngleFromDcm(multiply(second, transpose(first)))[1];
 
 const SHOWS = {
   'two-triads'(scene, s, { D }) {
@@ -390,7 +390,7 @@ const SHOWS = {
     }
   },
   'one-turn'(scene, s, { D }) {
-    const { axis, angle } = axisOf(s.start);
+    const [axis, angle] = axisOf(s.start);
     if (angle < 0.05) return;
     scene.dashes(scale(-2.0, axis), scale(2.0, axis), 0.022, 'accent', 26);
     scene.label(scale(2.0, axis), '\\hat{e}', 'accent');
@@ -529,7 +529,7 @@ export function dcmOf(s) {
 
 function moved(s) {
   if (s.stop === 'one-turn' && !s.free) {
-    const { axis, angle } = axisOf(s.start);
+    const [axis, angle] = axisOf(s.start);
     return turnedFrame(axis, -angle * s.part, frames(s.start).D);
   }
   if (s.stop === 'four-numbers' && !s.free) return dcmFromAxisAngle(FOUR.axis, s.whole);

@@ -140,7 +140,7 @@ class World {
     const angles = anglesNear(before, this.state.angles);
     this.state.angles = angles;
     // At the last stop it stands as it was left.
-    this.state.start = id === 'your-turn' || (free && axisOf(angles).angle > 0.6) ? angles : CROOKED;
+    this.state.start = id === 'your-turn' || (free && axisOf(angles)[1] > 0.6) ? angles : CROOKED;
     if (!first && stop.by === 'camera') this.carry = { from: quaternionFromDcm(before), since: null };
     this.goal.eye = [...EYES[id] ?? REST.eye];
     this.showDials(stop);
@@ -319,7 +319,7 @@ class World {
         return margin < deg(1) ? `${look} Locked: the first and the third motor turn about one line.`
           : `${look} The axes of the first and the third motor are ${say(margin < PI / 2 ? margin : PI - margin)} apart.`;
       },
-      'one-turn': () => `${look} From here home is one turn of ${say(axisOf(state.start).angle * (1 - state.part))}.`,
+      'one-turn': () => `${look} From here home is one turn of ${say(axisOf(state.start)[1] * (1 - state.part))}.`,
       'two-mirrors': () => `The mirrors stand ${say(deg(35 + 30 * state.apart))} apart, and the arrow has turned ${say(deg(70 + 60 * state.apart))}.`,
       'four-numbers': () => `Turned ${say(state.whole)}: the point stands at ${say(state.whole / 2)}.`,
       'not-home': () => this.cable(),

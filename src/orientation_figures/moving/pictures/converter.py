@@ -1,20 +1,24 @@
-"""The still of the converter: the orientation that both sides describe."""
+"""The picture of the converter: the orientation that both sides describe."""
 
-import numpy as np
+from ..vectors import IDENTITY
 
-from ...drawing import Drawing
+REACH = 1.25
+SIZE = 112
 
-REACH, SIZE = 1.25, 112  # as in js/converter.js
+
+def picture(sheet, dcm):
+    sheet.triad("N", IDENTITY, length=REACH)
+    sheet.triad("A", dcm)
 
 
-def drawing(figure):
+def drawing(figure, Sheet):
     rows = [f"{name} at ({', '.join(f'{entry + 0:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
     scalar, *vector = (f"{part + 0:.4f}" for part in figure.quaternion)
-    drawing = Drawing(
+    sheet = Sheet(
         "The triad of frame N, and from the same origin the triad of A, in the orientation that is converted: its "
         f"quaternion, scalar first, is ({scalar}, {', '.join(vector)}). Along N, a {', a '.join(rows)}. It is read "
         f"from the {figure.source['form']} of {figure.source['program']} and written as the "
         f"{figure.target['form']} of {figure.target['program']}.",
         scale=SIZE,
     )
-    return drawing.triad("N", REACH * np.eye(3)).triad("A", figure.dcm)
+    return sheet.paint(picture, figure.dcm)

@@ -1,0 +1,231 @@
+"""Write the pictures of the moving figures in JavaScript, too, in ``js/*_picture.js``.
+
+Run it with ``python -m orientation_figures.moving.javascript``. What a figure shows is described once, in
+``pictures``: functions of its state in the words of a sheet and of :mod:`~orientation_figures.moving.vectors`. Python
+paints stills with them; here they are translated, statement by statement, for the figures in the page. The files are
+kept with the others, as the figures need them where nothing is translated.
+
+A description is plain: functions, constants, loops and comprehensions, conditions, lists. What is given by name
+becomes an object. What begins with ``_``, and functions of a whole ``figure``, stay in Python. In JavaScript an empty
+list counts as true, so ask for its length; and a text is no list until ``list`` makes it one.
+"""
+
+import ast
+import re
+
+from .bundle import FOLDER, PICTURES
+
+COMMAND = "python -m orientation_figures.moving.javascript"
+
+_NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
+_METHODS = {"append": "push", "index": "indexOf", "lower": "toLowerCase"}
+_OPERATORS = {
+    ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2), ast.Pow: ("**", 3),
+    ast.Eq: "===", ast.NotEq: "!==", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Is: "===",
+    ast.IsNot: "!==", ast.And: " && ", ast.Or: " || ", ast.Not: "!", ast.USub: "-",
+}  # fmt: skip
+#: How strongly what is no operation of two numbers binds.
+_STRENGTHS = {ast.Compare: 0.9, ast.And: 0.6, ast.Or: 0.5, ast.IfExp: 0, ast.Lambda: 0}
+
+
+def translated(name):
+    """The module of JavaScript that says what ``pictures/NAME.py`` says."""
+    parts, modules = [], dict.fromkeys(("enumerate", "range", "sum", "zip"), "mathematics")
+    for node in ast.parse((FOLDER / "pictures" / f"{name}.py").read_text("utf8")).body:
+        match node:
+            case ast.ImportFrom(module=module, level=level):
+                # What is no other picture has its twin in JavaScript under the same name.
+                source = f"{module}_picture" if level == 1 else "mathematics"
+                modules |= {alias.name: source for alias in node.names}
+            case ast.Assign(targets=[ast.Name(id=constant)]) if not constant.startswith("_"):
+                parts.append((node, f"export const {constant} = {expression(node.value)};"))
+            case ast.FunctionDef() if not node.name.startswith("_") and node.args.args[0].arg != "figure":
+                parts.append((node, f"\nexport function {camel(node.name)}({parameters(node.args)}) {block(node)}"))
+    used = {one.id for node, _ in parts for one in ast.walk(node) if isinstance(one, ast.Name)}
+    lines = [f"// Written by `{COMMAND}` from pictures/{name}.py."]
+    for module in sorted({modules[one] for one in used & set(modules)}):
+        names = ", ".join(sorted(camel(one) for one in used & set(modules) if modules[one] == module))
+        lines.append(f"import {{ {names} }} from './{module}.js';")
+    return "\n".join([*lines, *(text for _, text in parts)]) + "\n"
+
+
+def camel(name):
+    return name if name.isupper() else re.sub(r"(?<=.)_(\w)", lambda found: found[1].upper(), name)
+
+
+def parameters(arguments):
+    """Of a function: what may be left out has a default, what is given by name is an object."""
+    given = [camel(one.arg) for one in arguments.args]
+    for k, default in enumerate(reversed(arguments.defaults), 1):
+        given[-k] += f" = {expression(default)}"
+    named = [
+        f"{camel(one.arg)} = {expression(value)}" for one, value in zip(arguments.kwonlyargs, arguments.kw_defaults)
+    ]
+    return ", ".join(given + ([f"{{ {', '.join(named)} }} = {{}}"] if named else []))
+
+
+def block(function):
+    """The body of a function; a variable is constant if it is set in one place."""
+    together, found = [], [*function.body]
+    while found:
+        node = found.pop()
+        if isinstance(node, ast.Assign | ast.AugAssign):
+            together.append(names_in(node.targets[0] if isinstance(node, ast.Assign) else node.target))
+        if isinstance(node, ast.stmt) and not isinstance(node, ast.FunctionDef):
+            found += ast.iter_child_nodes(node)
+    every = sum(together, [])
+    changing = sorted({one for names in together if any(every.count(name) > 1 for name in names) for one in names})
+    first = [f"let {', '.join(map(camel, changing))};"] if changing else []
+    return braces(first + [statement(one, changing) for one in function.body])
+
+
+def braces(lines):
+    inside = "".join(f"  {line}\n" for text in lines if text for line in text.split("\n"))
+    return f"{{\n{inside}}}"
+
+
+def names_in(target):
+    return [one.id for one in ast.walk(target) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)]
+
+
+def statement(node, changing):
+    def all_of(body):
+        return braces([statement(one, changing) for one in body])
+
+    match node:
+        case ast.Expr(value=ast.Constant()):
+            return ""  # a docstring
+        case ast.Expr():
+            return f"{expression(node.value)};"
+        case ast.Return():
+            return f"return {expression(node.value)};" if node.value else "return;"
+        case ast.Assign(targets=[target]):
+            names = names_in(target)
+            first = "const " if names and not set(names) & set(changing) else ""
+            return f"{first}{expression(target)} = {expression(node.value)};"
+        case ast.AugAssign():
+            return f"{expression(node.target)} {_OPERATORS[type(node.op)][0]}= {expression(node.value)};"
+        case ast.For():
+            return f"for (const {expression(node.target)} of {expression(node.iter)}) {all_of(node.body)}"
+        case ast.If():
+            other = ""
+            if node.orelse:
+                chained = len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
+                other = " else " + (statement(node.orelse[0], changing) if chained else all_of(node.orelse))
+            return f"if ({expression(node.test)}) {all_of(node.body)}{other}"
+        case ast.FunctionDef():
+            return f"const {camel(node.name)} = ({parameters(node.args)}) => {block(node)};"
+        case ast.Continue():
+            return "continue;"
+    raise ValueError(f"a picture holds {ast.unparse(node)!r}, which is not translated")
+
+
+def within(node, least=4):
+    """An operand, in brackets where it binds less than what stands around it."""
+    if isinstance(node, ast.BinOp):
+        strength = _OPERATORS[type(node.op)][1]
+    else:
+        strength = _STRENGTHS.get(type(node.op if isinstance(node, ast.BoolOp) else node), 4)
+    return f"({expression(node)})" if strength < least else expression(node)
+
+
+def expression(node):
+    match node:
+        case ast.Constant(value=bool() | None):
+            return {True: "true", False: "false", None: "null"}[node.value]
+        case ast.Constant(value=str()):
+            return quoted(node.value, "'")
+        case ast.Constant():
+            return repr(node.value)
+        case ast.Name():
+            return camel(node.id)
+        case ast.JoinedStr():
+            return f"`{''.join(filled(part) for part in node.values)}`"
+        case ast.Attribute(value=ast.Name(id="math")):
+            return {"pi": "Math.PI", "nan": "NaN"}.get(node.attr, f"Math.{node.attr}")
+        case ast.Attribute():
+            return f"{within(node.value)}.{_METHODS.get(node.attr) or camel(node.attr)}"
+        case ast.List() | ast.Tuple():
+            return f"[{', '.join(map(expression, node.elts))}]"
+        case ast.Starred():
+            return f"...{within(node.value)}"
+        case ast.Dict():
+            return entries((key.value, value) for key, value in zip(node.keys, node.values))
+        case ast.Subscript(slice=ast.Slice(lower=lower, upper=upper)):
+            ends = [expression(end) for end in (lower or ast.Constant(0), upper) if end]
+            return f"{within(node.value)}.slice({', '.join(ends)})"
+        case ast.Subscript(slice=ast.UnaryOp()):
+            return f"{within(node.value)}.at({expression(node.slice)})"
+        case ast.Subscript():
+            return f"{within(node.value)}[{expression(node.slice)}]"
+        case ast.Call():
+            return call(node)
+        case ast.BinOp():
+            sign, strength = _OPERATORS[type(node.op)]
+            return f"{within(node.left, strength)} {sign} {within(node.right, strength + 1)}"
+        case ast.UnaryOp():
+            return f"{_OPERATORS[type(node.op)]}{within(node.operand)}"
+        case ast.BoolOp():
+            return _OPERATORS[type(node.op)].join(within(one, 0.6) for one in node.values)
+        case ast.Compare(ops=[ast.In() | ast.NotIn()], comparators=[known]):
+            sign = "!" if isinstance(node.ops[0], ast.NotIn) else ""
+            return f"{sign}{within(known)}.includes({expression(node.left)})"
+        case ast.Compare(ops=[operator], comparators=[other]):
+            return f"{within(node.left, 1)} {_OPERATORS[type(operator)]} {within(other, 1)}"
+        case ast.IfExp():
+            return f"{within(node.test, 0.5)} ? {within(node.body, 0.5)} : {within(node.orelse, 0)}"
+        case ast.Lambda():
+            return f"({parameters(node.args)}) => {expression(node.body)}"
+        case ast.DictComp(generators=[part]):
+            pair = ast.List([node.key, node.value])
+            return f"Object.fromEntries({expression(ast.ListComp(pair, [part]))})"
+        case ast.ListComp(generators=[first, *others]):
+            if others:
+                inner = ast.ListComp(node.elt, others)
+                return f"{over(first)}.flatMap(({expression(first.target)}) => {expression(inner)})"
+            if ast.unparse(first.target) == ast.unparse(node.elt):
+                return over(first)
+            return f"{over(first)}.map(({expression(first.target)}) => {expression(node.elt)})"
+    raise ValueError(f"a picture holds {ast.unparse(node)!r}, which is not translated")
+
+
+def over(part):
+    conditions = "".join(f".filter(({expression(part.target)}) => {expression(one)})" for one in part.ifs)
+    return within(part.iter) + conditions
+
+
+def call(node):
+    given = [expression(one) for one in node.args]
+    if node.keywords:
+        given.append(entries((one.arg, one.value) for one in node.keywords))
+    if isinstance(node.func, ast.Name) and node.func.id in ("min", "max"):
+        return f"Math.{node.func.id}({'...' if len(given) == 1 else ''}{', '.join(given)})"
+    if isinstance(node.func, ast.Name) and node.func.id in _NAMES:
+        return _NAMES[node.func.id].format(", ".join(given))
+    return f"{within(node.func)}({', '.join(given)})"
+
+
+def entries(pairs):
+    """An object; what has the name of its key is not named twice."""
+    pairs = [(camel(key), expression(value)) for key, value in pairs]
+    return f"{{ {', '.join(key if key == value else f'{key}: {value}' for key, value in pairs)} }}"
+
+
+def quoted(text, quote):
+    return quote + text.replace("\\", "\\\\").replace(quote, "\\" + quote) + quote
+
+
+def filled(part):
+    if isinstance(part, ast.Constant):
+        return quoted(part.value, "`")[1:-1]
+    return f"${{{expression(part.value)}}}"
+
+
+def files():
+    """All that is written, by the names of the files."""
+    return {FOLDER / "js" / f"{name}_picture.js": translated(name) for name in PICTURES}
+
+
+if __name__ == "__main__":
+    for file, text in files().items():
+        file.write_text(text, "utf8")

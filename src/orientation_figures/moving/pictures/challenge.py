@@ -1,0 +1,39 @@
+"""The picture of a challenge."""
+
+import math
+
+from ..vectors import IDENTITY
+
+REACH = 1.25
+SIZE = 112
+BOX = (1.1, 0.8, 0.35)
+
+
+def picture(sheet, dcm, ghost=None):
+    """The box, and where another one stands that shows the goal or the way there."""
+    if ghost is not None:
+        sheet.faded = True
+        sheet.box(ghost, BOX, colour="E")
+        sheet.triad("E", ghost, labels=["", "", ""])
+        sheet.faded = False
+    sheet.box(dcm, BOX, colour="A")
+    sheet.triad("N", IDENTITY, length=REACH)
+    sheet.triad("A", dcm)
+
+
+_TASKS = {
+    "match": "The box is to be turned until its matrix is a given one; where that is, is not shown.",
+    "undo": "The box has been turned, and is to be turned back to where its triad lies on that of N.",
+    "ghost": "A second box, E, shows where three turns of a ghost have led; the axes of its turns are to be found.",
+}
+
+
+def drawing(figure, Sheet):
+    rows = [f"{name} at ({', '.join(f'{entry + 0.0:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
+    sheet = Sheet(
+        f"A box with the triad of A, and from the same origin the triad of N. {_TASKS[figure.task]} Along N, the unit "
+        f"vectors of A are {', '.join(rows).replace('-0.00', '0.00')}. A turn of "
+        f"{math.degrees(figure.remaining):.0f} degrees remains.",
+        scale=SIZE,
+    )
+    return sheet.paint(picture, figure.dcm, figure.goal if figure.task == "ghost" else None)

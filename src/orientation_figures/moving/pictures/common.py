@@ -1,0 +1,36 @@
+"""What several pictures have in common."""
+
+import math
+
+from orientation.direction_cosines import simple_dcm
+
+from ..vectors import dot, length, multiply, scale, subtract
+
+
+def around(sheet, axis, angle, start, *, colour="muted", head=False, kind=""):
+    """The way of the tip of ``start`` when it turns about the axis."""
+    foot = scale(dot(start, axis), axis)
+    arm = subtract(start, foot)
+    if length(arm) > 1e-6:
+        sheet.turn(axis, angle, arm, radius=length(arm), origin=foot, colour=colour, head=head, kind=kind)
+
+
+def chain(turns, kind="body", start=simple_dcm("z", 0.0)):
+    """The direction cosine matrices of the first frame and of every further one with respect to N."""
+    frames = [start]
+    for axis, angle in turns:
+        turn = simple_dcm(axis, angle)
+        # A turn about the frame's own unit vector multiplies from the left, one about N's from the right.
+        frames.append(multiply(turn, frames[-1]) if kind == "body" else multiply(frames[-1], turn))
+    return frames
+
+
+def partly(turns, share):
+    """The turns of a chain that has come part of the way: each begins and ends at rest."""
+    done = share * len(turns)
+    whole = min(math.floor(done + 1e-9), len(turns))
+    rest = max(0, done - whole)
+    if rest > 1e-9:
+        axis, angle = turns[whole]
+        return [*turns[:whole], [axis, rest * rest * (3 - 2 * rest) * angle]]
+    return turns[:whole]

@@ -1,0 +1,68 @@
+"""The picture of nine numbers that should be a direction cosine matrix."""
+
+import math
+
+from ..vectors import AXES, IDENTITY, add, cross, dot, length, scale, unit
+
+REACH = 1.2
+SIZE = 116
+SMALL = 1e-9
+
+
+def off(row):
+    """Return whether a row is not of length 1."""
+    return abs(dot(row, row) - 1) > SMALL
+
+
+def mirrored(rows):
+    """Return whether the rows are left-handed."""
+    return dot(cross(rows[0], rows[1]), rows[2]) < 0
+
+
+def picture(sheet, rows, nearest):
+    """``nearest`` is the nearest triad, or None where several are equally near."""
+    sheet.triad("N", IDENTITY, length=REACH)
+    if nearest is not None:
+        sheet.layer = -1
+        for row, measured in zip(nearest, rows):
+            sheet.arrow(row, colour="D")
+            sheet.line([row, measured], "D", "guide")
+    sheet.layer = 0
+    for k, row in enumerate(rows):
+        sheet.arrow(row, colour="A")
+        sheet.label_beyond(unit(row) if length(row) < 1 else row, rf"$\hat{{a}}_{AXES[k]}$", "A")
+    sheet.layer = 1
+    for row in rows:
+        if off(row):
+            # Where the tip should be, and what is missing or too much.
+            sheet.line([row, unit(row)], "B", "thick")
+            sheet.ring(unit(row), "B", 5)
+    for i, j in [[0, 1], [1, 2], [2, 0]]:
+        # The corner between two rows: a square, or what has become of it.
+        u, v = scale(0.2, unit(rows[i])), scale(0.2, unit(rows[j]))
+        fails = abs(dot(rows[i], rows[j])) > SMALL
+        sheet.line([u, add(u, v), v], "B" if fails else "muted", "thick" if fails else "")
+    # Where the third row of a right-handed matrix would point.
+    if mirrored(rows):
+        sheet.arrow(cross(rows[0], rows[1]), colour="B", label=r"$\hat{a}_x\times\hat{a}_y$")
+
+
+def drawing(figure, Sheet):
+    from ...drawing import view_from
+
+    rows = figure.matrix
+    try:
+        nearest = figure.nearest.dcm
+    except ValueError:  # several are equally near
+        nearest = None
+    said = ", ".join(f"a {name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", rows))
+    sheet = Sheet(
+        f"In the frame N three arrows that should be the unit vectors of a triad A: {said}. "
+        f"{figure.check() or 'They are a direction cosine matrix'}. "
+        + ("Dotted arrows show the nearest triad." if nearest is not None else "Several triads are equally near.")
+        + (" Small circles show where tips at length 1 would be." if any(map(off, rows)) else "")
+        + (" A further arrow shows a x cross a y, where a z should point." if mirrored(rows) else ""),
+        view=view_from(math.radians(40), math.radians(24)),
+        scale=SIZE,
+    )
+    return sheet.paint(picture, rows, nearest)

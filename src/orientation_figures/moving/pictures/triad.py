@@ -1,0 +1,34 @@
+"""The picture of a triad turned in a frame about an axis."""
+
+import math
+
+from ..vectors import IDENTITY, scale
+from .common import around
+
+REACH = 1.25  # of the arrows of N
+KNOB = 1.55  # of the line of the axis: labels keep clear of those of A
+SIZE = 112
+
+
+def picture(sheet, axis, angle, dcm):
+    knob = scale(KNOB, axis)
+    sheet.line([scale(-1, axis), knob], "accent", "guide")
+    for start in IDENTITY:
+        around(sheet, axis, angle, start)
+    sheet.triad("N", IDENTITY, length=REACH)
+    sheet.triad("A", dcm)
+    sheet.arrow(axis, colour="accent")
+    sheet.dot(knob, "accent", 5)
+    sheet.label(knob, r"$\hat{e}$", "accent", [15, -9])
+
+
+def drawing(figure, Sheet):
+    rows = [f"{name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
+    sheet = Sheet(
+        f"The triad of frame N, and from the same origin the triad of A: turned from N through theta, "
+        f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the components "
+        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}) in both frames. Along N, a "
+        f"{', a '.join(rows)}. Thin arcs show the way of each tip, all about e.",
+        scale=SIZE,
+    )
+    return sheet.paint(picture, figure.axis, figure.angle, figure.dcm)
