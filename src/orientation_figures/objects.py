@@ -1,11 +1,11 @@
-"""Figures and things that the book draws more than once: plane figures, an eye, a book, a camera gimbal."""
+"""Figures and things that the book draws more than once: plane figures, an eye, a book."""
 
 import numpy as np
 
 from orientation.direction_cosines import simple_dcm
 
 from .animation import Animation, one_after_another
-from .drawing import Drawing, looking_down, view_from
+from .drawing import Drawing, looking_down
 
 
 def draw_eye(drawing, point, size=40, colour="ink"):
@@ -97,80 +97,6 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
         shift=(-40, 32),
         label=rf"$\hat{{{old}}}_{shared} = \hat{{{new}}}_{shared}$",
     )
-
-
-GIMBAL_ALT = (
-    "A hand-held camera gimbal. The upright handgrip is frame A. On its top a motor turns link B about the "
-    "upright z axis through psi. At the back end of link B a motor turns link C about the lengthwise x axis "
-    "through theta. At the end of link C a motor turns the camera D about the crosswise y axis through phi. The "
-    "three axes meet in the camera. Beside the gimbal stand the triads of the four frames."
-)
-
-
-def gimbal_drawing(angles, alt=GIMBAL_ALT):
-    r"""Return a drawing of a hand-held camera gimbal, with the frames of its four parts beside it.
-
-    The handgrip is frame :math:`A`; :math:`B` turns about :math:`z`, :math:`C` about :math:`x` and the
-    camera :math:`D` about :math:`y`, so that
-    :math:`{}^D\mathbf{C}^A = \mathbf{C}_y(\varphi)\,\mathbf{C}_x(\theta)\,\mathbf{C}_z(\psi)`.
-
-    Parameters
-    ----------
-    angles : sequence of three floats
-        :math:`(\psi, \theta, \varphi)` in radians.
-    alt : str
-        The text that stands for the picture.
-
-    Returns
-    -------
-    Drawing
-    """
-    psi, theta, phi = (float(angle) for angle in angles)
-    A = np.eye(3)
-    B = simple_dcm("z", psi) @ A
-    C = simple_dcm("x", theta) @ B
-    D = simple_dcm("y", phi) @ C
-    drawing = Drawing(alt, view_from(np.radians(92), np.radians(24)), 112)
-
-    def place(frame, *points):
-        return np.array(points) @ frame
-
-    def tube(frame, colour, *points):
-        drawing.line(place(frame, *points), colour, "tube")
-
-    def motor(frame, colour, start, end, radius=0.19):
-        drawing.cylinder(*place(frame, start, end), radius, colour)
-
-    def joint(frame, axis, start, centre, name, sweep=3.6):
-        axis, start, centre = place(frame, axis, start, centre)
-        drawing.turn(axis, sweep, start, 0.38, rf"$\{name}$", centre)
-
-    # From the farthest part to the nearest; this order holds for turns of up to about half a right angle.
-    motor(A, "A", (0, 0, -2.1), (0, 0, -1.12), 0.15)
-    motor(A, "A", (0, 0, -1.12), (0, 0, -0.93), 0.24)
-    drawing.line(place(A, (0, 0, -0.9), (0, 0, 0.75)), "muted", "guide")
-    tube(B, "B", (0, 0, -0.86), (-1.45, 0, -0.86), (-1.45, 0, -0.12))
-    motor(B, "B", (-1.58, 0, 0), (-1.3, 0, 0))
-    joint(B, (1, 0, 0), (0, 0.97, 0.24), (-1.45, 0, 0), "theta", 2.6)
-    drawing.line(place(B, (-1.3, 0, 0), (0.9, 0, 0)), "muted", "guide")
-    tube(C, "C", (-1.24, 0, 0), (-1.1, 0, 0), (-1.1, 0.58, 0), (0, 0.58, 0))
-    drawing.box(D, (0.76, 0.5, 0.54), colour="D")
-    drawing.cylinder(*place(D, (0.38, 0, 0), (0.62, 0, 0)), 0.2, "D")
-    drawing.circle(D[0], 0.12 * (D[0] @ drawing.view[2] > 0), 0.62 * D[0], "D", "fill-38")
-    motor(C, "C", (0, 0.28, 0), (0, 0.6, 0))
-    drawing.line(place(C, (0, 0.6, 0), (0, 1.1, 0)), "muted", "guide")
-    joint(C, (0, 1, 0), (0.5, 0, -0.86), (0, 0.8, 0), "varphi")
-    joint(A, (0, 0, 1), (0.94, 0.34, 0), (0, 0, -1.03), "psi")
-    for letter, frame, point, shift in (
-        ("A", A, (0, 0, -1.65), (0, 0)),
-        ("B", B, (-0.8, 0, -0.86), (0, 20)),
-        ("C", C, (-0.9, 0.58, 0), (4, 22)),
-        ("D", D, (0, 0, 0.27), (0, -18)),
-    ):
-        drawing.label(place(frame, point)[0], f"${letter}$", letter, shift, 22)
-    for row, (letter, frame) in enumerate(zip("DCBA", (D, C, B, A))):
-        drawing.triad(letter, frame, 2.55 * drawing.view[0] + (1 - 1.2 * row) * drawing.view[1], 0.46)
-    return drawing
 
 
 TURNING_FRAMES_ALT = (

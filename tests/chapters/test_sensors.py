@@ -179,5 +179,5 @@ def walk(seed, car):
 
 @pytest.mark.long
 def test_the_bench_warns_of_no_walk_without_a_car():
-    """The chapter has six of them; of half of twenty it had warned, once."""
+    """The chapter has twenty of its own; of half of these it had warned, once."""
     assert sum(examine(walk(seed, False), "walk").light("filter") == "wrong" for seed in range(20)) <= 1

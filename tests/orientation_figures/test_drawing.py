@@ -17,7 +17,7 @@ from orientation import dcm_from_axis_angle, dcm_from_body_fixed, simple_dcm
 from orientation_figures import drawing as drawings
 from orientation_figures.animation import Animation, one_after_another
 from orientation_figures.drawing import BARB, HEADS, IN_SPACE, Drawing, looking_down, path_data, typeset, view_from
-from orientation_figures.objects import draw_book, draw_eye, gimbal_drawing, plane_drawing, turning_frames_animation
+from orientation_figures.objects import draw_book, draw_eye, plane_drawing, turning_frames_animation
 from orientation_figures.style import DARK, LIGHT, STROKES
 
 ALT = "A triad of unit vectors, drawn for a test: x to the left, y to the right, z up."
@@ -25,9 +25,21 @@ GIMBAL_ANGLES = np.radians((35, 25, 25))
 AXIS, ANGLE = np.array([0.36, -0.48, 0.8]), 2.1
 
 
+def gimbal_frames(angles):
+    """Triads of the four frames that three turns lead through, one above the other."""
+    A = np.eye(3)
+    B = simple_dcm("z", angles[0]) @ A
+    C = simple_dcm("x", angles[1]) @ B
+    D = simple_dcm("y", angles[2]) @ C
+    drawing = Drawing(ALT, view_from(np.radians(92), np.radians(24)), 112)
+    for row, (letter, frame) in enumerate(zip("DCBA", (D, C, B, A))):
+        drawing.triad(letter, frame, 2.55 * drawing.view[0] + (1 - 1.2 * row) * drawing.view[1], 0.46)
+    return drawing
+
+
 def gimbal_animation(angles=GIMBAL_ANGLES):
     return Animation(
-        lambda progress: gimbal_drawing(one_after_another(angles, progress)),
+        lambda progress: gimbal_frames(one_after_another(angles, progress)),
         frames=5,
         steps=[
             ("B, C and D turn about the z axis through psi", angles[0]),
@@ -48,7 +60,7 @@ def samples():
         "every": every,
         "plane": plane_drawing("y", 0.5, components=True),
         "against": plane_drawing("-y", 0.5),
-        "gimbal": gimbal_drawing(GIMBAL_ANGLES),
+        "gimbal": gimbal_frames(GIMBAL_ANGLES),
         "moving": gimbal_animation(),
         "turning": turning_frames_animation(),
     }
@@ -347,10 +359,10 @@ def test_key_frames_are_the_modules_orientations(name, sequence, angles, origins
 
 
 def test_the_gimbal_ends_where_its_matrix_says():
-    drawing = gimbal_drawing(GIMBAL_ANGLES)
+    drawing = gimbal_frames(GIMBAL_ANGLES)
     expected = 0.46 * drawing.on_sheet(dcm_from_body_fixed(GIMBAL_ANGLES, "zxy"))
     np.testing.assert_allclose(arrows(drawing, "D"), expected, atol=1e-9)
-    aligned = gimbal_drawing((0, 0, 0))
+    aligned = gimbal_frames((0, 0, 0))
     for letter in "ABCD":
         np.testing.assert_allclose(arrows(aligned, letter), 0.46 * aligned.on_sheet(np.eye(3)), atol=1e-9)
 

@@ -97,6 +97,8 @@ LICENCES_SAID = " ".join(f"{what}: {name}." for what, (name, _) in LICENCES.item
 PACKAGES = {
     Path(place).name: REPOSITORY / place for wheel in REGISTERED.get("wheels", ()) for place in wheel["packages"]
 }
+#: One moment for all that a run writes, where nothing else is known: two files of the same print are the same.
+STARTED = datetime.now(UTC)
 # Commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"
@@ -174,12 +176,12 @@ def edition(book: Path = Path()) -> Edition:
 
 
 def moment_of_sources() -> datetime:
-    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else now."""
+    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else when this run began."""
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
     if seconds is None and shutil.which("git"):
         command = ["git", "-C", str(REPOSITORY), "log", "-1", "--format=%ct"]
         seconds = subprocess.run(command, capture_output=True, text=True).stdout.strip()
-    return datetime.fromtimestamp(int(seconds), UTC) if seconds else datetime.now(UTC)
+    return datetime.fromtimestamp(int(seconds), UTC) if seconds else STARTED
 
 
 def fingerprint(*paths: Path) -> str:

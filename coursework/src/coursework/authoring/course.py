@@ -48,7 +48,7 @@ class Course(NamedTuple):
     chapter: str = ""
     solution: str = ""
     variants: str = ""
-    moved: dict = {}
+    moved: dict[str, str] = {}
 
 
 #: What a course may say that is no path.
@@ -63,7 +63,7 @@ DEFAULTS = {
 }
 
 
-def find_course(start="."):
+def find_course(start: str | Path = ".") -> Course:
     """The course of a folder: that of the nearest ``course.toml``, there or above.
 
     Raises
@@ -80,31 +80,31 @@ def find_course(start="."):
     return course
 
 
-def _course_around(start):
-    start = Path(start).resolve()
-    found = next((folder / FILE for folder in (start, *start.parents) if (folder / FILE).is_file()), None)
-    return found and _read(found)
+def _course_around(start: str | Path) -> Course | None:
+    first = Path(start).resolve()
+    found = next((folder / FILE for folder in (first, *first.parents) if (folder / FILE).is_file()), None)
+    return _read(found) if found else None
 
 
-def edition_of(folder):
+def edition_of(folder: str | Path) -> str:
     """The edition of the course that a folder belongs to; empty where it belongs to none."""
     course = _course_around(folder)
     return course.edition if course else ""
 
 
-def gives_by_name(folder):
+def gives_by_name(folder: str | Path) -> bool:
     """Whether the course of a folder gives variants by their names."""
     course = _course_around(folder)
-    return bool(course) and course.variants == BY_NAME
+    return course is not None and course.variants == BY_NAME
 
 
-def links_of(folder):
+def links_of(folder: str | Path) -> dict[str, str]:
     """The addresses that the course of a folder names, by what they lead to."""
     course = _course_around(folder)
     return {name: address for name in ("chapter", "solution") if course and (address := getattr(course, name))}
 
 
-def _read(path):
+def _read(path: Path) -> Course:
     try:
         said = tomllib.loads(path.read_text("utf8"))
     except ValueError as error:

@@ -12,9 +12,11 @@ import itertools
 import json
 import re
 import textwrap
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
@@ -38,7 +40,7 @@ PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 LONGEST_WORD = 40
 #: The file beside the sources in which the selftest writes after how many tries each question was guessed, if it was.
 MEASURED = "strengths.json"
-FORMAT_OF_MEASURED = 1
+FORMAT_OF_MEASURED = 2
 
 SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
 HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
@@ -74,10 +76,10 @@ class Source(NamedTuple):
     """A notebook with solutions, after its cells were run."""
 
     name: str
-    notebook: dict
-    questions: dict
-    figures: dict
-    rules: dict
+    notebook: Any
+    questions: dict[str, author.AuthoredQuestion]
+    figures: dict[int, Any]
+    rules: dict[str, Rule]
     asks_who: bool
 
 
@@ -113,8 +115,18 @@ def digest_of_code():
     return digest.hexdigest()
 
 
-def measured_strengths(sources):
-    """After how many tries the attack of the selftest guessed each question, by name: 0 where it did not.
+def names_asked(path: str | Path) -> dict[str, str]:
+    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
+    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
+    cells = [
+        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
+        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
+    ]
+    return checked_names(SimpleNamespace(cells=cells))
+
+
+def measured_strengths(sources: str | Path) -> dict[str, int]:
+    """After how many tries the attack guessed each question in its weakest variant, by name: 0 where it did not.
 
     A question that is not named there has not been attacked yet.
 
@@ -123,16 +135,33 @@ def measured_strengths(sources):
     AuthorError
         The file is of another version of coursework.
     """
+    measured = measured_questions(sources)
+    return {name: min((count for count in one["tries"] if count), default=0) for name, one in measured.items()}
+
+
+def measured_questions(sources: str | Path) -> dict[str, dict[str, Any]]:
+    """What was measured of each question by name, as :func:`coursework.authoring.selftest.measured_of` gives it."""
     file = Path(sources, MEASURED)
     if not file.is_file():
         return {}
     measured = json.loads(file.read_text("utf8"))
+    if measured.get("format") == 1:  # of the first variant alone, by an attack that nobody knows any more
+        return {
+            name: {"worth": 1, "digest": "", "tries": [count], "way": ""} for name, count in measured["tries"].items()
+        }
     if measured.get("format") != FORMAT_OF_MEASURED:
-        raise author.AuthorError(f"{file} is of another version of coursework: run `coursework selftest` anew.")
-    return measured["tries"]
+        raise author.AuthorError(f"{file} is of another version of coursework: delete it, and release anew.")
+    questions: dict[str, dict[str, Any]] = measured["questions"]
+    return questions
 
 
-def read_source(path, variant=0, edition="", only=None, pictures=None):
+def read_source(
+    path: str | Path,
+    variant: int = 0,
+    edition: str = "",
+    only: Collection[str] | None = None,
+    pictures: bool | None = None,
+) -> Source:
     """Run a notebook with solutions and give its questions.
 
     Parameters
@@ -351,14 +380,15 @@ def variant_drawn(drawn, text, number=0, count=1, edition=""):
     )
 
 
-def texts_of_questions(notebook, figures=None):
+def texts_of_questions(notebook: Any, figures: Mapping[int, Any] | None = None) -> dict[str, str]:
     """The text of each question as it stands in the source: the Markdown between the check before it and its own.
 
     ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
     """
-    texts, above = {}, []
+    texts: dict[str, str] = {}
+    above, figures = [], figures or {}
     for number, cell in enumerate(notebook.cells):
-        if number in (figures or {}):
+        if number in figures:
             above.append(image(figures[number].picture(), figures[number].alt))
         elif cell.cell_type == "markdown":
             above.append(cell.source)
@@ -470,9 +500,9 @@ class _Uses(ast.NodeVisitor):
         self.generic_visit(node)
 
 
-def checked_names(notebook):
+def checked_names(notebook: Any) -> dict[str, str]:
     """The name of the answer of each question, from the calls of ``check``."""
-    found = {}
+    found: dict[str, str] = {}
     for cell in notebook.cells:
         if cell.cell_type == "code" and "check" in cell.source:
             for node in ast.walk(ast.parse(cell.source)):

@@ -4,13 +4,16 @@ import json
 import os
 import random
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from .identity import forgotten, identity
 from .plain import NotPlain, to_plain
-from .question import Locker, Place
+from .question import Locker, Place, Question, Sealed
 from .questions import (
+    OTHER_NUMBERS,
     code_text,
     find_question,
     judge,
@@ -38,7 +41,11 @@ MOST_ANSWERS = 100
 #: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are the same.
 MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
-NO_HELP = ("", "rounded too far")
+NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
+
+
+#: What the record beside the notebook knows of a question: JSON that a student may have written.
+Entry = dict[str, Any]
 
 
 class NotCorrect(AssertionError):
@@ -76,7 +83,7 @@ def check(name: str, answer: object) -> Reply:
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:
         reply.solution = solution_on(sealed, reply.opened.solution)
     entry = _remember(name, student, reply)
-    if reply.outcome == "wrong" and entry:
+    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS and entry:
         _show_next_hint(sealed, student, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
@@ -134,7 +141,7 @@ def worked_solution(name: str, code: str) -> Reply:
     return reply
 
 
-def _note_help(name, student, kind):
+def _note_help(name: str, student: str, kind: str) -> None:
     """Write down that somebody had help; after the right answer it is none."""
     record = _read_progress()
     entry = record[name] = _entry(record, name, student)
@@ -144,7 +151,7 @@ def _note_help(name, student, kind):
         _write_progress(record)
 
 
-def _offer_sibling(reply, question, help_had):
+def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
     """Say of the siblings of a question what concerns one who had help, or who has solved one without."""
     asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.variants)
@@ -164,9 +171,9 @@ def _offer_sibling(reply, question, help_had):
         )
 
 
-def _steps(sealed, entry):
+def _steps(sealed: Sealed, entry: Entry) -> list[str]:
     """All hints of a question: those of the last mistake, and then the ladder."""
-    steps = []
+    steps: list[str] = []
     if entry.get("page"):
         with suppress(ValueError, LookupError, TypeError):  # the page is of an earlier release of the question
             locker = Locker.from_json(open_page(sealed, Place(*entry["page"])), "A page")
@@ -174,12 +181,12 @@ def _steps(sealed, entry):
     return steps + [unseal(step, rung_key(sealed.question, number)) for number, step in enumerate(sealed.ladder)]
 
 
-def _earned(entry):
+def _earned(entry: Entry) -> int:
     """A first wrong answer gets its message; each other one earns a hint."""
     return max(0, len(entry.get("answers", [])) - 1)
 
 
-def _show_next_hint(sealed, student, reply, entry):
+def _show_next_hint(sealed: Sealed, student: str, reply: Reply, entry: Entry) -> None:
     steps, earned = _steps(sealed, entry), _earned(entry)
     if steps[:earned]:
         _note_help(reply.question, student, "hint")
@@ -211,13 +218,11 @@ def progress() -> Reply:
     return Reply("progress", "correct" if len(right) == len(record) else "hints", "", lines)
 
 
-def _of_notebook(notebook, record, right):
-    try:
-        questions = notebook_questions(notebook)
-    except RuntimeError:
-        questions = {}
-    worths = {name: sealed.worth for name, sealed in questions.items()}
-    questions = worths or {name: 1 for name in record if name.startswith(f"{notebook}/")}
+def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) -> str:
+    questions: dict[str, float] = {}
+    with suppress(RuntimeError):  # of another release
+        questions = {name: sealed.worth for name, sealed in notebook_questions(notebook).items()}
+    questions = questions or {name: 1 for name in record if name.startswith(f"{notebook}/")}
     points = sum(questions.values())
     earned = sum(worth for name, worth in questions.items() if name in right)
     taken_down = {name for name in questions if record.get(name, {}).get("outcome") == "recorded"}
@@ -230,7 +235,7 @@ def _of_notebook(notebook, record, right):
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
 
 
-def _right_with_help(known, right, student):
+def _right_with_help(known: Mapping[str, Entry], right: set[str], student: str) -> list[str]:
     """The questions whose points are not all earned, since they were right with help and no sibling without."""
     alone = {without_sibling(name)[0] for name, entry in known.items() if _is_alone(name, entry)}
     found = []
@@ -244,13 +249,14 @@ def _right_with_help(known, right, student):
     return [f"Right with help, so that a sibling earns the rest: {', '.join(found)}."] if found else []
 
 
-def _is_alone(name, entry):
+def _is_alone(name: str, entry: Entry) -> bool:
     """Whether this is a sibling that was solved without help."""
     return without_sibling(name)[1] > 0 and entry["outcome"] == "correct" and not entry.get("help")
 
 
-def _worth_another_look(record):
-    today, found = time.time(), []
+def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
+    today = time.time()
+    found: list[str] = []
     for name, entry in sorted(record.items()):
         days = int((today - entry.get("mistake at", today)) // DAY)
         if days >= REVIEW_AFTER and entry.get("mistake"):
@@ -258,7 +264,7 @@ def _worth_another_look(record):
     return [f"Worth another look, since you made a mistake there: {', '.join(found)}."] if found else []
 
 
-def _entry(record, name, student):
+def _entry(record: Mapping[str, Any], name: str, student: str) -> Entry:
     """What the record knows of a question in a student's variant; that of others stays beside it."""
     entry, own = record.get(name), _own_number(name, student)
     entry = dict(entry) if isinstance(entry, dict) else {}
@@ -272,14 +278,14 @@ def _entry(record, name, student):
     return {**found, **({"variant": own} if own else {}), OTHERS: others}
 
 
-def _own_number(name, student):
+def _own_number(name: str, student: str) -> int:
     try:
         return own_number(name, student)
     except (LookupError, RuntimeError):
         return 0  # a question of another release
 
 
-def _read_progress():
+def _read_progress() -> dict[str, Any]:
     try:
         record = json.loads(PROGRESS.read_text("utf8"))
         return record if isinstance(record, dict) else {}
@@ -287,7 +293,7 @@ def _read_progress():
         return {}
 
 
-def _write_progress(record):
+def _write_progress(record: Mapping[str, Any]) -> None:
     """Write the record; a folder that cannot be written to costs the record and nothing else."""
     try:
         PROGRESS.parent.mkdir(exist_ok=True)
@@ -298,7 +304,7 @@ def _write_progress(record):
         pass
 
 
-def _remember(name, student, reply):
+def _remember(name: str, student: str, reply: Reply) -> Entry:
     """Write down the outcome, and where hints can be read again: never the hints themselves."""
     record = _read_progress()
     entry = _entry(record, name, student)
@@ -310,7 +316,7 @@ def _remember(name, student, reply):
         if reply.outcome == "wrong" and reply.note not in NO_HELP:
             entry.setdefault("help", "mistake")
     entry["note"] = reply.note
-    if reply.outcome == "wrong":
+    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS:  # which is no try at one's own
         answers = entry.setdefault("answers", [])
         if isinstance(answers, list) and reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers.append(reply.answer)
@@ -328,6 +334,6 @@ def _remember(name, student, reply):
     return entry
 
 
-def _page_of(locker):
+def _page_of(locker: Locker | None) -> list[int | str]:
     """Where it is read again what an answer opened."""
-    return list(locker.place[:2])
+    return [locker.place.page, locker.place.key] if locker and locker.place else []

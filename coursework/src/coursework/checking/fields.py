@@ -4,6 +4,8 @@ A reader takes what :func:`json.loads` gave, and where it stood, and gives the v
 keeps a number as it is, so that what is written again is the same to the byte.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable
 from typing import TypeVar, cast
 

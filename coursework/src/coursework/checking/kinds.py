@@ -11,6 +11,7 @@ from typing import Any
 from . import mistakes
 from .evaluate import MP
 from .kind import Kind
+from .plain import Plain
 from .question import Question
 from .units import unit
 
@@ -57,7 +58,7 @@ def shape_fault(wanted: str, value: list[Any], got: str | None = None) -> Fault:
     return Fault("shape", f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {got or _describe(value)}.")
 
 
-def _describe(value):
+def _describe(value: list[Any]) -> str:
     kind = value[0]
     if kind == "matrix":
         return f"a matrix of {value[1]} × {value[2]}"
@@ -82,7 +83,7 @@ def _describe(value):
     }[kind]
 
 
-def _holding(whole, part):
+def _holding(whole: list[Any], part: list[Any]) -> str:
     """What a list is, one part of which is of another kind than is asked for."""
     if part[0] == "blank" or is_blank(part):
         return "a list that is still blank in part"
@@ -91,18 +92,18 @@ def _holding(whole, part):
     return f"a list with {len(whole[1])} entries, one of which is {_describe(part)}"
 
 
-def leaf(value, wanted):
+def leaf(value: list[Any], wanted: str) -> int:
     """The one expression that a value is; a list or matrix of one entry is that entry."""
     if value[0] == "matrix" and value[1] == value[2] == 1:
-        return value[3][0]
+        return int(value[3][0])
     if value[0] == "list" and len(value[1]) == 1:
         return leaf(value[1][0], wanted)
     if value[0] != "expression":
         raise shape_fault(wanted, value)
-    return value[1]
+    return int(value[1])
 
 
-def _leaf_of(whole, part, wanted):
+def _leaf_of(whole: list[Any], part: list[Any], wanted: str) -> int:
     """The one expression that a part of a list is."""
     try:
         return leaf(part, wanted)
@@ -111,13 +112,13 @@ def _leaf_of(whole, part, wanted):
         raise shape_fault(wanted, whole, _holding(whole, part) + said) from None
 
 
-def _expression(question, value):
+def _expression(question: Question, value: list[Any]) -> list[int]:
     return [leaf(value, "A single expression")]
 
 
-def components(value, length, wanted):
+def components(value: list[Any], length: int, wanted: str) -> list[int]:
     if value[0] == "matrix" and sorted(value[1:3]) == sorted((1, length)):
-        return value[3]
+        return list(value[3])
     if value[0] == "list" and len(value[1]) == length:
         return [_leaf_of(value, part, wanted) for part in value[1]]
     if value[0] == "list" and len(value[1]) == 1 and value[1][0][0] == "list":
@@ -125,19 +126,19 @@ def components(value, length, wanted):
     raise shape_fault(wanted, value)
 
 
-def _measurement(question, value):
+def _measurement(question: Question, value: list[Any]) -> list[int]:
     wanted = "A number and its unit, such as `(3.2, 'N m')`,"
     if value[0] != "list" or len(value[1]) != 2 or value[1][1][0] != "text":
         raise shape_fault(wanted, value)
     return [leaf(value[1][0], wanted)]
 
 
-def scale_of(answer):
+def scale_of(answer: Any) -> dict[str, str]:
     """What the sealed part of a measurement tells of its unit: how large it is, and not what it measures."""
     return {"scale": MP.nstr(unit(answer[1]).size, 15)}
 
 
-def _vector(question, value):
+def _vector(question: Question, value: list[Any]) -> list[int]:
     length = question.length or 3
     frame = question.frames[0] if question.frames else None
     if value[0] == "vector":
@@ -150,15 +151,15 @@ def _vector(question, value):
     return components(value, length, f"A list of {length} components")
 
 
-def row_entries(value, rows, columns, wanted):
+def row_entries(value: list[Any], rows: int, columns: int, wanted: str) -> list[int]:
     if value[0] == "matrix" and tuple(value[1:3]) == (rows, columns):
-        return value[3]
+        return list(value[3])
     if value[0] == "list" and len(value[1]) == rows:
         return [entry for row in value[1] for entry in _row(value, row, columns, wanted)]
     raise shape_fault(wanted, value)
 
 
-def _row(whole, row, columns, wanted):
+def _row(whole: list[Any], row: list[Any], columns: int, wanted: str) -> list[int]:
     if row[0] == "list" and len(row[1]) not in (1, columns) and not is_blank(row):
         described = _describe(whole)
         uneven = f"a list of rows, one of which has {len(row[1])} entries"
@@ -168,7 +169,7 @@ def _row(whole, row, columns, wanted):
     raise shape_fault(wanted, whole, _holding(whole, row))
 
 
-def _matrix(question, value):
+def _matrix(question: Question, value: list[Any]) -> list[int]:
     rows, columns = question.shape or (3, 3)
     return row_entries(value, rows, columns, f"A matrix of {rows} × {columns}")
 
@@ -176,16 +177,16 @@ def _matrix(question, value):
 # --- answers in words ---------------------------------------------------------------------------
 
 
-def word(plain, wanted):
+def word(plain: Plain, wanted: str) -> str:
     value = plain["value"]
     if value[0] == "list" and value[1] and all(part[0] == "text" for part in value[1]):
         return "".join(part[1] for part in value[1])
     if value[0] != "text":
         raise shape_fault(wanted, value)
-    return value[1]
+    return str(value[1])
 
 
-def _spelled(plain):
+def _spelled(plain: Plain) -> str | None:
     """The word that is meant by a number or a symbol: ``-1`` for ``'-1'``, the symbol ``-i`` for ``'-i'``."""
     if plain["value"][0] != "expression":
         return None
@@ -200,7 +201,7 @@ def _spelled(plain):
     return node[1] if node[0] in ("integer", "symbol") else None
 
 
-def _choice(question, plain):
+def _choice(question: Question, plain: Plain) -> str:
     given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks,")
     given = " ".join(given.split())
     # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left out.
@@ -213,7 +214,7 @@ def _choice(question, plain):
     return found[0]
 
 
-def _truths(question, plain):
+def _truths(question: Question, plain: Plain) -> str:
     value, length = plain["value"], question.length
     wanted = f"A list of {length} truth values, `True` or `False`,"
     if value[0] != "list" or len(value[1]) != length:
@@ -231,7 +232,7 @@ def _truths(question, plain):
     return "".join("T" if part else "F" for part in given)
 
 
-def _words(question, plain):
+def _words(question: Question, plain: Plain) -> str:
     value, length, options = plain["value"], question.length, question.options
     wanted = f"A list of {length} words, each one of {listed(options)},"
     if value[0] != "list" or len(value[1]) != length:
@@ -242,7 +243,7 @@ def _words(question, plain):
     return PARTS["words"].join(_choice(question, {**plain, "value": part}) for part in value[1])
 
 
-def _order(question, plain):
+def _order(question: Question, plain: Plain) -> str:
     value, options = plain["value"], question.options
     wanted = f"A list with each of {listed(options)} once"
     if value[0] != "list" or len(value[1]) != len(options):
@@ -254,7 +255,7 @@ def _order(question, plain):
     return PARTS["order"].join(parts)
 
 
-def _free_text(question, plain):
+def _free_text(question: Question, plain: Plain) -> str:
     text = word(plain, "A text").strip()
     if not text:
         raise Blank
@@ -287,20 +288,20 @@ def slack(question: Question) -> Number:
     return MP.mpf("1e-9") if question.tolerance is None else 6 * MP.mpf(str(question.tolerance))
 
 
-def short(number):
-    return MP.nstr(number, 3)
+def short(number: Number) -> str:
+    return str(MP.nstr(number, 3))
 
 
-def length_in_words(length):
+def length_in_words(length: Number) -> str:
     """A length that should be 1, with as many digits as show that it is not."""
     for digits in range(3, 16):
-        text = MP.nstr(length, digits, strip_zeros=True)
+        text = str(MP.nstr(length, digits, strip_zeros=True))
         if MP.mpf(text) != 1:
             return text.removesuffix(".0")
-    return MP.nstr(length, 20)
+    return str(MP.nstr(length, 20))
 
 
-def _unit_vector_fault(question, numbers):
+def _unit_vector_fault(question: Question, numbers: list[Number]) -> Fault | None:
     if question.unit_vector:
         length = FUNCTIONS.norm(*numbers)
         if abs(length - 1) > slack(question):
@@ -311,7 +312,7 @@ def _unit_vector_fault(question, numbers):
     return None
 
 
-def transposed(question, numbers):
+def transposed(question: Question, numbers: list[Number]) -> list[Number] | None:
     """The entries of the transpose; ``None`` where it is of another shape."""
     rows, columns = question.shape or (3, 3)
     if rows != columns:

@@ -10,10 +10,11 @@ The messages are no secret; which of them a question knows, and for what answers
 import hashlib
 import itertools
 import json
-from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 from .fields import Json
+from .question import Question
 from .sealing import MISTAKE
 
 #: Factors that are forgotten or put in twice, as they are said.
@@ -30,11 +31,11 @@ class Mistake(NamedTuple):
     """A note for statistics, what the message needs to know, and the answer that the mistake leads to."""
 
     note: str
-    details: dict
+    details: dict[str, Json]
     answer: object
 
 
-def _only_the_transpose(question):
+def _only_the_transpose(question: Question) -> str:
     return "This is the transpose of what the question asks for."
 
 
@@ -88,7 +89,7 @@ def short_name(note: str, details: Mapping[str, Json]) -> bytes:
 # --- what each mistake does to an answer --------------------------------------------------------
 
 
-def as_matrix(answer):
+def as_matrix(answer: Any) -> Any:
     import sympy
 
     if hasattr(answer, "dcm"):
@@ -99,7 +100,7 @@ def as_matrix(answer):
     return sympy.Matrix(answer)
 
 
-def _substitutions(answer):
+def _substitutions(answer: Any) -> Iterator[tuple[str, dict[str, Json], dict[Any, Any]]]:
     """Mistakes that change a symbol for its negative, or two symbols for each other."""
     free = sorted(_unknowns(answer), key=str)
     for symbol in free:
@@ -112,28 +113,28 @@ def _substitutions(answer):
         )
 
 
-def _unknowns(answer):
+def _unknowns(answer: Any) -> set[Any]:
     from sympy.core.function import AppliedUndef
 
-    functions = answer.atoms(AppliedUndef)
+    functions = set(answer.atoms(AppliedUndef))
     times = {argument for function in functions for argument in function.args}
-    return functions | (answer.free_symbols - times)
+    return functions | (set(answer.free_symbols) - times)
 
 
-def _plain_name(symbol):
-    return getattr(symbol, "name", None) or symbol.func.__name__
+def _plain_name(symbol: Any) -> str:
+    return str(getattr(symbol, "name", None) or symbol.func.__name__)
 
 
-def _replace(answer, changes):
+def _replace(answer: Any, changes: Mapping[Any, Any]) -> Any:
     return answer.xreplace(changes)
 
 
-def of_symbols(question, answer):
+def of_symbols(question: Question, answer: Any) -> Iterator[Mistake]:
     for note, details, changes in _substitutions(answer):
         yield Mistake(note, details, _replace(answer, changes))
 
 
-def of_matrix(question, answer, turns, turned):
+def of_matrix(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     answer = as_matrix(answer)
     if answer.rows == answer.cols:
         yield Mistake("transposed", {}, answer.T)
@@ -142,7 +143,7 @@ def of_matrix(question, answer, turns, turned):
     yield from of_symbols(question, answer)
 
 
-def of_parts(question, answer, turns, turned):
+def of_parts(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     """One part of a list of words or truth values that is another than the right one."""
     answer = list(answer)
     if not 3 <= len(answer) < len(NUMBERS):
@@ -153,7 +154,7 @@ def of_parts(question, answer, turns, turned):
                 yield Mistake("one wrong", {"number": len(answer)}, answer[:place] + [option] + answer[place + 1 :])
 
 
-def of_order(question, answer, turns, turned):
+def of_order(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     """The order turned round, and two neighbours in each other's place."""
     answer = list(answer)
     yield Mistake("turned round", {}, answer[::-1])
@@ -163,7 +164,7 @@ def of_order(question, answer, turns, turned):
             yield Mistake("two interchanged", {}, [*answer[:place], second, first, *answer[place + 2 :]])
 
 
-def of_measurement(question, answer, turns, turned):
+def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     """What is mixed up in a number, with the unit as it is; and a prefix that is lost."""
     import sympy
 
@@ -175,7 +176,7 @@ def of_measurement(question, answer, turns, turned):
         yield Mistake("power of ten", {"power": power}, (sympy.sympify(number) * sympy.Integer(10) ** power, unit))
 
 
-def of_factors(answer):
+def of_factors(answer: Any) -> Iterator[Mistake]:
     """The answer times a small factor."""
     import sympy
 
@@ -183,7 +184,7 @@ def of_factors(answer):
         yield Mistake("factor", {"factor": name}, sympy.Rational(factor) * answer)
 
 
-def of_vector(question, answer, turns, turned):
+def of_vector(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     import sympy
 
     if hasattr(answer, "to_matrix"):
@@ -199,7 +200,7 @@ def of_vector(question, answer, turns, turned):
     yield from of_symbols(question, answer)
 
 
-def of_expression(question, answer, turns, turned):
+def of_expression(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     import sympy
 
     answer = sympy.sympify(answer)

@@ -41,11 +41,11 @@ class UnknownUnit(ValueError):
 class Unit(NamedTuple):
     """How large a unit is in base units, and their exponents."""
 
-    size: object
-    exponents: tuple
+    size: Any
+    exponents: tuple[int, ...]
 
 
-def unit(text: str) -> Any:
+def unit(text: str) -> Unit:
     """Read a unit.
 
     Raises
@@ -88,7 +88,7 @@ def unit(text: str) -> Any:
     return Unit(size, tuple(exponents))
 
 
-def _named(name):
+def _named(name: str) -> Unit:
     """One unit, with its prefix."""
     whole = {**WITH_PREFIX, **WITHOUT_PREFIX}
     if name in whole:
@@ -100,7 +100,7 @@ def _named(name):
     raise UnknownUnit(name[:20])
 
 
-def _unit(about):
+def _unit(about: tuple[Any, tuple[int, ...]]) -> Unit:
     size, exponents = about
     size = MP.mpf(size.numerator) / size.denominator if isinstance(size, Fraction) else MP.mpf(size)
     return Unit(size, (*exponents, *[0] * (len(BASE) - len(exponents))))

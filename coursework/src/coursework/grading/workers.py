@@ -13,23 +13,31 @@ import signal
 import sys
 import traceback
 import warnings
+from collections.abc import Callable, Collection, Iterable, Iterator
 from multiprocessing.connection import wait
+from typing import Any
 
 PR_SET_PDEATHSIG = 1
 WAIT_FOR_END = 30  # seconds for a process to end what it started
 ATTEMPTS_OF_A_TASK = 3  # how often a task is given out when a process ends under it
 
 
-def processors():
+def processors() -> int:
     """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class TaskLost(RuntimeError):
     """Process after process ended while it was at the same task."""
 
 
-def side_by_side(tasks, number, prepare, errors=(), lost=None):
+def side_by_side(
+    tasks: Iterable[Any],
+    number: int,
+    prepare: Callable[[contextlib.ExitStack], Callable[[Any], Any]],
+    errors: Collection[type[Exception]] = (),
+    lost: Callable[[Any], Any] | None = None,
+) -> Iterator[Any]:
     """Do tasks in several processes; give what comes of them as it comes.
 
     Parameters

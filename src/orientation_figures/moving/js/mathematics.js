@@ -169,8 +169,6 @@ export const axisAngleFromDcm = (dcm) => axisAngleFromQuaternion(quaternionFromD
 
 // Quaternions.
 
-export const conjugate = ([s, x, y, z]) => [s, -x, -y, -z];
-
 // Along the great arc from one unit quaternion to another at constant speed. For the short way turn the
 // sign of one where their dot product is negative. Opposite ones have no one arc between them.
 export function slerp(from, to, part) {

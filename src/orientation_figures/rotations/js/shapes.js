@@ -34,7 +34,8 @@ class Surface {
 
 const SHAPES = {
   arc(surface, [radius, thick, from, to]) {
-    surface.net(Math.ceil((to - from) / 0.09), 14, (i, j) => {
+    // A small or a thin one needs few faces to look round.
+    surface.net(Math.ceil((to - from) / (radius > 0.5 ? 0.09 : 0.26)), thick > 0.04 ? 14 : 6, (i, j) => {
       const a = from + (to - from) * i, b = -TURN * j, out = [Math.cos(a), Math.sin(a), 0];
       const normal = add(scale(Math.cos(b), out), [0, 0, Math.sin(b)]);
       return [add(scale(radius, out), scale(thick, normal)), normal];
@@ -51,7 +52,7 @@ const SHAPES = {
     if (top > 0) surface.flat(ring(top, 1));
   },
   ball(surface) {
-    surface.net(14, 22, (i, j) => {
+    surface.net(10, 16, (i, j) => {
       const a = Math.PI * i, b = TURN * j, normal = [Math.sin(a) * Math.cos(b), Math.sin(a) * Math.sin(b), Math.cos(a)];
       return [normal, normal];
     });

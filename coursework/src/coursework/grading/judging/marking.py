@@ -13,27 +13,27 @@ import io
 import itertools
 import json
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 from ...authoring.author import AuthoredQuestion, AuthorError
-from ...authoring.source import MEASURED, checked_names, measured_strengths, read_source, texts_of_questions
+from ...authoring.source import MEASURED, measured_strengths, names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
+from ...checking.fields import Json
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
-from ...checking.plain import NotPlain, read_plain
+from ...checking.plain import NotPlain, Plain, read_plain
 from ...checking.plugins import packages
 from ...checking.question import Locker
-from ...checking.questions import compare
+from ...checking.questions import OTHER_NUMBERS, compare
 from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
-from ..record import MISSING, Answer, Mark, Record, Remembered
+from ..record import MISSING, Answer, Case, Mark, Record, Remembered
 from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
 from . import secret as in_secret
-from .cases import Case, Contracts, asked_of, case_by_rule, case_of, questions_in
+from .cases import Contracts, asked_of, case_by_rule, case_of, questions_in
 from .contract import Asked, Contract, variants_as_json
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
@@ -63,23 +63,13 @@ CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 # --- what is known of each question -------------------------------------------------------------
 
 
-def names_asked(path):
-    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
-    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
-    cells = [
-        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
-        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
-    ]
-    return checked_names(SimpleNamespace(cells=cells))
-
-
-def questions_of(path, secret, edition=""):
+def questions_of(path: str | Path, secret: bytes, edition: str = "") -> dict[str, tuple[Contract, ...]]:
     """All that marks need of the questions of a notebook with solutions: the contracts of all variants, by name."""
     with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
         return _questions_of(path, secret, edition)
 
 
-def _questions_of(path, secret, edition):
+def _questions_of(path: str | Path, secret: bytes, edition: str) -> dict[str, tuple[Contract, ...]]:
     measured = measured_strengths(Path(path).parent)
     source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
     texts = texts_of_questions(source.notebook, source.figures)
@@ -168,28 +158,30 @@ def contract_of(question: AuthoredQuestion, secret: bytes, guessable: int | None
     return Contract.from_json(json.loads(json.dumps(found.as_json())), question.name).with_version()
 
 
-def _canonical_of(question):
+def _canonical_of(question: AuthoredQuestion) -> tuple[str, ...] | None:
     reading = read(question.public, question.plain)
     if reading.text is not None or question.public.tolerance is not None:
         return None
     return tuple(MP.nstr(number, 30) for number in canonical(question.public, reading))
 
 
-def load_questions(paths, kept, secret, edition=""):
+def load_questions(
+    paths: Iterable[str | Path], kept: str | Path, secret: bytes, edition: str = ""
+) -> dict[str, tuple[Contract, ...]]:
     """The questions of several notebooks with solutions, by name.
 
     What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
     notebook and from the versions of the software.
     """
-    places = {}
+    places: dict[Path, Path] = {}
     for path in map(Path, paths):
-        measured = path.with_name(MEASURED)
-        measured = measured.read_bytes() if measured.is_file() else b""
+        file = path.with_name(MEASURED)
+        measured = file.read_bytes() if file.is_file() else b""
         ours = hashlib.sha256(json.dumps(software()).encode() + secret + measured).digest()
         depends = hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]
         places[path] = Path(kept) / f"{path.stem}-{depends}.json"
 
-    def work_out(path):
+    def work_out(path: Path) -> None:
         found = questions_of(path, secret, edition)
         as_json = {name: variants_as_json(variants) for name, variants in found.items()}
         write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
@@ -202,20 +194,20 @@ def load_questions(paths, kept, secret, edition=""):
             importlib.import_module(module)  # once, and not in each process
         number = min(len(missing), processors())
         list(side_by_side(map(str, missing), number, lambda stack: lambda path: work_out(Path(path)), [AuthorError]))
-    found = {}
+    found: dict[str, tuple[Contract, ...]] = {}
     for place in places.values():
         found.update(questions_in(place))
     return found
 
 
-def asked_of_sandbox(questions):
+def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, Json]]:
     """What the sandbox is told of each question: the answer's name and the calls of a function, no more.
 
     Of the secret calls a notebook learns when it has handed in everything else.
     """
     variables = [contract.variable for contract in questions.values()]
 
-    def calls(contract, arguments):
+    def calls(contract: Contract, arguments: tuple[list[Json], ...]) -> Json:
         is_called = contract.question.kind == "function" and arguments
         return {"arguments": list(arguments), "as": contract.question.takes} if is_called else None
 
@@ -245,7 +237,7 @@ def was_limited(record: Record) -> bool:
 # --- one answer ---------------------------------------------------------------------------------
 
 
-def mark(name, question, answer, finished=True, limited=False):
+def mark(name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False) -> Mark:
     """Judge what the sandbox says of an answer.
 
     Parameters
@@ -273,20 +265,21 @@ def mark(name, question, answer, finished=True, limited=False):
     return _marked[known]
 
 
-_marked = {}
+_marked: dict[tuple[object, ...], Mark] = {}
 
 
-def _mark(name, question, answer, finished, limited):
+def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: bool) -> Mark:
     contract = question.contract
     reply, text = judge(name, question, answer, finished, limited)
-    short = reply.outcome == "wrong" and len(answer.plain["nodes"]) <= LONGEST_FOR_SIBLINGS
+    plain = answer.plain or {}
+    short = reply.outcome == "wrong" and len(plain["nodes"]) <= LONGEST_FOR_SIBLINGS
     if short and question.newer and _is_right(name, question.newer, answer):
         said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
         reply = _undecided(name, "numbers of another edition", said)
     elif short and any(_is_right(name, Asked(other), answer) for other in question.siblings):
-        reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
+        reply = Reply(name, "wrong", OTHER_NUMBERS, ["This is right for other numbers than the ones given to you."])
     share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
-    if reply.outcome == "wrong" and contract.partial and reply.note != "other numbers":
+    if reply.outcome == "wrong" and contract.partial and reply.note != OTHER_NUMBERS:
         right, parts, beyond_chance = parts_right(contract, text)
         share = max(share, beyond_chance)
         pairs = "pairs stand in the right order" if contract.question.kind == "order" else "are right"
@@ -304,22 +297,22 @@ def _mark(name, question, answer, finished, limited):
     )
 
 
-def _is_right(name, question, answer):
+def _is_right(name: str, question: Asked, answer: Answer) -> bool:
     """Whether an answer is right for a question. Of most it takes one look to see that they are not."""
     with contextlib.suppress(ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable):
-        asked = question.contract.question
-        text = fingerprint(asked, read(asked, answer.plain))
+        asked, plain = question.contract.question, answer.plain or {}
+        text = fingerprint(asked, read(asked, plain))
         return text in question.contract.known and judge(name, question, answer)[0].outcome == "correct"
     return False
 
 
-def parts_right(contract, text):
+def parts_right(contract: Contract, text: str) -> tuple[int, int, float]:
     """How many parts of an answer in words are right, of how many, and the share of credit that this earns.
 
     The parts of an order are its pairs: which of the two comes first. Of the share, what a guess has right on average
     is taken off, so that guessing earns nothing on average: with m words to choose from, it has 1/m right.
     """
-    kind, right = contract.question.kind, contract.partial
+    kind, right = contract.question.kind, contract.partial or ""
     if kind == "order":
         given, places = text.split(PARTS["order"]), {part: k for k, part in enumerate(right.split(PARTS["order"]))}
         good = [places[first] < places[second] for first, second in itertools.combinations(given, 2)]
@@ -351,7 +344,7 @@ def mark_with_siblings(
     """
     known = remembered.get(name)
     found = mark(name, question, answers.get(name, MISSING), finished, limited)
-    found, had = replace(found, tries=known and known.tries), known.help if known else ""
+    found, had = replace(found, tries=known.tries if known else None), known.help if known else ""
     for sibling, other in question.second_chances.items():
         helped = sibling in remembered and remembered[sibling].help
         if sibling in answers and not helped and (had or found.outcome != "correct"):
@@ -367,7 +360,7 @@ def mark_with_siblings(
     return found
 
 
-def _by_a_sibling(contract, found, sibling):
+def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
     """What a sibling that was solved without help makes of the mark of a question.
 
     It earns what help cost. Where the question itself was not answered right, whose numbers were solved is anybody's
@@ -381,7 +374,9 @@ def _by_a_sibling(contract, found, sibling):
     return replace(found, outcome="undecided", note="by a sibling alone", points=0, messages=messages)
 
 
-def judge(name, question, answer, finished=True, limited=False):
+def judge(
+    name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False
+) -> tuple[Reply, str]:
     """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
     state, contract = answer.outcome, question.contract
     if state == "missing":
@@ -396,16 +391,16 @@ def judge(name, question, answer, finished=True, limited=False):
         variable = f" under the name `{question.contract.variable}`" if question.contract.variable else ""
         return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
     if state == "unreadable" and answer.why not in CUT_SHORT:
-        return Reply(name, "invalid", "unreadable", [answer.why]), ""
+        return Reply(name, "invalid", "unreadable", [answer.why or ""]), ""
     if state != "recorded":
         return _undecided(
             name,
             "stopped while it was read",
             f"Reading this answer was stopped. {answer.why or answer.error or ''}".strip(),
         ), ""
-    found = []
+    found: list[str] = []
 
-    def look_up(text):
+    def look_up(text: str) -> Locker | None:
         if not found:  # what is looked up after that is another reading of the same answer
             found.append(text)
         return contract.locker(text)
@@ -437,7 +432,7 @@ def judge(name, question, answer, finished=True, limited=False):
     return reply, "".join(found)
 
 
-def in_calls_of(question, plain):
+def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
     """What a function returned, in the order of the calls that a question has now; ``None`` if it was not called so.
 
     What was recorded are the results of the calls of the contract, one after another.
@@ -453,7 +448,7 @@ def in_calls_of(question, plain):
     return {**plain, "value": [kind, [results[called.index(call)] for call in calls], *rest]}
 
 
-def _in_secret(name, contract, answer, plain, reply, text):
+def _in_secret(name: str, contract: Contract, answer: Answer, plain: Plain, reply: Reply, text: str) -> Reply:
     """The reply, if the answer is what it seems to be also where its author could not look."""
     place = contract.secret
     if place is None:
@@ -479,7 +474,7 @@ def _in_secret(name, contract, answer, plain, reply, text):
     return reply if in_secret.agree(contract.question, numbers, right) else _elsewhere_wrong(name)
 
 
-def _elsewhere_wrong(name):
+def _elsewhere_wrong(name: str) -> Reply:
     return Reply(
         name,
         "wrong",
@@ -488,11 +483,11 @@ def _elsewhere_wrong(name):
     )
 
 
-def _undecided(name, note, message):
+def _undecided(name: str, note: str, message: str) -> Reply:
     return Reply(name, "undecided", note, [message])
 
 
-def _nearly_right(contract, plain):
+def _nearly_right(contract: Contract, plain: Plain) -> bool:
     if contract.right is None:
         return False
     try:

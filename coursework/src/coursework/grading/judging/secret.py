@@ -12,15 +12,18 @@ import math
 import os
 import random
 import secrets
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from ...checking.check import calls_for
+from ...authoring.author import AuthoredQuestion
 from ...checking.evaluate import MP
 from ...checking.kinds import Blank, Fault, Undecidable
-from ...checking.plain import NotPlain, to_plain
+from ...checking.plain import NotPlain, Plain, to_plain
 from ...checking.plugins import kinds
-from ...checking.reading import canonical, read, tolerances
+from ...checking.question import Question
+from ...checking.reading import calls_for, canonical, read, tolerances
 from .contract import Elsewhere
 
 FILE = ".grading-secret"
@@ -32,7 +35,7 @@ SLACK = 4
 ATTEMPTS = 60
 
 
-def secret_beside(folder):
+def secret_beside(folder: str | Path) -> bytes:
     """The secret of a course, from the file beside its notebooks with solutions; made at the first run.
 
     Raises
@@ -56,7 +59,7 @@ def secret_beside(folder):
         ) from None
 
 
-def secret_of(question, secret):
+def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
     """What is compared in secret for a question: ``None`` where there is nothing to look up.
 
     Parameters
@@ -86,7 +89,7 @@ def secret_of(question, secret):
     return known
 
 
-def _of_expression(question, seed):
+def _of_expression(question: AuthoredQuestion, seed: str) -> Elsewhere | None:
     salt = seed[:16]
     elsewhere = replace(question.public, salt=salt)
     try:
@@ -103,7 +106,7 @@ def _of_expression(question, seed):
     return Elsewhere(salt, right=right, partly=partly)
 
 
-def _of_function(question, seed):
+def _of_function(question: AuthoredQuestion, seed: str) -> Elsewhere | None:
     public, dice = question.public, random.Random(seed)
     columns = _columns(public.calls)
     calls = [[_another(values, dice) for values in columns] for _ in range(CALLS)]
@@ -120,7 +123,7 @@ def _of_function(question, seed):
     return Elsewhere(calls=tuple(calls), right=right) if agree(public, right, moved) else None
 
 
-def numbers_of(public, plain):
+def numbers_of(public: Question, plain: Plain) -> tuple[str, ...]:
     """The numbers that an answer stands for, as text that JSON keeps exactly enough.
 
     Raises
@@ -130,7 +133,7 @@ def numbers_of(public, plain):
     return tuple(MP.nstr(number, 30) for number in canonical(public, read(public, plain)))
 
 
-def agree(public, numbers, others):
+def agree(public: Question, numbers: Sequence[str], others: Sequence[str]) -> bool:
     """Whether two lists of numbers are the same but for rounding."""
     if len(numbers) != len(others):
         return False
@@ -145,12 +148,12 @@ def agree(public, numbers, others):
 # --- arguments like those that an author chose --------------------------------------------------
 
 
-def _columns(calls):
+def _columns(calls: Iterable[list[Any]]) -> list[list[Any]]:
     """For each argument the values that it has in the calls."""
     return [list(values) for values in zip(*calls, strict=True)]
 
 
-def _another(values, dice):
+def _another(values: list[Any], dice: random.Random) -> Any:
     """A value that is to the question what the given ones are: of their kind, length and range."""
     if all(isinstance(value, list) for value in values) and len({len(value) for value in values}) == 1:
         return _another_list(values, dice)
@@ -167,14 +170,14 @@ def _another(values, dice):
     return dice.uniform(min(values), max(values))
 
 
-def _form(value):
+def _form(value: Any) -> Any:
     """How a value is built: of lists, numbers and texts."""
     if isinstance(value, list):
         return [_form(part) for part in value]
     return "number" if isinstance(value, (int, float)) and not isinstance(value, bool) else type(value).__name__
 
 
-def _another_list(values, dice):
+def _another_list(values: list[list[Any]], dice: random.Random) -> list[Any]:
     length = len(values[0])
     if length == 3 and all(map(_is_rotation, values)):
         return _rotation(dice)
@@ -188,42 +191,42 @@ def _another_list(values, dice):
     return found
 
 
-def _moved(value, dice):
+def _moved(value: Any, dice: random.Random) -> Any:
     """The same but for the last digits."""
     if isinstance(value, list):
         return [_moved(part, dice) for part in value]
     return value * (1 + 1e-9 * dice.uniform(-1, 1)) if isinstance(value, float) else value
 
 
-def _is_vector(value):
+def _is_vector(value: Any) -> bool:
     return isinstance(value, list) and all(
         isinstance(part, (int, float)) and not isinstance(part, bool) for part in value
     )
 
 
-def _is_unit(value):
+def _is_unit(value: Any) -> bool:
     return _is_vector(value) and abs(math.hypot(*value) - 1) < 1e-9
 
 
-def _is_rotation(rows):
+def _is_rotation(rows: Any) -> bool:
     if not all(isinstance(row, list) and len(row) == 3 and _is_unit(row) for row in rows):
         return False
     (a, b, c), (d, e, f), (g, h, i) = rows
     mixed = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
-    return abs(mixed - 1) < 1e-9  # of three unit vectors only a right-handed triad reaches 1
+    return bool(abs(mixed - 1) < 1e-9)  # of three unit vectors only a right-handed triad reaches 1
 
 
-def _increases(value):
+def _increases(value: Any) -> bool:
     return _is_vector(value) and all(first < second for first, second in zip(value, value[1:], strict=False))
 
 
-def _unit(length, dice):
+def _unit(length: int, dice: random.Random) -> list[float]:
     found = [dice.gauss(0, 1) for _ in range(length)]
     size = math.hypot(*found)
     return [part / size for part in found]
 
 
-def _rotation(dice):
+def _rotation(dice: random.Random) -> list[list[float]]:
     w, x, y, z = _unit(4, dice)
     return [
         [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],

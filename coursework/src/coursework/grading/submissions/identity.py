@@ -9,8 +9,11 @@ import datetime
 import os
 import re
 import unicodedata
+from collections.abc import Callable, Collection, Iterable
 from pathlib import PurePosixPath
 from typing import NamedTuple
+
+from .roster import Roster
 
 # What a system writes of a person's name holds none of its own marks: the first one is its own. Moodle leaves no
 # underscore in a name, and Canvas none with a number between two of them.
@@ -30,6 +33,10 @@ RESUBMITTED = re.compile(r"(?P<stem>.+?)-(?P<number>\d{1,3})")
 MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 #: The folders of a course of nbgrader: only what was submitted was handed in.
 NBGRADER = {"submitted", "source", "release", "autograded", "feedback"}
+
+
+#: A path, part by part.
+Parts = tuple[str, ...]
 
 
 class Claim(NamedTuple):
@@ -59,10 +66,10 @@ class Claim(NamedTuple):
     """
 
     student: str
-    keys: tuple
+    keys: tuple[tuple[str, str], ...]
     source: str
     file: str
-    declared: tuple = ()
+    declared: tuple[int, ...] = ()
     late: bool = False
     given_by_system: bool = False
     handed_in: str = ""
@@ -87,11 +94,19 @@ class Layout:
         The one student who handed all of it in.
     """
 
-    def __init__(self, names, assignments=(), repositories=(), roster=None, read=None, student=None):
+    def __init__(
+        self,
+        names: Collection[str],
+        assignments: Iterable[str] = (),
+        repositories: Iterable[str] = (),
+        roster: Roster | None = None,
+        read: Callable[[str], bytes] | None = None,
+        student: str | None = None,
+    ) -> None:
         self.student = student
         self.assignments = sorted(assignments, key=len, reverse=True)
         self.roster = roster
-        self.enclosing = ()
+        self.enclosing: Parts = ()
         notebooks = [PurePosixPath(name).parts for name in names if name.lower().endswith((".ipynb", ".zip"))]
         self._strip(notebooks)
         notebooks = [parts[len(self.enclosing) :] for parts in notebooks if self._is_inside(parts)]
@@ -101,26 +116,26 @@ class Layout:
         )
         self.prefix = ""
         table = "/".join([*self.enclosing, GRADESCOPE_TABLE])
-        if self.kind == "gradescope" and (read is None or table not in names):
-            self.kind = "own"
-        elif self.kind == "gradescope":
+        if self.kind == "gradescope" and read is not None and table in names:
             self.submitters = _submitters(read(table))
+        elif self.kind == "gradescope":
+            self.kind = "own"
         if self.kind == "blackboard":
             # The assignment's name comes first, and is the same for all.
-            self.prefix = _shared({BLACKBOARD.fullmatch(top)["who"] for top in tops if BLACKBOARD.fullmatch(top)}, "_")
+            self.prefix = _shared({found["who"] for top in tops if (found := BLACKBOARD.fullmatch(top))}, "_")
         elif self.kind == "own" and 2 * len(set(tops) & self._inside(repositories)) > len(set(tops)):
             # Of most: a repository inside the own folder changes nobody's name.
             self.prefix = _shared(set(tops), "-")
             self.kind = "github"
 
-    def _strip(self, notebooks):
+    def _strip(self, notebooks: list[Parts]) -> None:
         """Leave folders out that enclose everything, and nbgrader's."""
         first = {parts[0] for parts in notebooks if len(parts) > 1}
         if len(first) == 1 and all(len(parts) > 1 for parts in notebooks) and first != {"submitted"}:
             (enclosing,) = first
             inner = [parts[1:] for parts in notebooks]
             inside = {parts[0] for parts in inner}
-            known = self.roster and self.roster.find(_own(enclosing))[0]
+            known = self.roster is not None and self.roster.find(_own(enclosing))[0] is not None
             # What a system wrote of somebody is nothing that encloses others, whatever lies inside.
             known = known or any(fits((enclosing, "")) for _, fits in SYSTEMS)
             if not known and (
@@ -135,26 +150,26 @@ class Layout:
         #: Whether nbgrader collected it, which says in a file when each was handed in.
         self.is_nbgraders = self.enclosing[-1:] == ("submitted",)
 
-    def _inside(self, folders):
+    def _inside(self, folders: Iterable[str]) -> set[str]:
         """The names of those folders that lie where the students' own do."""
         all_parts = [PurePosixPath(folder).parts for folder in folders]
         return {parts[-1] for parts in all_parts if parts and parts[:-1] == self.enclosing}
 
-    def _is_inside(self, parts):
+    def _is_inside(self, parts: Parts) -> bool:
         return len(parts) > len(self.enclosing) and parts[: len(self.enclosing)] == self.enclosing
 
-    def claim(self, name):
+    def claim(self, name: str) -> Claim | None:
         """The claim of a file; ``None`` for one that is beside what was handed in."""
         parts = PurePosixPath(name).parts
         if not self._is_inside(parts):
             return None
         parts = parts[len(self.enclosing) :]
-        found = getattr(self, f"_{self.kind}")(parts)
-        if self.student is not None and self.kind == "own":
+        found: Claim | None = getattr(self, f"_{self.kind}")(parts)
+        if found and self.student is not None and self.kind == "own":
             found = found._replace(source=f"all of {self.student}", file="/".join(parts))
         return found and found._replace(place=parts[0])
 
-    def is_beside_submissions(self, name):
+    def is_beside_submissions(self, name: str) -> bool:
         """Whether a file is in one of the folders that nbgrader has beside what was submitted."""
         parts = PurePosixPath(name).parts
         return (
@@ -166,7 +181,7 @@ class Layout:
 
     # -- the systems: a part of the name that does not fit claims nothing
 
-    def _canvas(self, parts):
+    def _canvas(self, parts: Parts) -> Claim | None:
         kind, found = self._read_as_canvas(parts[0])
         if not found:
             return None
@@ -185,23 +200,24 @@ class Layout:
             reply=_before_the_file(found),
         )
 
-    def _read_as_canvas(self, name):
+    def _read_as_canvas(self, name: str) -> tuple[str, re.Match[str] | None]:
         """What Canvas wrote of a name; ``None`` where it may be read in two ways and the roster does not tell which."""
         anonymous = CANVAS_ANONYMOUS.fullmatch(name)
         if anonymous:
             return "canvas anonymous", anonymous
         readings = [found for found in (CANVAS.fullmatch(name), CANVAS_NUMBERED.fullmatch(name)) if found]
-        people = [self.roster and self.roster.find((("canvas", found["user"]),))[0] for found in readings]
-        if len(readings) == 2 and people[1] is not None:
+        roster = self.roster
+        people = [roster.find((("canvas", found["user"]),))[0] if roster else None for found in readings]
+        if roster and len(readings) == 2 and people[1] is not None:
             readings = [
                 found
                 for found, student in zip(readings, people, strict=True)
-                if student is not None and self.roster.find((("letters", _clean(found["name"])),))[0] == student
+                if student is not None and roster.find((("letters", _clean(found["name"])),))[0] == student
             ]
             return ("canvas", readings[0]) if len(readings) == 1 else ("canvas", None)
         return "canvas", readings[0] if readings else None
 
-    def _gradescope(self, parts):
+    def _gradescope(self, parts: Parts) -> Claim | None:
         known = self.submitters.get(parts[0])
         if known is None:
             return None
@@ -217,7 +233,7 @@ class Layout:
             reply=f"{parts[0]}/",
         )
 
-    def _moodle(self, parts):
+    def _moodle(self, parts: Parts) -> Claim | None:
         found = MOODLE.fullmatch(parts[0])
         if not found:
             return None
@@ -231,7 +247,7 @@ class Layout:
             reply=_before_the_file(found) if found["file"] else f"{parts[0]}/",
         )
 
-    def _brightspace(self, parts):
+    def _brightspace(self, parts: Parts) -> Claim | None:
         found = BRIGHTSPACE.fullmatch(parts[0])
         if not found:
             return None
@@ -249,7 +265,7 @@ class Layout:
             reply=f"{parts[0]}/",
         )
 
-    def _blackboard(self, parts):
+    def _blackboard(self, parts: Parts) -> Claim | None:
         found = BLACKBOARD.fullmatch(parts[0])
         if not found:
             return None
@@ -266,7 +282,7 @@ class Layout:
             reply=_before_the_file(found) if found["file"] else f"{PurePosixPath(parts[0]).stem}_",
         )
 
-    def _blackboard_user(self, who):
+    def _blackboard_user(self, who: str) -> str:
         """The user's name, which stands behind the assignment's; both may hold the sign that joins them.
 
         Where several of the roster could be meant it is no name, so that a person is asked.
@@ -279,13 +295,13 @@ class Layout:
                 return known[0] if len(known) == 1 else who
         return who.removeprefix(self.prefix)  # of one alone nobody knows where the name begins
 
-    def _github(self, parts):
+    def _github(self, parts: Parts) -> Claim | None:
         user = parts[0].removeprefix(self.prefix)
         # Everybody chooses that name: it is not compared with the names that the course gave.
         keys = (("github", user),)
         return Claim(_clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/")
 
-    def _own(self, parts):
+    def _own(self, parts: Parts) -> Claim | None:
         if len(parts) > 1:
             return Claim(_clean(parts[0]), _own(parts[0]), f"folder {parts[0]}", _inside(parts), reply=f"{parts[0]}/")
         stem = PurePosixPath(parts[0]).stem
@@ -298,32 +314,34 @@ class Layout:
         return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0], reply=f"{stem}-")
 
 
-def _as_time(numbers):
+def _as_time(numbers: tuple[int, ...]) -> str:
     """Year, month, day and so on as ISO 8601 has them, without a time zone; empty where they are no time."""
+    year, month, day, *clock = numbers
+    hour, minute, second, *_ = (*clock, 0, 0, 0)
     try:
-        return datetime.datetime(*numbers).isoformat()
+        return datetime.datetime(year, month, day, hour, minute, second).isoformat()
     except ValueError:
         return ""
 
 
-def _before_the_file(found):
+def _before_the_file(found: re.Match[str]) -> str:
     """What a system wrote of a file's name, before what the student called it."""
     return found.string[: found.start("file")]
 
 
-def _inside(parts, first=None):
+def _inside(parts: Parts, first: str | None = None) -> str:
     """The path below what the system wrote; `first` is what a student named of the first part."""
     return "/".join(([first] if first else []) + list(parts[1:]))
 
 
-def _fits(pattern, in_file=True):
-    def fits(parts):
+def _fits(pattern: re.Pattern[str], in_file: bool = True) -> Callable[[Parts], bool]:
+    def fits(parts: Parts) -> bool:
         return bool(pattern.fullmatch(parts[0])) and (in_file or len(parts) > 1)
 
     return fits
 
 
-SYSTEMS = (
+SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
     # Of Canvas only files: a folder with two numbers in its name may be a student's own.
     (
         "canvas",
@@ -336,7 +354,7 @@ SYSTEMS = (
 )
 
 
-def _submitters(data):
+def _submitters(data: bytes) -> dict[str, tuple[str, str, str]]:
     """The name, the number or address, and the time of each of Gradescope's submissions that one person handed in."""
     import yaml
 
@@ -357,11 +375,11 @@ def _submitters(data):
     return found
 
 
-def _own(name):
+def _own(name: str) -> tuple[tuple[str, str], ...]:
     return ("own", name), ("name", name)
 
 
-def _shared(names, end):
+def _shared(names: set[str], end: str) -> str:
     """The beginning that all names share, up to a sign; empty where there is one name only."""
     if len(names) < 2:
         return ""
@@ -369,7 +387,7 @@ def _shared(names, end):
     return shared[: shared.rfind(end) + 1]
 
 
-def _clean(name):
+def _clean(name: str) -> str:
     """A name in one spelling, of a length that is one."""
     return " ".join(unicodedata.normalize("NFC", name).split())[:120] or "without a name"
 
@@ -396,7 +414,7 @@ UNSEEN = frozenset(
 ) | frozenset(map(chr, range(0xE0100, 0xE01F0)))
 
 
-def looks_like(name):
+def looks_like(name: str) -> str:
     """What a person sees of a name, and what some file systems and gradebooks tell apart.
 
     Wide letters as narrow ones, capitals as small letters, letters of another script as those they look like, and
@@ -407,7 +425,7 @@ def looks_like(name):
     return seen.translate(LOOK_ALIKES).strip(" .")
 
 
-def _when(text):
+def _when(text: str) -> tuple[int, ...]:
     """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are the same in every language setting."""
     month, day, year, clock, half = text.replace(",", "").split()
     number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0
