@@ -71,8 +71,8 @@ class MultiplicativeKalmanFilter:
     bias : array of shape ``(..., 3)``
         Radians per second.
     covariance : array of shape ``(..., 6, 6)``
-    noise : array of shape ``(..., 2)``
-        Of the gyroscope and of its bias, as they were given.
+    gyroscope_noise, bias_noise : arrays of shape ``(...)``
+        As they were given.
 
     Examples
     --------
@@ -100,7 +100,8 @@ class MultiplicativeKalmanFilter:
         self.bias = numpy.zeros((*batch, 3))
         covariance = number_array(covariance, (6, 6), "covariance")
         self.covariance = numpy.broadcast_to(covariance, (*batch, 6, 6)).copy()
-        self.noise = numpy.stack(numpy.broadcast_arrays(gyroscope_noise, bias_noise), axis=-1)
+        self.gyroscope_noise = numpy.asarray(gyroscope_noise, dtype=float)
+        self.bias_noise = numpy.asarray(bias_noise, dtype=float)
 
     def turn(self, angular_velocity: Values, step: Values) -> None:
         r"""Turn with the gyroscope for one step.
@@ -121,7 +122,8 @@ class MultiplicativeKalmanFilter:
         carried = numpy.zeros_like(self.covariance) + numpy.eye(6)
         carried[..., :3, :3] = turned
         carried[..., :3, 3:] = -step[..., None] * numpy.eye(3)
-        noise = numpy.repeat(self.noise**2 * step, 3, axis=-1)[..., None] * numpy.eye(6)
+        noises = numpy.stack(numpy.broadcast_arrays(self.gyroscope_noise, self.bias_noise), axis=-1)
+        noise = numpy.repeat(noises**2 * step, 3, axis=-1)[..., None] * numpy.eye(6)
         self.covariance = carried @ self.covariance @ carried.swapaxes(-1, -2) + noise
 
     def observe(self, observed: Values, reference: Values, deviation: Values) -> Innovation:
