@@ -20,6 +20,11 @@ def _transposed(question):
     return f"This is {given}, the transpose of {wanted}: its columns are what the rows should be. Transpose it."
 
 
+def _product(question):
+    quaternions = question.kind_of_values == "quaternion"
+    return f"The {'quaternions' if quaternions else 'factors'} are multiplied"
+
+
 def _other_order(question):
     if question.kind_of_values == "quaternion":
         return (
@@ -47,6 +52,9 @@ MESSAGES = {
     "other order": _other_order,
     "other order, transposed": lambda question: (
         "The factors are multiplied in the wrong order, and the product is transposed."
+    ),
+    "other order, sign of one turn": lambda question, turn: (
+        f"{_product(question)} in the wrong order, and the angle of {_turn(turn)} has the wrong sign."
     ),
     "angles interchanged": lambda question, first, second: (
         f"The angles of {_turn(first)} and of {_turn(second)} have been swapped."
@@ -114,6 +122,7 @@ DEEDS = {
     "sign of every turn": "turned the wrong way round throughout",
     "other order": "multiplied in the other order (space fixed turns)",
     "other order, transposed": "multiplied in the other order and gave the transpose",
+    "other order, sign of one turn": "multiplied in the other order and gave the {turn} turn the wrong sign",
     "angles interchanged": "interchanged the angles of the {first} and the {second} turn",
     "another sequence": "used the sequence {sequence}",
     "another axis": "made the {turn} turn about {axis}",
@@ -231,6 +240,9 @@ def _of_turns(build, turns):
         other[turn] = (turns[turn][0], sympy.pi / 2 - turns[turn][1])
         if build is not quaternion_of:
             yield Mistake("sine for cosine", {"turn": named(turn)}, build(other))
+    # Simpler than the transpose with all other signs, which is the same.
+    for turn in range(count) if count > 1 else ():
+        yield Mistake("other order, sign of one turn", {"turn": turn}, build(changed(turn)[::-1]))
     if turns and not any(sympy.sympify(angle).free_symbols for _, angle in turns):
         yield Mistake(
             "degrees taken for radians", {}, build([(axis, sympy.deg(angle).evalf(20)) for axis, angle in turns])

@@ -753,6 +753,27 @@ def test_products_of_quaternions_in_the_other_order_are_named():
     assert "quaternion" in reply.messages[0] and "matrix" not in reply.messages[0]
 
 
+@pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
+    """And not as the transpose with all the other signs, which is the same and which nobody has done."""
+    turns = [("z", theta), ("x", alpha), ("y", phi), ("z", theta / 3)][:count]
+    build = plugins.kinds()[kind].build
+    one = make(
+        "trial/os",
+        kind,
+        build(turns),
+        frames=("D", "A"),
+        symbols=" ".join(["theta", "alpha", "varphi"][:count]),
+        turns=turns,
+    )
+    for place in range(count):
+        slipped = [(axis, -angle if order == place else angle) for order, (axis, angle) in enumerate(turns)]
+        reply = reply_to(one, build(slipped[::-1]))
+        assert (reply.note, reply.details) == ("other order, sign of one turn", {"turn": place})
+        assert "wrong order, and the angle of" in reply.messages[0] and len(reply.messages) == 1
+
+
 def test_messages_speak_of_what_was_asked_for():
     """Quaternions, angles and sequences are no factors of a product of matrices, and have no columns."""
     turns = [("x", theta), ("y", alpha)]

@@ -5,20 +5,23 @@ from test_release import CELLS, COURSE, made_in, needs_solutions, write_source
 
 from coursework.__main__ import main
 from coursework.authoring import release
-from coursework.authoring.attack import BUDGET
+from coursework.authoring import selftest as selftest_module
+from coursework.authoring.attack import BUDGET, Found
 from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive as pack
 from coursework.authoring.selftest import (
+    _share_beyond,
     _try_notebook,
     leaks,
     measure,
+    measured_of,
     released_texts,
     selftest,
     try_question,
+    write_measured,
     write_page,
 )
-from coursework.authoring.source import measured_strengths
-from coursework.grading.judging.marking import names_asked
+from coursework.authoring.source import measured_strengths, names_asked
 
 SOURCES = {path.stem: path for path in sorted(COURSE.sources.glob("*.ipynb"))}
 
@@ -93,8 +96,36 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
         name="levers",
     )
     release.release(made, run=False)
-    findings, _ = _try_notebook(made.sources / "levers.ipynb", made, 100)
+    findings, measured, _ = _try_notebook(made.sources / "levers.ipynb", made, 100)
     assert findings[0].attack.way and findings[0].attack.tries < 100
+    # Every variant is attacked, and each counts for its part of the points.
+    assert measured["levers/arm"]["tries"][0] == 0 and all(measured["levers/arm"]["tries"][1:])
+    assert _share_beyond(measured) == "33%"
+
+
+def test_what_was_measured_is_measured_again_only_where_something_has_changed(tmp_path, monkeypatch):
+    made = made_in(tmp_path)
+    write_source(made.sources, *CELLS)
+    tried = []
+    monkeypatch.setattr(
+        selftest_module, "attack", lambda question, *_: tried.append(question.name) or Found(7, "a way")
+    )
+    source = release.read_source(made.sources / "trial.ipynb")
+
+    def measure_all():
+        tried.clear()
+        measured = measured_of(source, made, source.questions, all_variants=True)
+        write_measured(made.sources, [], measured)
+        return list(tried)
+
+    assert measure_all() == list(source.questions) and measure_all() == []
+    assert set(measured_strengths(made.sources).values()) == {7}
+    monkeypatch.setattr(selftest_module, "digest_of_attack", lambda: "another attack")
+    assert measure_all() == list(source.questions)
+    cell = next(cell for cell in source.notebook.cells if "BEGIN SOLUTION" in cell.source)
+    cell.source += "\n# changed"
+    changed = measure_all()
+    assert changed and (len(source.questions) == 1 or len(changed) < len(source.questions))
 
 
 def test_what_was_measured_is_written_down_with_its_version(tmp_path):
@@ -105,7 +136,7 @@ def test_what_was_measured_is_written_down_with_its_version(tmp_path):
     assert 0 < measured["trial/about-x"] < 1000
     assert any(f"found after {measured['trial/about-x']} slow hashes" in line for line in lines)
     file = made.sources / "strengths.json"
-    file.write_text(file.read_text("utf8").replace('"format": 1', '"format": 9'), "utf8")
+    file.write_text(file.read_text("utf8").replace('"format": 2', '"format": 9'), "utf8")
     with pytest.raises(AuthorError, match="another version"):
         measured_strengths(made.sources)
 

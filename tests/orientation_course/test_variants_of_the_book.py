@@ -38,12 +38,21 @@ def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
             assert max(found) % 8 == 0 and len(set(found)) == 1, name
 
 
+def test_how_many_pages_there_are_tells_nothing_of_the_answer():
+    """It told the variants of 18 questions apart; now all but the first have as many of their own."""
+    counts = collections.defaultdict(set)
+    for path in (COURSE.sealed / "variants").glob("*.json"):
+        for name, about in json.loads(path.read_text("utf8"))["questions"].items():
+            counts[name].add(len(about.get("pages") or []))
+    assert len(counts) > 60 and all(len(found) == 1 for found in counts.values())
+
+
 def test_the_book_has_variants_that_stay_small():
     counts = [about["variants"] for about in of_the_book().values()]
     assert len(counts) >= 60 and sum(count >= 16 for count in counts) >= 27
     assert sum("picture" in about for about in of_the_book().values()) >= 4
     files = list(COURSE.sealed.rglob("*.json"))
-    assert sum(path.stat().st_size for path in files) < 1_600_000
+    assert sum(path.stat().st_size for path in files) < 1_700_000
     for path in (COURSE.sealed / "variants").glob("*.json"):
         assert path.stat().st_size < 20_000, path  # all that a student's own variant needs beside the first
         first = json.loads((COURSE.sealed / f"{path.stem.rpartition('-')[0]}.json").read_text("utf8"))["questions"]
@@ -62,9 +71,9 @@ def test_a_variant_of_the_book_is_opened_by_its_own_answer_and_by_no_other():
     for number, question in asked.items():
         assert try_question(question, budget=0).faults == [], (name, number)
         student = next(f"s{k}" for k in range(999) if variants.variant_of(f"s{k}", name, count) == number)
-        coursework.me(student)
+        coursework.student(student)
         assert "{{" not in repr(coursework.variant(name))
         for other, theirs in asked.items():
             outcome = questions.judge(name, questions.find_question(name, student), theirs.plain).outcome
             assert (outcome == "correct") == (number == other), (name, number, other)
-    coursework.me("")
+    coursework.student("")

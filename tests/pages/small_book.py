@@ -24,8 +24,9 @@ TOOLS = """const said = [], tools = { progress() {}, say: (text) => said.push(te
   said.push(text); tools.actions = actions; } };"""
 KEEP = f"""async (scripts, choice) => {{ {TOOLS}
   await (await import(scripts + "keep.js")).keep(tools);
-  // Some browsers ask the reader whether to keep what a site stores, and this reader does not answer.
-  Object.defineProperty(navigator.storage, "persist", {{ value: () => new Promise(() => {{}}) }});
+  // Some browsers ask the reader whether to keep what a site stores, and this reader does not answer; some never ask.
+  const unanswered = {{ value: () => new Promise(() => {{}}) }};
+  if (navigator.storage) Object.defineProperty(navigator.storage, "persist", unanswered);
   const name = Object.keys(tools.actions).find((text) => text.startsWith(choice));
   await tools.actions[name]();
   await navigator.serviceWorker.ready;

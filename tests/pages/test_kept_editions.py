@@ -107,6 +107,7 @@ def test_renewal_that_breaks_off_anywhere_leaves_the_edition_before_it(engine, e
             newest, cut = newest + 1, cut + 1
             net.left = 0
             assert shown(engine, address) == newest, f"after a cut after {cut - 1} requests"
+        print(f"{cut} cuts between two editions")
         assert cut > 6, "the list, three pages, a style and a script are fetched one by one"
 
 

@@ -618,6 +618,10 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     opened.remove(page.page)
     page.page.close()
     again = Page(context, site, name)
+    # Before anything is run: one's own numbers, and of a question that was not run, nobody's unfolded.
+    again.page.wait_for_function(
+        f"document.querySelectorAll('div.cell')[{shown - 1}].innerText.includes({mine[-60:]!r})"
+    )
     assert run(again) == mine
     assert f"those of {students[own].upper()}" in again.cell(1).locator(".live-who").inner_text()
     again.write(1, codes[0].replace("student('')", f"student('{students[0]}')"))
@@ -658,7 +662,8 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     )
     page.page.reload()
     assert "Correct, when you checked it last" in page.below(check) and "Not attempted" not in page.below(check)
-    assert "those of ada" in page.below(shown)
+    assert "the numbers of ada" in page.below(shown)
+    assert page.cell(shown).locator("details:has-text('that everybody sees')").get_attribute("open") is None
 
 
 @pytest.mark.sampled(1, of="what a page keeps")

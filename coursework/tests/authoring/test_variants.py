@@ -102,7 +102,8 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
     lever = coursework.variant("levers/see-saw")
     text = f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. "
     text += "Give its moment as moment, in N m."
-    assert repr(lever) == text
+    # Whoever has not said who they are reads it at the question, before anything is answered.
+    assert repr(lever) == text + (f"\n\n{re.sub('[*`]', '', identity.FORGOTTEN)}" if number == 0 else "")
     # Whoever has not said who they are hears it in each reply to an answer.
     replies = [coursework.check("levers/see-saw", answer) for answer in (lever.force * lever.arm, 0, "a text", ...)]
     assert [identity.FORGOTTEN in reply.messages for reply in replies] == [number == 0] * 3 + [False]
@@ -115,6 +116,36 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
         right = given["force"] * given["arm"] == lever.force * lever.arm
         outcome = coursework.check("levers/see-saw", given["force"] * given["arm"]).outcome
         assert (outcome == "correct") == right
+
+
+def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
+    """Pasted with the classmate's numbers, or worked out with everybody's: it is no help, no try, and earns no hint."""
+    lever = coursework.variant(NAME)
+    for other in (number for number in range(6) if number != 2):
+        given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
+        reply = coursework.check(NAME, given["force"] * given["arm"])
+        assert (reply.outcome, reply.note) == ("wrong", "other numbers") and "another student" in reply.messages[0]
+        assert reply.tries == 0 and not reply.tried
+    assert coursework.check(NAME, 1234567).note == ""
+    right = coursework.check(NAME, lever.force * lever.arm)
+    assert right.outcome == "correct" and not right.help and not right.sibling
+    others = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]["others"]
+    assert len(base64.b85decode(others[1])) % (8 * sealing.NAME) == 0
+
+
+def test_how_many_pages_there_are_tells_no_variant_from_another(course, tmp_path):
+    made = made_in(tmp_path)
+    told = CHECKED.replace("mistakes={", "mistakes={'Where is the arm?': lever.force + (lever.arm > 2), ")
+    assert told != CHECKED
+    write_source(made.sources, *CELLS[:5], ("code", told), name="levers")
+    release(made, run=False)
+    first, *rest = (
+        json.loads(path.read_text("utf8"))["questions"][NAME]
+        for path in [made.sealed / "levers.json", *sorted((made.sealed / "variants").glob("levers-*.json"))]
+    )
+    assert len(first["pages"]) % 4 == 0 and len({len(one["pages"]) for one in rest}) == 1
+    known = [read_source(made.sources / "levers.ipynb", number).questions[NAME] for number in range(1, 6)]
+    assert len({len(one.entries) for one in known}) > 1  # without that it would show nothing
 
 
 def test_the_exercise_notebook_shows_the_variant_and_hides_the_rule(course):

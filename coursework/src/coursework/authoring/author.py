@@ -36,7 +36,7 @@ from ..checking.plain import NotPlain, Plain, to_plain
 from ..checking.plugins import kind_of_values, kinds
 from ..checking.points import ANGLES
 from ..checking.question import OUTCOMES, KnownAnswer, Locker, Note, Question, Sealed
-from ..checking.questions import CODE_LETTERS, NEARLY, code_text, compare, rung_key
+from ..checking.questions import CODE_LETTERS, NEARLY, code_text, compare, rung_key, salt_of_all
 from ..checking.reading import (
     Reading,
     calls_for,
@@ -61,6 +61,10 @@ ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-2")
 TIPS = MP.mpf("0.6371")
 #: Edges of cells that an answer may be near: beyond each there is another locker, and one for every combination.
 MOST_EDGES = 6
+#: The same for those who have other numbers: each cell costs a slow hash at release.
+MOST_EDGES_FOR_OTHERS = 2
+#: The pages of a first variant are filled up to a multiple of this.
+PAGES_TOGETHER = 4
 
 
 class AuthorError(ValueError):
@@ -341,6 +345,15 @@ class AuthoredQuestion:
         numbers = [MP.nstr(number, 17) for number in one.numbers] if needed else []
         return KnownAnswer(one.outcome, tuple(one.notes), tuple(steps), tuple(numbers))
 
+    def names_for_others(self):
+        """Under what names those who have another variant find that their answer is right for this one."""
+        if self.public.exam or kinds()[self.public.kind].by_a_person:
+            return []
+        common = replace(self.public, salt=salt_of_all(self.name))
+        reading = far_from_last_bits(common, read(common, self.plain))
+        texts = fingerprints(common, reading, most=MOST_EDGES_FOR_OTHERS)
+        return [sealing.name_of(sealing.slow_key(common.salt, text)).hex() for text in texts]
+
     def sealed(self, code=None, first=None):
         """What a student receives of the question, as :class:`Sealed`.
 
@@ -448,7 +461,8 @@ class Pages:
     def places(self):
         """The place of each page by its key: in an order that tells nothing, after those of the first variant."""
         before = self.first.places() if self.first else {}
-        return before | {key: place for place, key in enumerate(sorted(self.contents), start=len(before))}
+        start = len(self.first.sealed) if self.first else 0
+        return before | {key: place for place, key in enumerate(sorted(self.contents), start=start)}
 
     def seal(self):
         """Seal all pages that are not sealed with the first variant; gives the place of each by its key."""
@@ -460,6 +474,9 @@ class Pages:
             if solution:
                 content = {**content, "solution": [places[solution], solution.hex()]}
             self.sealed.append(sealing.seal(content, key))
+        if not self.first:
+            count = -(-len(self.sealed) // PAGES_TOGETHER) * PAGES_TOGETHER
+            self.sealed = sealing.pages_filled_up(self.sealed, count)
         return places
 
 

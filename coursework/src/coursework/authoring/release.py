@@ -22,7 +22,7 @@ from pathlib import Path
 from ..checking import sealing
 from ..checking.evaluate import MP
 from ..checking.question import FORMAT
-from ..checking.questions import MOVED, beside
+from ..checking.questions import MOVED, beside, salt_of_all
 from ..checking.reading import canonical, read
 from ..checking.variants import image
 from .author import AuthorError, solution_code
@@ -32,6 +32,7 @@ from .source import (
     answered_in,
     checked_names,
     digest_of_code,
+    names_asked,
     notebooks_in,
     posed,
     read_source,
@@ -195,8 +196,14 @@ def _release_one(path, course):
         max((rule.count for rule in source.rules.values()), default=1),
         pages,
         solution_code(source.notebook),
-        {name: _answer_of(source.questions[name]) for name in source.rules},
+        {name: _about_answer(source.questions[name]) for name in source.rules},
+        {name: list(question.after) for name, question in source.questions.items() if question.after},
     )
+
+
+def _about_answer(question):
+    """What the variants of a question are compared by: :func:`_answer_of`, and the names under which others find it."""
+    return [_answer_of(question), question.names_for_others()]
 
 
 def _answer_of(question):
@@ -210,12 +217,22 @@ def _answer_of(question):
 def _demand_answers(name, answers):
     """Variants with one answer are one question: what a classmate has found is right for everybody."""
     for question in answers[0]:
-        found = [one[question] for one in answers if question in one]
+        found = [one[question][0] for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:
             raise AuthorError(
                 f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: what is drawn "
                 "does not change it. Draw what the answer depends on, or ask it without variants."
             )
+
+
+def _demand_later(course, after):
+    """What a right answer opens hints for is asked somewhere; under its name of today."""
+    for question, later in after.items():
+        for one in later:
+            file = course.sources / f"{one.partition('/')[0]}.ipynb"
+            if not file.is_file() or one not in names_asked(file):
+                now = f" It is called '{course.moved[one]}' now." if one in course.moved else ""
+                raise AuthorError(f"{question}: `after` names '{one}', and no notebook asks such a question.{now}")
 
 
 def _release_variant(path, number, pages, course):
@@ -239,7 +256,7 @@ def _release_variant(path, number, pages, course):
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()
         kept.write_text(sealed_file(source, json.loads(first)["questions"], pages), "utf8")
-        answers.write_text(json.dumps({name: _answer_of(one) for name, one in source.questions.items()}), "utf8")
+        answers.write_text(json.dumps({name: _about_answer(one) for name, one in source.questions.items()}), "utf8")
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
@@ -274,8 +291,24 @@ def _even_out(name, code, course):
         most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
         for one in ones:
             one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
+        # So with the pages that each variant has of its own, beside those of the first one.
+        own = [one for one in ones[1:] if contents[0]["questions"][question].get("pages")]
+        most = max((len(one.get("pages") or ()) for one in own), default=0)
+        for one in own if most else ():
+            one["pages"] = sealing.pages_filled_up(one.get("pages") or [], most)
     for file, content in zip(files, contents, strict=True):
         file.write_text(_as_text(content), "utf8")
+
+
+def _add_names_for_others(name, answers, course):
+    """Seal with the first variant of each question what is right in any: so a classmate's answer is recognised."""
+    file = course.sealed / f"{name}.json"
+    content = json.loads(file.read_text("utf8"))
+    for question in answers[0]:
+        names = [bytes.fromhex(text) for one in answers if question in one for text in one[question][1]]
+        if names:
+            content["questions"][question]["others"] = [salt_of_all(question), sealing.pack_names(names, TOGETHER)]
+    file.write_text(_as_text(content), "utf8")
 
 
 def _run_one(path, sealed):
@@ -328,14 +361,15 @@ def release(course, only=(), run=True, variants=None):
             for number in range(1, count)
             if variants is None or number in variants
         ]
-        answers = {path: [first] for path, (*_, first) in zip(paths, made, strict=True)}
+        answers = {path: [first] for path, (*_, first, _) in zip(paths, made, strict=True)}
         if wanted:
             found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
             for (path, *_), more in zip(wanted, found, strict=True):
                 answers[path].append(more)
         for path in paths:
             _demand_answers(path.name, answers[path])
-        for name, count, _, code, _ in made:
+        _demand_later(course, {question: later for *_, after in made for question, later in after.items()})
+        for name, count, _, code, *_ in made:
             for path in (course.sealed / "variants").glob(f"{name}-*.json"):
                 if (
                     re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))
@@ -343,6 +377,7 @@ def release(course, only=(), run=True, variants=None):
                 ):
                     path.unlink()  # this notebook made it when it had more variants
             _even_out(name, code, course)
+            _add_names_for_others(name, answers[course.sources / f"{name}.ipynb"], course)
         if run:
             made = [course.exercises / f"{name}.ipynb" for name in names if name != CHAPTERS]
             list(pool.map(_run_one, made, [course.sealed] * len(made)))

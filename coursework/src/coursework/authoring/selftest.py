@@ -7,8 +7,10 @@ with it, if anything is.
 import base64
 import concurrent.futures
 import contextlib
+import functools
 import hashlib
 import html
+import importlib.util
 import io
 import json
 import os
@@ -23,11 +25,12 @@ from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable
 from ..checking.mistakes import GENERAL
 from ..checking.plain import NotPlain
-from ..checking.plugins import kinds
+from ..checking.plugins import kinds, plugins
 from ..checking.questions import judge, notebook_questions
 from ..checking.reply import Reply, to_html
 from ..checking.variants import shown
-from .attack import BUDGET, CODE, Found, attack
+from . import typed
+from .attack import BUDGET, CODE, VERSION, Found, attack
 from .author import AuthorError
 from .forms import another_answer, equivalent_forms
 from .source import (
@@ -37,8 +40,8 @@ from .source import (
     MEASURED,
     SOLUTION,
     blank,
-    digest_of_code,
-    measured_strengths,
+    cells_needed,
+    measured_questions,
     notebooks_in,
     read_source,
 )
@@ -52,8 +55,6 @@ FORMS = 6
 NOTHING = Found(0, "")
 #: Points of a question up to which it does not matter that it can be guessed.
 LIGHT = 1
-#: Variants of a question that are attacked beside the first one; which ones follows from the name of the notebook.
-ATTACKED = 2
 COLUMNS = (
     "Question",
     "Kind",
@@ -110,8 +111,8 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
         How many slow hashes the attack may need.
     against_sealed : bool
         Whether to try what was released of it too.
-    kept : path, optional
-        A folder in which what came of attacks is kept, since they take long.
+    found : Found, optional
+        What came of the attack, where it is known.
 
     Answers are compared with what is sealed before the slow hash locks it up: that the locks hold the same is
     shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
@@ -376,23 +377,34 @@ def selftest(course, page=None, budget=BUDGET, only=()):
     paths = notebooks_in(course.sources, only)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         tried = list(pool.map(_try_notebook, paths, [course] * len(paths), [budget] * len(paths)))
-    findings = [finding for found, _ in tried for finding in found]
+    findings = [finding for found, *_ in tried for finding in found]
+    measured = {name: one for _, some, _ in tried for name, one in some.items()}
     if not findings:
         raise AuthorError(f"The notebooks in {course.sources} ask no question.")
     texts = released_texts(course.exercises, course.sealed, course.archive)
-    found = [leak for _, secrets in tried for leak in found_in(texts, secrets)]
+    found = [leak for *_, secrets in tried for leak in found_in(texts, secrets)]
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
-        Path(page).write_text(write_page(findings, found), "utf8")
-    if budget >= BUDGET:
-        _write_measured(course.sources, paths, {finding.name: finding.attack for finding in findings})
+        Path(page).write_text(write_page(findings, found, measured=measured), "utf8")
+    if budget == BUDGET:
+        write_measured(course.sources, paths, measured)
     return [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] + [
         f"{what} stands in {place}" for what, place in found
     ]
 
 
-def measure(course, only=()):
+def measure(course, only=(), all_variants=False, budget=BUDGET):
     """Attack the questions of some notebooks, and write down what was found beside the sources.
+
+    What was measured of the same question by the same attack is not measured again.
+
+    Parameters
+    ----------
+    course : Course
+    only : sequence of str
+    all_variants : bool
+        Whether every variant is attacked, or the first alone.
+    budget : int
 
     Returns
     -------
@@ -401,21 +413,86 @@ def measure(course, only=()):
     """
     paths = notebooks_in(course.sources, only)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
-        measured = [one for some in pool.map(_measured_in, paths, [course] * len(paths)) for one in some]
-    _write_measured(course.sources, paths, {name: found for name, _, found in measured})
-    points = sum(worth for _, worth, _ in measured)
+        sources = [course] * len(paths), [all_variants] * len(paths), [budget] * len(paths)
+        measured = {name: one for some in pool.map(_measured_in, paths, *sources) for name, one in some.items()}
+    write_measured(course.sources, paths, measured)
+    found = {name: (one["worth"], weakest_of(one)) for name, one in measured.items()}
+    points = sum(worth for worth, _ in found.values())
     return [
-        *(f"{name}, {_of(worth, 'point')}: {found}" for name, worth, found in measured),
-        *(proposal(name, worth, found) for name, worth, found in measured if found.way and worth > LIGHT),
-        f"{_share_beyond([(worth, found) for _, worth, found in measured])} of {_of(points, 'point')} are behind more "
-        f"than {BUDGET:,} tries of a script.",
+        *(f"{name}, {_of(worth, 'point')}: {one}" for name, (worth, one) in found.items()),
+        *(proposal(name, worth, one) for name, (worth, one) in found.items() if one.way and worth > LIGHT),
+        f"{_share_beyond(measured)} of {_of(points, 'point')} are behind more than {BUDGET:,} tries of a script"
+        f"{_of_how_many(measured)}.",
     ]
 
 
-def _measured_in(path, course):
+def _measured_in(path, course, all_variants=False, budget=BUDGET):
     source = read_source(path, edition=course.edition)
-    found = weakest(source, course)
-    return [(name, question.worth, found[name]) for name, question in source.questions.items()]
+    return measured_of(source, course, source.questions, all_variants, budget)
+
+
+def measured_of(source, course, names, all_variants=False, budget=BUDGET):
+    """What the attack finds of some questions of a notebook, by name: what is known of them is not tried again.
+
+    Of each its points, a digest of all that the attack depends on, after how many tries each variant was found, 0 where
+    it was not and ``None`` where it was not attacked, and by what way the weakest.
+    """
+    known, found = measured_questions(course.sources) if budget == BUDGET else {}, {}
+    for name in names:
+        question, count = source.questions[name], source.rules[name].count if name in source.rules else 1
+        digest = digest_of_question(source, course, name)
+        one = known.get(name)
+        if one is None or one["digest"] != digest or len(one["tries"]) not in (0, count):
+            one = {"digest": digest, "tries": [None] * count, "way": ""}
+        one["worth"] = question.worth
+        found[name] = one
+        if _says_nothing(question):
+            one["tries"] = []
+            continue
+        for number in range(count if all_variants else 1):
+            if one["tries"][number] is None:
+                attack_variant(source, course, name, number, one, budget)
+    return found
+
+
+def attack_variant(source, course, name, number, one, budget=BUDGET):
+    """Attack a variant of a question, and write into ``one`` what came of it."""
+    if number:
+        source = read_source(course.sources / f"{source.name}.ipynb", number, course.edition, only=[name])
+    question = source.questions[name]
+    found, before = attack(question, text_of(source, question), budget), weakest_of(one)
+    one["tries"][number] = found.tries if found.way else 0
+    if found.way and (not before.way or found.tries < before.tries):
+        one["way"] = found.way
+
+
+def weakest_of(one, budget=BUDGET):
+    """What was found of the weakest variant of a question that was measured."""
+    tries = [count for count in one["tries"] if count]
+    return Found(min(tries), one["way"]) if tries else Found(budget, "") if one["tries"] else NOTHING
+
+
+def digest_of_question(source, course, name):
+    """A text that follows from what the attack on a question depends on: its cells, with the text, and the attack."""
+    cells, needed = source.notebook.cells, sorted(cells_needed(source.notebook, [name]))
+    digest = hashlib.sha256(f"{digest_of_attack()} {course.edition} {name}".encode())
+    for number in needed:
+        above = number
+        while above and cells[above - 1].cell_type == "markdown":
+            above -= 1
+        for cell in cells[above : number + 1]:
+            digest.update(cell.source.encode())
+    return digest.hexdigest()[:16]
+
+
+@functools.cache
+def digest_of_attack():
+    """A text that follows from the attack: which versions of it there are, and what functions it applies."""
+    modules = [f"{plugin.__name__}.attack" for plugin in plugins()]
+    own = [importlib.import_module(name) for name in modules if importlib.util.find_spec(name)]
+    versions = [VERSION, *(getattr(module, "VERSION", 0) for module in own)]
+    known = json.dumps([versions, [step.name for step in typed.public_functions()]])
+    return hashlib.sha256(known.encode()).hexdigest()
 
 
 def proposal(name, worth, found):
@@ -426,62 +503,34 @@ def proposal(name, worth, found):
     )
 
 
-def _write_measured(sources, paths, found):
-    """Write down after how many tries each question was guessed, for whoever reads the marks; 0 where it was not.
-
-    What is known of other notebooks stays.
-    """
+def write_measured(sources, paths, found):
+    """Write down what was measured of the questions of some notebooks; what is known of the others stays."""
     tried, there = {path.stem for path in paths}, {path.stem for path in notebooks_in(sources)}
-    tries = {
-        name: count for name, count in measured_strengths(sources).items() if name.partition("/")[0] in there - tried
-    } | {name: one.tries if one.way else 0 for name, one in found.items()}
-    measured = {"format": FORMAT_OF_MEASURED, "tries": dict(sorted(tries.items()))}
-    Path(sources, MEASURED).write_text(json.dumps(measured, indent=1) + "\n", "utf8")
-
-
-def weakest(source, course, budget=BUDGET, numbers=(0,)):
-    """What the attack found of each question of a notebook, in the weakest of some of its variants."""
-    found, kept = {}, course.archive.parent / "attacks"
-    for number in numbers:
-        one_variant = read_source(course.sources / f"{source.name}.ipynb", number, course.edition) if number else source
-        for name, question in one_variant.questions.items():
-            if question.public.exam or kinds()[question.public.kind].by_a_person:
-                found[name] = NOTHING
-                continue
-            one = attack_kept(question, text_of(one_variant, question), budget, kept)
-            if name not in found or one.way and (not found[name].way or one.tries < found[name].tries):
-                found[name] = one
-    return found
+    questions = {
+        name: one for name, one in measured_questions(sources).items() if name.partition("/")[0] in there - tried
+    } | found
+    lines = ",\n".join(
+        f"  {json.dumps(name)}: {json.dumps(one, sort_keys=True)}" for name, one in sorted(questions.items())
+    )
+    text = f'{{\n "format": {FORMAT_OF_MEASURED},\n "questions": {{\n{lines}\n }}\n}}\n'
+    Path(sources, MEASURED).write_text(text, "utf8")
 
 
 def _try_notebook(path, course, budget):
-    """What was found of the questions of a notebook, and its secrets."""
+    """What was found of the questions of a notebook, what was measured of them, and its secrets."""
     source = read_source(path, edition=course.edition)
-    found, secrets, findings = weakest(source, course, budget, [0, *_numbers_attacked(source)]), secrets_of(source), []
+    measured = measured_of(source, course, source.questions, True, budget) if budget else {}
+    secrets, findings = secrets_of(source), []
     for name, question in source.questions.items():
-        finding = try_question(question, found=found[name])
+        found = weakest_of(measured[name], budget) if measured else NOTHING
+        finding = try_question(question, found=found)
         findings.append(finding._replace(faults=[*finding.faults, *told_openly(question, secrets)]))
-    return findings, {} if source.name == CHAPTERS else secrets
+    return findings, measured, {} if source.name == CHAPTERS else secrets
 
 
-def _numbers_attacked(source):
-    """The numbers of the variants of a notebook that are attacked beside the first: always the same ones."""
-    count = max((rule.count for rule in source.rules.values()), default=1)
-    return sorted(random.Random(source.name).sample(range(1, count), min(ATTACKED, count - 1)))
-
-
-def attack_kept(question, text, budget, folder):
-    """The attack on a question; what came of it is kept in a folder, for the same question and the same attack."""
-    known = {known: entry.outcome for known, entry in question.entries.items()}
-    asked = json.dumps([question.public.as_json(), known, text, budget, digest_of_code()], sort_keys=True)
-    place = Path(folder, f"{hashlib.sha256(asked.encode()).hexdigest()[:24]}.json")
-    if not place.exists():
-        found = attack(question, text, budget)
-        with contextlib.suppress(OSError):  # where nothing can be written, it is not kept
-            place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_text(json.dumps(found), "utf8")
-        return found
-    return Found(*json.loads(place.read_text("utf8")))
+def _says_nothing(question):
+    """Whether a question has nothing to try a guess on."""
+    return bool(question.public.exam) or kinds()[question.public.kind].by_a_person
 
 
 def text_of(source, question):
@@ -509,12 +558,27 @@ def _open_code(source, question):
 
 
 def _share_beyond(measured):
-    """The share of the points that the attack has not found: of pairs of points and what was found."""
-    return f"{sum(worth for worth, found in measured if not found.way) / max(1, sum(w for w, _ in measured)):.0%}"
+    """The share of the points that the attack has not found, of what was measured: every variant counts alike."""
+    points = sum(one["worth"] for one in measured.values())
+    beyond = 0
+    for one in measured.values():
+        tries = [count for count in one["tries"] if count is not None]
+        beyond += one["worth"] * (tries.count(0) / len(tries) if tries else 1)
+    return f"{beyond / max(1, points):.0%}"
 
 
-def write_page(findings, found, before=""):
-    share = _share_beyond([(one.worth, one.attack) for one in findings])
+def _of_how_many(measured):
+    """In how many variants something was measured, where there are any."""
+    tries = [count for one in measured.values() for count in one["tries"]]
+    if all(len(one["tries"]) < 2 for one in measured.values()):
+        return ""
+    return f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
+
+
+def write_page(findings, found, before="", measured=None):
+    share = (
+        f"{_share_beyond(measured)} are behind more than {BUDGET:,} tries{_of_how_many(measured)}" if measured else ""
+    )
     rows = []
     for finding in findings:
         said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
@@ -546,8 +610,8 @@ def write_page(findings, found, before=""):
         f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
         "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
         f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has needed to find the "
-        "answer. Not found means not found by this attack: somebody may have a better idea. Of the "
-        f"points, {share} are behind more than {BUDGET:,} tries.</p>"
+        "answer. Not found means not found by this attack: somebody may have a better idea."
+        f"{f' Of the points, {share}.' if share else ''}</p>"
         f"{before}{leaked}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"

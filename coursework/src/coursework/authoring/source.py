@@ -15,10 +15,10 @@ import textwrap
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import coursework
-from coursework.checking.fields import Fields, by_name, whole
 from coursework.checking.plugins import folders_of, packages
 from coursework.checking.question import Variant
 from coursework.checking.variants import Given, image, names_of_variants, packed, shown
@@ -40,7 +40,7 @@ PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 LONGEST_WORD = 40
 #: The file beside the sources in which the selftest writes after how many tries each question was guessed, if it was.
 MEASURED = "strengths.json"
-FORMAT_OF_MEASURED = 1
+FORMAT_OF_MEASURED = 2
 
 SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
 HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
@@ -115,8 +115,18 @@ def digest_of_code():
     return digest.hexdigest()
 
 
+def names_asked(path: str | Path) -> dict[str, str]:
+    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
+    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
+    cells = [
+        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
+        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
+    ]
+    return checked_names(SimpleNamespace(cells=cells))
+
+
 def measured_strengths(sources: str | Path) -> dict[str, int]:
-    """After how many tries the attack of the selftest guessed each question, by name: 0 where it did not.
+    """After how many tries the attack guessed each question in its weakest variant, by name: 0 where it did not.
 
     A question that is not named there has not been attacked yet.
 
@@ -125,13 +135,24 @@ def measured_strengths(sources: str | Path) -> dict[str, int]:
     AuthorError
         The file is of another version of coursework.
     """
+    measured = measured_questions(sources)
+    return {name: min((count for count in one["tries"] if count), default=0) for name, one in measured.items()}
+
+
+def measured_questions(sources: str | Path) -> dict[str, dict[str, Any]]:
+    """What was measured of each question by name, as :func:`coursework.authoring.selftest.measured_of` gives it."""
     file = Path(sources, MEASURED)
     if not file.is_file():
         return {}
-    measured = Fields(json.loads(file.read_text("utf8")), str(file))
-    if measured.maybe("format", whole) != FORMAT_OF_MEASURED:
-        raise author.AuthorError(f"{file} is of another version of coursework: run `coursework selftest` anew.")
-    return measured.get("tries", by_name(whole))
+    measured = json.loads(file.read_text("utf8"))
+    if measured.get("format") == 1:  # of the first variant alone, by an attack that nobody knows any more
+        return {
+            name: {"worth": 1, "digest": "", "tries": [count], "way": ""} for name, count in measured["tries"].items()
+        }
+    if measured.get("format") != FORMAT_OF_MEASURED:
+        raise author.AuthorError(f"{file} is of another version of coursework: delete it, and release anew.")
+    questions: dict[str, dict[str, Any]] = measured["questions"]
+    return questions
 
 
 def read_source(

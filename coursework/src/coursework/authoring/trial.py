@@ -9,7 +9,7 @@ from ..checking.variants import image
 from ..checking.variants import text_of as whole_text
 from .author import AuthorError, to_page
 from .release import shows_variants
-from .selftest import try_question, weakest, write_page
+from .selftest import measured_of, try_question, weakest_of, write_page
 from .source import answered_in, read_source
 
 
@@ -42,10 +42,10 @@ def trial(course, name, page):
         f"{_hints(question)}{_rubric(question)}</section>"
         for question in chosen
     )
-    found = weakest(source, course)
-    findings = [try_question(one, found=found[one.name]) for one in chosen]
+    measured = measured_of(source, course, [question.name for question in chosen])
+    findings = [try_question(one, found=weakest_of(measured[one.name])) for one in chosen]
     Path(page).parent.mkdir(parents=True, exist_ok=True)
-    Path(page).write_text(_with_mathematics(write_page(findings, None, texts)), "utf8")
+    Path(page).write_text(_with_mathematics(write_page(findings, None, texts, measured)), "utf8")
     return page
 
 

@@ -13,6 +13,7 @@ from .identity import forgotten, identity
 from .plain import NotPlain, to_plain
 from .question import Locker, Place, Question, Sealed
 from .questions import (
+    OTHER_NUMBERS,
     code_text,
     find_question,
     judge,
@@ -40,7 +41,7 @@ MOST_ANSWERS = 100
 #: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are the same.
 MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
-NO_HELP = ("", "rounded too far")
+NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
 
 
 #: What the record beside the notebook knows of a question: JSON that a student may have written.
@@ -82,7 +83,7 @@ def check(name: str, answer: object) -> Reply:
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:
         reply.solution = solution_on(sealed, reply.opened.solution)
     entry = _remember(name, student, reply)
-    if reply.outcome == "wrong" and entry:
+    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS and entry:
         _show_next_hint(sealed, student, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.get("help", "")
@@ -315,7 +316,7 @@ def _remember(name: str, student: str, reply: Reply) -> Entry:
         if reply.outcome == "wrong" and reply.note not in NO_HELP:
             entry.setdefault("help", "mistake")
     entry["note"] = reply.note
-    if reply.outcome == "wrong":
+    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS:  # which is no try at one's own
         answers = entry.setdefault("answers", [])
         if isinstance(answers, list) and reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers.append(reply.answer)

@@ -336,6 +336,9 @@ class Sealed:
         As :func:`coursework.checking.sealing.pack` packs them.
     pages, ladder : tuple of str
         As :func:`coursework.checking.sealing.seal` seals them: the ladder are the hints that every question has.
+    others : (str, str) or None
+        The salt that all variants have in common, and the names under which it is known that an answer is right in one
+        of them, as :func:`coursework.checking.sealing.pack_names` packs them; with the first variant.
     format : int
         Of the file.
     """
@@ -346,6 +349,7 @@ class Sealed:
     answer: str = ""
     pages: tuple[str, ...] = ()
     ladder: tuple[str, ...] = ()
+    others: tuple[str, str] | None = None
     format: int = FORMAT
 
     @classmethod
@@ -365,12 +369,14 @@ class Sealed:
             about.maybe("answer", text) or "",
             about.maybe("pages", many(text)) or (),
             about.maybe("ladder", many(text)) or (),
+            about.maybe("others", pair(text)),
             format,
         )
 
     def as_json(self) -> dict[str, Json]:
         """What :meth:`from_json` reads."""
         more = {"answer": self.answer, "pages": written(self.pages), "ladder": written(self.ladder)}
+        more["others"] = written(self.others)
         sealed: dict[str, Json] = {"lockers": self.lockers, "worth": self.worth}
         return self.question.as_json() | sealed | {name: value for name, value in more.items() if value}
 

@@ -19,7 +19,7 @@ from . import format_3, sealing
 from .catalogue import by_short_name, message
 from .evaluate import MP
 from .fields import Fields, Json, Misread, anything, by_name, text, whole
-from .identity import identity
+from .identity import forgotten, identity
 from .kinds import Blank, Fault, Number, Undecidable
 from .plain import Plain
 from .plugins import kind_of_values, kinds, sealed_folders
@@ -43,6 +43,12 @@ NOT_IN_THIS_CATALOGUE = (
 ALWAYS_WRONG = ("not unit length",)
 #: Up to so many tolerances from the right answer, its locker opens, and one is told that it is close.
 NEARLY = 3
+#: The note of an answer that is right for another variant, here and in the marks, and what is said of it.
+OTHER_NUMBERS = "other numbers"
+FOR_OTHERS = (
+    "This would be right for other numbers than yours: those of another student, or those that everybody sees. Yours "
+    "stand in the text of the question, as its cell shows it once it has run."
+)
 #: As far from it one is told so where the locker has opened all the same: its cell is wider for several numbers.
 CLOSE = 30
 #: What numbers may be off by that were rounded to two digits after the point.
@@ -190,8 +196,10 @@ def variant(name: str) -> Given:
     NoSuchQuestion
         If the name is misspelt.
     """
-    found = find_question(name, identity()).question.variant or Variant()
-    return Given(text_of(found), found.given)
+    student = identity()
+    question = find_question(name, student).question
+    found, note = question.variant or Variant(), forgotten(student, question)
+    return Given(text_of(found) + (f"\n\n{note}" if note else ""), found.given)
 
 
 def own_number(name: str, student: str) -> int:
@@ -214,8 +222,28 @@ def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str,
 
 def judge(name: str, sealed: Sealed, plain: Plain) -> Reply:
     """Compare an answer, as plain data, with what is sealed; the reply holds what it opened."""
-    find = None if sealed.question.exam else lambda fingerprint: opened(sealed, fingerprint)
-    return compare(name, sealed.question, plain, find)
+    if sealed.question.exam:
+        return compare(name, sealed.question, plain, None)
+    for_others = functools.partial(is_right_for_others, sealed, plain)
+    return compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
+
+
+def salt_of_all(name: str) -> str:
+    """The salt that all variants of a question have in common: for what is right in one of them."""
+    return hashlib.sha256(f"{name}, all variants".encode()).hexdigest()[:16]
+
+
+def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
+    """Whether a wrong answer is right in some other variant of the question, as a classmate's pasted one is."""
+    if not sealed.others:
+        return False
+    salt, names = sealed.others
+    common = replace(sealed.question, salt=salt)
+    try:
+        known = fingerprint(common, read(common, plain))
+    except (Blank, Fault, Undecidable):
+        return False
+    return sealing.is_among(names, sealing.slow_key(salt, known))
 
 
 def code_text(code: str) -> str:
@@ -264,7 +292,9 @@ def solution_on(sealed: Sealed, solution: Place | str) -> str:
     return solution_on(sealed, Locker.from_json(page, "A page").solution or "")
 
 
-def compare(name: str, question: Question, plain: Plain, find: Find | None) -> Reply:
+def compare(
+    name: str, question: Question, plain: Plain, find: Find | None, for_others: Callable[[], bool] | None = None
+) -> Reply:
     """Compare an answer, as plain data, with what is known of a question. Gives the reply.
 
     Parameters
@@ -275,6 +305,8 @@ def compare(name: str, question: Question, plain: Plain, find: Find | None) -> R
     find : function or None
         ``None`` where there is nothing to compare with, as in an exam: then only the form of the answer is looked at.
         It gives the locker of a fingerprint, or ``None``.
+    for_others : function, optional
+        It says of an answer that is not known whether it is right for other numbers.
     """
     try:
         reading = read(question, plain)
@@ -283,7 +315,10 @@ def compare(name: str, question: Question, plain: Plain, find: Find | None) -> R
             said = f"A person will read this text of {words} {'word' if words == 1 else 'words'} and decide."
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
-        reply = _compare(name, question, plain, reading, text, find) if find else _taken_down(name, question, reading)
+        if find is None:
+            reply = _taken_down(name, question, reading)
+        else:
+            reply = _compare(name, question, plain, reading, text, find, for_others)
         reply.answer = hashlib.sha256(text.encode()).hexdigest()[:12]
         return reply
     except Blank:
@@ -311,7 +346,15 @@ def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
     )
 
 
-def _compare(name: str, question: Question, plain: Plain, reading: Reading, fingerprint: str, find: Find) -> Reply:
+def _compare(
+    name: str,
+    question: Question,
+    plain: Plain,
+    reading: Reading,
+    fingerprint: str,
+    find: Find,
+    for_others: Callable[[], bool] | None,
+) -> Reply:
     locker = find(fingerprint)
     known = _known_in(question, reading, locker)
     wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
@@ -322,7 +365,7 @@ def _compare(name: str, question: Question, plain: Plain, reading: Reading, fing
             said = _decimals(question, plain, reading) or _coarse(question, reading)
         return Reply(name, "invalid", wrong_form.note, [said, wrong_form.message] if said else [wrong_form.message])
     if known is None:
-        reply = _not_known(name, question, plain, reading, find, locker)
+        reply = _not_known(name, question, plain, reading, find, locker, for_others)
         slip, _, mistake = reply.note.partition(", and ")
         # What is right once a slip is undone twice is the right answer itself, but for the last digits.
         return _close(name, question) if mistake and slip == mistake else reply
@@ -358,7 +401,13 @@ def _far(question: Question, reading: Reading, known: KnownAnswer) -> Number:
 
 
 def _not_known(
-    name: str, question: Question, plain: Plain, reading: Reading, find: Find, locker: Locker | None
+    name: str,
+    question: Question,
+    plain: Plain,
+    reading: Reading,
+    find: Find,
+    locker: Locker | None,
+    for_others: Callable[[], bool] | None,
 ) -> Reply:
     """The reply to an answer that is neither right nor a mistake of the catalogue."""
     if locker is not None and any(
@@ -370,7 +419,10 @@ def _not_known(
     precise, rounded = _precision(plain) if decimals else (True, False)
     near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
     others = [] if rounded else list(other_readings(question, reading))
-    lockers = _each(find, near + [fingerprint(question, turned) for _, _, turned in others])
+    texts = near + [fingerprint(question, turned) for _, _, turned in others]
+    lockers, right_for_others = _each(find, texts, for_others)
+    if right_for_others:
+        return Reply(name, "wrong", OTHER_NUMBERS, [FOR_OTHERS])
     if near and lockers.pop(0) is not None:
         return Reply(
             name,
@@ -394,14 +446,18 @@ def _not_known(
     return Reply(name, "wrong", "", [" ".join(filter(None, lines))])
 
 
-def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
-    """What is known of each fingerprint. The slow hash lets other threads run: they are looked up at once."""
-    if len(texts) > 1:
+def _each(find: Find, texts: Sequence[str], for_others: Callable[[], bool] | None) -> tuple[list[Locker | None], bool]:
+    """What is known of each fingerprint, and whether an answer is right for others.
+
+    The slow hash lets other threads run: all is looked up at once.
+    """
+    if texts and for_others or len(texts) > 1:
         from concurrent.futures import ThreadPoolExecutor  # what it brings is needed here alone
 
-        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
-            return list(threads.map(find, texts))
-    return [find(text) for text in texts]
+        with suppress(RuntimeError), ThreadPoolExecutor(len(texts) + 1) as threads:  # a browser's Python has no threads
+            asked = threads.submit(for_others) if for_others else None
+            return list(threads.map(find, texts)), asked is not None and asked.result()
+    return [find(text) for text in texts], for_others is not None and for_others()
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:

@@ -90,6 +90,22 @@ def pack(lockers: Iterable[bytes]) -> str:
     return _text(b"".join(sorted(lockers)))
 
 
+def pages_filled_up(pages: Iterable[str], count: int) -> list[str]:
+    """Sealed pages with empty ones after them, ``count`` in all: as long as the others, and opened by no key.
+
+    >>> [len(page) for page in pages_filled_up([seal("a", bytes(8)), seal("b" * 99, bytes(8))], 4)]
+    [70, 70, 70, 70]
+    """
+    pages = list(pages)
+    lengths = sorted(len(base64.b85decode(page)) for page in pages) or [BLOCK + PAGE_TAG]
+    empty = [lengths[order % len(lengths)] for order in range(count - len(pages))]
+    seed = "".join(pages)
+    return [
+        *pages,
+        *(_text(hashlib.shake_256(f"{seed} {order}".encode()).digest(size)) for order, size in enumerate(empty)),
+    ]
+
+
 def count_of(lockers: str) -> int:
     """How many lockers there are in the text of some."""
     return len(base64.b85decode(lockers)) // LOCKER
@@ -139,6 +155,33 @@ def mistakes_in(inside: bytes) -> list[bytes]:
     """
     names = [inside[start : start + MISTAKE] for start in range(0, len(inside), MISTAKE)]
     return [name for name in names if any(name)]
+
+
+# --- what is right in some variant: names alone, which lead to nothing --------------------------
+
+
+def name_of(key: bytes) -> bytes:
+    """The name under which it is known that an answer is right for some variant of a question."""
+    return _derive(key, "right for some numbers")[:NAME]
+
+
+def pack_names(names: Iterable[bytes], together: int) -> str:
+    """The text of some names in an order that tells nothing, with others among them up to a multiple of ``together``.
+
+    >>> packed = pack_names([name_of(bytes(32))], 8)
+    >>> len(base64.b85decode(packed)) // NAME, is_among(packed, bytes(32)), is_among(packed, bytes(31))
+    (8, True, False)
+    """
+    names = sorted(set(names))
+    seed = b"".join(names)
+    empty = [hashlib.shake_256(seed + bytes([order])).digest(NAME) for order in range(-len(names) % together)]
+    return _text(b"".join(sorted([*names, *empty])))
+
+
+def is_among(packed: str, key: bytes) -> bool:
+    """Whether the name that belongs to a key is among some."""
+    data, name = base64.b85decode(packed), name_of(key)
+    return any(data[start : start + NAME] == name for start in range(0, len(data), NAME))
 
 
 def _name(key: bytes) -> bytes:

@@ -16,17 +16,16 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 from ...authoring.author import AuthoredQuestion, AuthorError
-from ...authoring.source import MEASURED, checked_names, measured_strengths, read_source, texts_of_questions
+from ...authoring.source import MEASURED, measured_strengths, names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
 from ...checking.fields import Json
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, Plain, read_plain
 from ...checking.plugins import packages
 from ...checking.question import Locker
-from ...checking.questions import compare
+from ...checking.questions import OTHER_NUMBERS, compare
 from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
 from ..record import MISSING, Answer, Case, Mark, Record, Remembered
@@ -62,16 +61,6 @@ CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
 
 # --- what is known of each question -------------------------------------------------------------
-
-
-def names_asked(path: str | Path) -> dict[str, str]:
-    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
-    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
-    cells = [
-        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
-        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
-    ]
-    return checked_names(SimpleNamespace(cells=cells))
 
 
 def questions_of(path: str | Path, secret: bytes, edition: str = "") -> dict[str, tuple[Contract, ...]]:
@@ -288,9 +277,9 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
         said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
         reply = _undecided(name, "numbers of another edition", said)
     elif short and any(_is_right(name, Asked(other), answer) for other in question.siblings):
-        reply = Reply(name, "wrong", "other numbers", ["This is right for other numbers than the ones given to you."])
+        reply = Reply(name, "wrong", OTHER_NUMBERS, ["This is right for other numbers than the ones given to you."])
     share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
-    if reply.outcome == "wrong" and contract.partial and reply.note != "other numbers":
+    if reply.outcome == "wrong" and contract.partial and reply.note != OTHER_NUMBERS:
         right, parts, beyond_chance = parts_right(contract, text)
         share = max(share, beyond_chance)
         pairs = "pairs stand in the right order" if contract.question.kind == "order" else "are right"

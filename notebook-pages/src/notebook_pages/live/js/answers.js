@@ -31,6 +31,7 @@ export class Answers {
     this.answer = `answer ${page} `;
     this.aside = `earlier ${page} `;
     this.agreed = `agreed ${page}`;
+    this.given = `given ${page} `;
   }
 
   all() {
@@ -79,6 +80,16 @@ export class Answers {
   earlier(name, ...shown) {
     return store.entries(`${this.aside}${name} `).map(([, entry]) => entry)
       .filter(({ code }) => !shown.includes(code)).sort((one, other) => other.at - one.at);
+  }
+
+  // What a question gives its reader, whose numbers are nobody else's: {student, text, original}, by the cell's name.
+  keepGiven(name, entry) {
+    store.put(this.given + name, entry);
+  }
+
+  givenTo(student, name, original) {
+    const entry = store.read(this.given + name);
+    return entry?.student === student && entry.original === fingerprint(original) ? entry.text : undefined;
   }
 
   // What this page and its notebook last agreed on: fingerprints by the names of the cells.

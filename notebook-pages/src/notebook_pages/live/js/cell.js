@@ -153,11 +153,17 @@ export class Cell {
     this.ran = this.stopped = false;
   }
 
+  // The text of a question as its reader has it, from an earlier visit, in place of everybody's.
+  showGiven(text) {
+    this.replace([shown({ "text/markdown": text }, this.name, () => null)[0]]);
+  }
+
   begin() {
     this.sent = this.code; // the reader may go on writing meanwhile
     this.stopped = false;
     this.fresh = [];
     this.words = [];
+    this.given = undefined;
     this.box.classList.remove("failed", "waiting");
     this.box.classList.add("running");
   }
@@ -179,6 +185,7 @@ export class Cell {
       this.words.push(message.text);
     } else {
       const [box, words] = shown(message.data, this.name, (data) => this.page.figures.show(data, this));
+      this.given = message.data["text/markdown"] ?? this.given;
       this.fresh.push(box);
       this.words.push(words);
     }

@@ -8,6 +8,8 @@ import { element, preformatted } from "./output.js";
 import { Python } from "./python.js";
 import { fingerprint, NEWER } from "./store.js";
 
+// A cell that shows a question in a variant.
+const SHOWS = /\bvariant\(\s*["']/;
 const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
 
 class Page {
@@ -53,12 +55,39 @@ class Page {
       field.blur();
       button.blur();
       for (const other of this.cells) other.ran = false;
+      this.tellWhose();
       this.askWho();
       this.bar.say(field.value.trim() ? "From the next run on, the numbers are your own." : "From the next run on, the numbers are those that everybody sees.");
     });
     if (this.who) this.who.replaceWith(form);
     else cell.input.after(form);
     this.who = form;
+  }
+
+  // The numbers of a question that were a reader's own are there again when the page is opened the next time.
+  keepGiven(cell) {
+    const student = coursework.read("me.txt")?.text;
+    if (student && cell.given !== undefined && SHOWS.test(cell.original)) {
+      this.answers.keepGiven(cell.id, { student, text: cell.given, original: fingerprint(cell.original) });
+    }
+  }
+
+  // Whoever has said anew who they are does not see another one's numbers.
+  tellWhose() {
+    const student = coursework.read("me.txt")?.text;
+    for (const cell of this.cells.filter(({ original }) => SHOWS.test(original))) {
+      if (!student) cell.restore();
+      else cell.replace([element("p", "live-known", `Run this cell: you get the numbers of ${student}.`)]);
+    }
+    this.showGiven();
+  }
+
+  showGiven() {
+    const student = coursework.read("me.txt")?.text;
+    for (const cell of this.cells) {
+      const text = student && this.answers.givenTo(student, cell.id, cell.original);
+      if (text) cell.showGiven(text);
+    }
   }
 
   // --- the reader's edits ----------------------------------------------------------------------
@@ -84,6 +113,7 @@ class Page {
   // Put what is kept back where the book's code is still the same; elsewhere ask.
   async bring() {
     this.answers.bringOld(this.cells.map(({ id }) => id), this.cells.map(({ original }) => original));
+    this.showGiven();
     await this.lookAtNotebook();
     if (this.reread()) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
     store.listen((key, text) => {
@@ -306,6 +336,7 @@ class Page {
     const { status } = outcome;
     if (status === "ok") {
       cell.end();
+      this.keepGiven(cell);
       this.tally.ran += 1;
       this.tally.plain += Boolean(outcome.plain);
       const words = cell.words.join(" ").trim();

@@ -211,18 +211,23 @@
       const shown = /\bvariant\(\s*["']([^"']+)["']/.exec(originals[number]), checked = /\bcheck\(\s*["']([^"']+)["']/.exec(originals[number]);
       const outcome = record[checked?.[1]]?.outcome;
       let said = "";
-      if (shown && student) said = `Below are the numbers that everybody sees. Run this cell: you get those of ${student}.`;
+      if (shown && student) said = `Run this cell: you get the numbers of ${student}.`;
       else if (outcome === "correct") said = "✓ Correct, when you checked it last. Run this cell to see the reply again.";
       else if (outcome) said = "You have tried this one before. Run this cell to see the reply again.";
       if (!said || !output) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
+      if (shown && student) { // everybody's numbers are not taken for one's own
+        const folded = make("details", { className: "live-built" });
+        folded.append(make("summary", {}, "The numbers that everybody sees"), ...output.childNodes);
+        output.append(folded);
+      }
       output.prepend(make("p", { className: "live-known" }, said));
     });
   };
   tellWhatIsKnown(store.read("coursework me.txt")?.text, JSON.parse(store.tries()?.text ?? "{}"));
 
   // What the reader has written here before comes back, also from another tab; see store.js for the keys.
-  const own = [`answer ${data.page} `, `earlier ${data.page} `, `agreed ${data.page}`];
+  const own = [`answer ${data.page} `, `earlier ${data.page} `, `agreed ${data.page}`, `given ${data.page} `];
   const isOwn = (key) => own.some((start) => key?.startsWith(start));
   const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
   if (again.page) note(RUN, "tried");
