@@ -53,7 +53,7 @@ def rows():
     for program, facts in PROGRAMS.items():
         scalar = f"scalar {facts['scalar']}" if facts["scalar"] else "no quaternions"
         matrix = "C.T" if facts["matrix"] == "transposed" else "C"
-        whole = {"m": matrix, "n": f"rows of {matrix}", "t": f"columns of {matrix}"}
+        whole = {"m": matrix, "t": f"columns of {matrix}"}
         lines = []
         for form, line in facts["lines"].items():
             names = QUATERNION if form == "quaternion" else VECTOR if form == "axis times angle" else ANGLES | BY_AXIS

@@ -5,7 +5,7 @@ A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives th
 the forms that it takes, each with the line of code for it. In a line, ``{w} {x} {y} {z}`` are the parts of a
 quaternion or of a vector, ``{a} {b} {c}`` three angles in the order of the turns and ``{ax} {ay} {az}`` the same by
 their axes; ``{s}`` is the sequence, ``{S}`` the same in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their
-numbers from 0; ``{m}`` a matrix, row by row, ``{n}`` its nine numbers in that order and ``{t}`` column by column;
+numbers from 0; ``{m}`` a matrix, row by row, and ``{t}`` its nine numbers column by column;
 ``{-a}`` is what ``{a}`` is with the other sign. ``sequences`` names the only ones where there are not all twelve.
 ``version`` is the one that was run, by ``python -m tools.programs``, and empty where the table follows the manual
 alone, which is at ``manual`` and was read in November 2026.
@@ -282,7 +282,7 @@ PROGRAMS = {
         "world": LUF,
         "sequences": {"body fixed angles": TAIT_BRYAN},
         "lines": {
-            "matrix": "new Matrix3().set({n})",
+            "matrix": "new Matrix3().fromArray([{t}])",
             "quaternion": "new Quaternion({x}, {y}, {z}, {w})",
             "body fixed angles": "new Euler({ax}, {ay}, {az}, '{S}')",
         },

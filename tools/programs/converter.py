@@ -7,6 +7,7 @@ import subprocess
 from notebook_pages.paths import NODE
 from orientation import SEQUENCES
 from orientation_figures.moving import bundle
+from orientation_figures.moving.converter import FOR_THE_PAGE
 from orientation_workbench.programs import FORMS, OTHER, PROGRAMS
 
 APPLY = """
@@ -36,7 +37,7 @@ def converted(jobs):
     """
     program = "".join(map(bundle.body, bundle.SHARED)) + APPLY.replace("BODY", bundle.body("converter"))
     done = subprocess.run([NODE, "--input-type=module", "-e", program], capture_output=True, text=True,
-                          input=json.dumps({"programs": PROGRAMS, "jobs": jobs}))  # fmt: skip
+                          input=json.dumps({"programs": FOR_THE_PAGE, "jobs": jobs}))  # fmt: skip
     if done.returncode:
         raise RuntimeError(done.stderr[-2000:])
     return json.loads(done.stdout)

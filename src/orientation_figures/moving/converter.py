@@ -4,7 +4,7 @@ import traitlets
 
 from orientation.euler_angles import SEQUENCES
 from orientation.quaternions import dcm_from_quaternion
-from orientation_workbench.programs import FORMS, OTHER, PROGRAMS
+from orientation_workbench.programs import FORMS, OTHER, PROGRAMS, expected_of
 
 from .figure import MovingFigure
 from .state import Numbers
@@ -21,6 +21,29 @@ CHOICES = {
 FIRST = {"form": "quaternion", "sequence": "zyx", "matrix": "as here", "scalar": "first", "unit": "radians"}
 # The camera in its gimbal that the whole chapter is about: 0.4, 0.7 and -0.3 rad, body fixed z-x-y.
 AT_FIRST = (0.9204901330363197, 0.3601778830129209, -0.07022156093803689, 0.13430837632305287)
+
+
+#: Where an axis points to, along forward, left and up.
+_WAYS = {
+    "forward": (1, 0, 0),
+    "left": (0, 1, 0),
+    "up": (0, 0, 1),
+    "back": (-1, 0, 0),
+    "right": (0, -1, 0),
+    "down": (0, 0, -1),
+}
+_FORM_OF = {"quaternion": "quaternion", "rotation vector": "axis times angle", "matrix": "matrix"}
+
+
+def _as_the_page_has_it(program):
+    """What the table says of a program, with the forms that mean the inverse, and its axes as rows of numbers."""
+    facts, inverse = PROGRAMS[program], expected_of(program)["inverse"]
+    axes = [[list(_WAYS[way]) for way in facts[whose]] if facts.get(whose) else None for whose in ("body", "world")]
+    return facts | {"turned": [_FORM_OF[kind] for kind in inverse], "axes": axes}
+
+
+#: The table of programs for the page.
+FOR_THE_PAGE = {program: _as_the_page_has_it(program) for program in PROGRAMS}
 
 
 class Side(traitlets.TraitType):
@@ -71,7 +94,7 @@ class ConverterFigure(MovingFigure):
     target = Side(FIRST | {"program": "this book", "form": "body fixed angles", "sequence": "zxy"}).tag(
         sync=True, state=True
     )
-    programs = traitlets.Dict(PROGRAMS, read_only=True).tag(sync=True, told=True)
+    programs = traitlets.Dict(FOR_THE_PAGE, read_only=True).tag(sync=True, told=True)
 
     @property
     def dcm(self):

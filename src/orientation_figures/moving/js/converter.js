@@ -15,11 +15,6 @@ const ROUNDED = 0.02, EXACT = 1e-6;
 const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi;
 const MINUS = /[\u2212\u2013]/g;
 
-// What the table of programs calls these forms.
-const KINDS = { quaternion: 'quaternion', [ANGLES[0]]: 'Euler angles', [ANGLES[1]]: 'Euler angles', 'axis times angle': 'rotation vector' };
-// Where axes point to, along forward, left and up.
-const WAYS = { forward: [1, 0, 0], left: [0, 1, 0], up: [0, 0, 1], back: [-1, 0, 0], right: [0, -1, 0], down: [0, 0, -1] };
-
 // ---- what a side means ---------------------------------------------------------------------------------
 
 // The side with the convention of its program in place of what the reader might have chosen.
@@ -27,8 +22,7 @@ export function settled(side, programs) {
   const facts = programs[side.program];
   if (!facts) return side;
   const sequences = sequencesOf(side, programs);
-  const inverse = side.form === 'matrix' ? facts.matrix === 'transposed' : facts.inverse?.includes(KINDS[side.form]);
-  return { ...side, matrix: inverse ? 'transposed' : 'as here', scalar: facts.scalar || 'first', unit: facts.unit,
+  return { ...side, matrix: facts.turned.includes(side.form) ? 'transposed' : 'as here', scalar: facts.scalar || 'first', unit: facts.unit,
     sequence: sequences.includes(side.sequence) ? side.sequence : sequences[0] };
 }
 
@@ -79,16 +73,14 @@ export function told(side, orientation) {
   return side.unit === 'degrees' ? values.map(degrees) : values;
 }
 
-// The orientation by the target's axes, where both manuals say where the axes of a thing, or of its world, point to. One
+// The orientation by the axes of the target, where both manuals say where the axes of a thing, or of its world, point to. One
 // triad of the other hand makes no orientation: then nothing is exchanged.
 export function byAxesOf(source, target, programs, dcm) {
-  const [one, other] = [source, target].map(({ program }) => programs[program] ?? {});
-  const [body, world] = ['body', 'world'].map((whose) => (one[whose] && other[whose]
-    ? other[whose].map((way) => one[whose].map((from) => dot(WAYS[way], WAYS[from]))) : IDENTITY));
-  if (determinant(body) !== determinant(world)) return { dcm, said: `One hand for another: of the world of ${one.world ? target.program : source.program} no manual says where its axes point to, so none are exchanged.` };
-  const same = [body, world].every((rows) => rows.every((row, k) => row[k] === 1));
-  const whose = one.body && other.body ? 'body' : 'world', [from, to] = [source, target].map(({ program }) => `${programs[program]?.[whose]?.join(', ')} in ${program}`);
-  return { dcm: multiply(multiply(body, dcm), transpose(world)), said: same ? '' : `The axes are exchanged: x, y, z point ${from}, and ${to}.` };
+  const sides = [source, target].map(({ program }) => ({ program, ...programs[program] })), [one, other] = sides;
+  const [body, world] = [0, 1].map((k) => (one.axes?.[k] && other.axes?.[k] ? multiply(other.axes[k], transpose(one.axes[k])) : IDENTITY));
+  if (determinant(body) !== determinant(world)) return { dcm, said: 'Axes of one world unknown: none are exchanged.' };
+  return { dcm: multiply(body, dcm, transpose(world)),
+    said: body === world ? '' : `x, y, z point ${sides.map((side) => `${side.body.join(', ')} in ${side.program}`).join('; ')}.` };
 }
 
 // Twelve digits after the point: with nine, a program that looks at the length of a quaternion would refuse it.
@@ -100,16 +92,16 @@ export function line(side, numbers, programs) {
   if (!template) return '';
   const texts = numbers.map(short), letters = [...side.sequence], values = { s: side.sequence, S: side.sequence.toUpperCase() };
   if (side.form === 'matrix') {
-    const columns = [0, 1, 2].flatMap((column) => [0, 3, 6].map((row) => texts[row + column]));
-    Object.assign(values, { m: `[${[0, 3, 6].map((k) => `[${texts.slice(k, k + 3).join(', ')}]`).join(', ')}]`, n: texts.join(', '), t: columns.join(', ') });
+    const rows = [0, 3, 6].map((k) => texts.slice(k, k + 3));
+    Object.assign(values, { m: `[${rows.map((row) => `[${row.join(', ')}]`).join(', ')}]`, t: transpose(rows).flat().join(', ') });
   }
   if (side.form === 'quaternion') (side.scalar === 'last' ? 'xyzw' : 'wxyz').split('').forEach((name, k) => { values[name] = texts[k]; });
   if (side.form === 'axis times angle') AXES.forEach((name, k) => { values[name] = texts[k]; });
   if (ANGLES.includes(side.form)) {
-    letters.forEach((letter, k) => Object.assign(values, { ['abc'[k]]: texts[k], [`-${'abc'[k]}`]: short(-numbers[k]), ['ABC'[k]]: letter.toUpperCase(),
+    letters.forEach((letter, k) => Object.assign(values, { ['abc'[k]]: texts[k], ['ABC'[k]]: letter.toUpperCase(),
       ['ijk'[k]]: String(AXES.indexOf(letter)), [`a${letter}`]: texts[k] }));
   }
-  return template.replace(/\{(-?\w+)\}/g, (_, name) => values[name]);
+  return template.replace(/\{(-?)(\w+)\}/g, (_, minus, name) => (minus ? short(-values[name]) : values[name]));
 }
 
 // The formulas that convert: from the source to the matrix of this book, and from that to the target.
@@ -266,6 +258,5 @@ function note(to, numbers, programs) {
   }
   const version = programs[to.program]?.version;
   const means = { matrix: `the matrix is ${to.matrix}`, quaternion: `the scalar stands ${to.scalar}` }[to.form] ?? `the numbers are in ${to.unit}`;
-  const inverse = to.form !== 'matrix' && to.matrix === 'transposed' ? ', and they are of the inverse' : '';
-  return `For ${to.program}${version ? ` (tried: ${version})` : ''} ${means}${inverse}.`;
+  return `For ${to.program}${version ? ` (tried: ${version})` : ''} ${means}.`;
 }

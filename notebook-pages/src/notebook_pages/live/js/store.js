@@ -6,6 +6,7 @@
 //   moment, and other tabs hear of them. One fact has one entry, so that no tab writes over what another one knows:
 //     version                    of the store, as it was when something was last written
 //     answer PAGE CELL           what the reader has written in a cell; earlier PAGE CELL PRINT: what it took the place of
+//     given PAGE CELL            a question as a run gave it to this reader, with their own numbers
 //     agreed PAGE                on what the page and its notebook last agreed
 //     record PAGE LIST NAME      one thing that was read, done or checked, or one question that was answered
 //     question NAME              what coursework knows of one question; coursework NAME: its other texts
