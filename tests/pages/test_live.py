@@ -618,10 +618,10 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     opened.remove(page.page)
     page.page.close()
     again = Page(context, site, name)
-    # Before anything is run: one's own numbers, and of a question that was not run, nobody's unfolded.
-    again.page.wait_for_function(
-        f"document.querySelectorAll('div.cell')[{shown - 1}].innerText.includes({mine[-60:]!r})"
-    )
+    # Before anything is run, one's own numbers are there, and everybody's are not.
+    cell = f"document.querySelectorAll('div.cell')[{shown - 1}]"
+    again.page.wait_for_function(f"{cell}.querySelector('.text_markdown') && !{cell}.querySelector('.live-known')")
+    assert again.below(shown) == mine
     assert run(again) == mine
     assert f"those of {students[own].upper()}" in again.cell(1).locator(".live-who").inner_text()
     again.write(1, codes[0].replace("student('')", f"student('{students[0]}')"))
