@@ -398,7 +398,7 @@ def test_every_fault_leads_to_a_section_and_to_a_checked_question():
                     found.append(source)
             assert found and title, address
             if folder != "chapters":
-                checked = [name for name in re.findall(r"^check\('([^']+)'", "\n".join(found), re.MULTILINE)]
+                checked = [name for name in re.findall(r"check\(['\"]([^'\"]+)['\"]", "\n".join(found), re.MULTILINE)]
                 assert checked and all(questions_module.find_question(name, "") for name in checked), address
 
 

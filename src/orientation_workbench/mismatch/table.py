@@ -432,7 +432,8 @@ TAUGHT = {
         ("chapters/simple-orientations.html#who-has-turned-you-or-the-vector", "Who has turned, you or the vector?"),
         _A_KNEE,
     ),
-    "unit": (_FOUR_QUESTIONS, ("exercises/simple-orientations.html#a-ship-s-heading", "A ship's heading")),
+    "unit": (_FOUR_QUESTIONS, ("exercises/cases-from-practice.html#which-way-is-the-phone-pointing",
+                             "Which way is the phone pointing?")),
     "place of the angle": (
         ("chapters/axis-and-angle.html#a-direction-that-stays", "Axis and angle"),
         ("exercises/axis-and-angle.html#a-folding-bicycle", "A folding bicycle"),
