@@ -15,6 +15,7 @@ from __future__ import annotations
 import functools
 import math
 import numbers
+import operator
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias, TypeGuard, TypeVar, overload
 
@@ -273,7 +274,8 @@ def _evaluate_batch(
         rows = numpy.empty(block.shape[::-1])  # written one after another, and turned around at once
         for row, values in zip(rows, formula(functions, *components)):
             row[:] = values
-        numpy.add(rows.T, 0.0, out=block)
+        rows += 0.0
+        block[:] = rows.T
     return result.reshape(batch + shape)
 
 
@@ -482,7 +484,7 @@ def _array_functions() -> NumberFunctions[Array]:
 
         @staticmethod
         def norm(*components: Array | float) -> Array:
-            return numpy.sqrt(functools.reduce(numpy.add, map(numpy.square, components)))
+            return numpy.sqrt(functools.reduce(operator.add, (entry * entry for entry in components)))
 
         @staticmethod
         def largest(*sizes: Array) -> Array:

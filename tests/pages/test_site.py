@@ -25,7 +25,7 @@ PAGES = html_pages()
 WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
 NARROWEST = {"width": 320, "height": 640}  # a wide page at four times its size: WCAG 2.2, 1.4.10
 HEAVIEST = 450_000  # bytes over the wire, compressed
-HEAVIEST_PAGE = 470_000  # bytes of the page itself, as it stands on the disk
+HEAVIEST_PAGE = 475_000  # bytes of the page itself, as it stands on the disk
 LARGEST_SHIFT = 0.001
 MOST_AWAITED, MOST_AWAITED_PACKED = 175_000, 36_000  # bytes of a page's head and of its style sheets
 
