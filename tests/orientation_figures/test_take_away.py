@@ -48,7 +48,10 @@ def test_a_formula_is_taken_from_the_reference(open_figure):
     page.select_option("select[aria-label=Sequence]", "zyx")
     page.select_option("select[aria-label=Matrix]", "transposed")
     page.select_option("select[aria-label='Angles in']", "degrees")
-    page.wait_for_function("document.querySelector('.taken output').textContent.includes('body_fixed_from_dcm_zyx')")
+    wanted = formula_in("JavaScript", "body_fixed_from_dcm", "zyx", matrix="transposed", unit="degrees")
+    page.wait_for_function(
+        "(text) => document.querySelector('.taken output').textContent.trim() === text", arg=wanted.strip()
+    )
     assert page.locator("dd .taken").count() == 1  # where the reader is
     text = page.text_content(".taken output")
     dcm = orientation.dcm_from_body_fixed((0.3, -0.4, 1.1), "zyx")

@@ -56,8 +56,7 @@ class NeedsMore(SphinxDirective):
             "|---|---|" + "---|" * len(COLUMNS),
             *(row(page, pages[page]) for page in sorted(some, key=order.index)),
         ]
-        for page in pages:
-            self.env.note_dependency(self.env.doc2path(page))
+        self.env.note_reread()  # what a cell needs follows from our packages, too
         container = nodes.Element()
         self.state.nested_parse(StringList(lines, self.env.docname), self.content_offset, container)
         return container.children
