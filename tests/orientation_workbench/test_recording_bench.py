@@ -213,6 +213,8 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
             read_tables(content, "file")
     with pytest.raises(RecordingError, match="no instrument"):
         read_content("\n".join(["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]))
+    with pytest.raises(RecordingError, match="sought among right ascension"):  # as long as the Earth's field
+        examine(DATA / "bright_stars.csv")
     (tmp_path / "empty.csv").write_bytes(b"")
     with pytest.raises(SystemExit) as ended:
         main(["recording", str(tmp_path / "empty.csv")])

@@ -14,7 +14,7 @@ HEADINGS = {
     "angles": r"roll|pitch|yaw|euler|heading|azimuth|\balpha\b|\bbeta\b|\bgamma\b|\bphi\b|\btheta\b|\bpsi\b|\bangle\b",
     "gravity": r"grav",
     "linear acceleration": r"^lin|user|without.?g",
-    "magnetometer": r"mag|field|compass|^[mbh]$",
+    "magnetometer": r"mag(?!nitude)|field|compass|^[mbh]$",
     "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
     "accelerometer": r"acc|force|^a\b|^fib|^f$",
     "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset|gps|^axis [pid]",
@@ -121,7 +121,8 @@ def read_content(source, name=None, rate=None):
         if group.called in ("gyroscope", "accelerometer", "magnetometer") and not np.ptp(group.values, axis=0).any():
             remarks.append(f"{', '.join(group.names)} never change in {len(group.values)} rows")
     remarks += _with_gravity(chosen, groups)
-    alone = set(chosen) == {"gyroscope"} and not chosen["gyroscope"].called
+    # Three columns without a name can look like anything: a table of stars like the Earth's field.
+    alone = set(chosen) in ({"gyroscope"}, {"magnetometer"}) and not any(group.called for group in chosen.values())
     if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
         raise RecordingError(
             "no instrument is in this file: three columns that belong together and behave like a gyroscope, an "
