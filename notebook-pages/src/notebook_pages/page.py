@@ -176,9 +176,9 @@ def theme_styles(static):
     return [path for name in THEME_STYLES for path in sorted(static.glob(name))]
 
 
-def make_small(static, files):
-    """Write style sheets and scripts again without blanks and long names, all in one go."""
-    options = ["--minify", "--log-level=error", "--allow-overwrite", f"--outdir={static}", f"--outbase={static}"]
+def make_small(static, files, told):
+    """Write files again without blanks and long names, all in one go; ``told`` is the least fault that is told of."""
+    options = ["--minify", f"--log-level={told}", "--allow-overwrite", f"--outdir={static}", f"--outbase={static}"]
     if files:
         subprocess.run([NODE, ESBUILD, *options, *files], check=True)
 
@@ -198,7 +198,7 @@ def bundle_styles(site):
             file.write(katex_rules(static / "fonts"))
     for path in parts:
         path.unlink()
-    make_small(static, [*static.glob("*.css"), *static.glob("moving/*.css")])
+    make_small(static, [*static.glob("*.css"), *static.glob("moving/*.css")], "warning")
 
 
 def join_scripts(site):
@@ -216,7 +216,7 @@ def join_scripts(site):
         left_out = {f"{name}.js" for name in SOMETIMES} - {f"{name}.js" for name in file[:-3].split("-")}
         parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
         (static / file).write_text("\n;".join(parts), "utf8")
-    make_small(static, [static / file for file in files])
+    make_small(static, [static / file for file in files], "error")
     for name in PAGE_SCRIPTS:
         (static / name).unlink()
 

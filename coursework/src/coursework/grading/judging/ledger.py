@@ -801,6 +801,16 @@ def _event(line: str) -> Event:
     return made
 
 
+def _of_an_event(about: Fields) -> tuple[str, str, str]:
+    return about.get("id", text), about.get("when", text), about.get("who", text)
+
+
+def _of_an_answer(about: Fields) -> tuple[str, str, str, str, str, str, str]:
+    """How an event begins that is about one answer of one student."""
+    student, assignment = about.get("student", text), about.get("assignment", text)
+    return *_of_an_event(about), student, assignment, about.get("question", text), about.get("answer", text)
+
+
 def _decision(about: Fields) -> Decision:
     credit, rubric = about.get("credit", _or_none(fields.number)), about.maybe("rubric", many(text)) or ()
     points = about.maybe("points", many(_or_none(fields.number)))
@@ -809,13 +819,7 @@ def _decision(about: Fields) -> Decision:
     if points is not None and len(points) != len(rubric):
         raise Misread(f"{about.where}: 'points'", f"those of {len(rubric)} lines", points)
     return Decision(
-        about.get("id", text),
-        about.get("when", text),
-        about.get("who", text),
-        about.get("student", text),
-        about.get("assignment", text),
-        about.get("question", text),
-        about.get("answer", text),
+        *_of_an_answer(about),
         credit,
         about.maybe("comment", text) or "",
         rubric,
@@ -830,13 +834,7 @@ def _decision(about: Fields) -> Decision:
 
 def _appeal(about: Fields) -> Appeal:
     return Appeal(
-        about.get("id", text),
-        about.get("when", text),
-        about.get("who", text),
-        about.get("student", text),
-        about.get("assignment", text),
-        about.get("question", text),
-        about.get("answer", text),
+        *_of_an_answer(about),
         about.get("contract", text),
         about.get("state", text),
         about.get("words", text),
@@ -850,9 +848,7 @@ def _worth(about: Fields) -> Worth:
     if not math.isfinite(points):
         raise Misread(f"{about.where}: 'points'", "a number of points", points)
     return Worth(
-        about.get("id", text),
-        about.get("when", text),
-        about.get("who", text),
+        *_of_an_event(about),
         about.get("question", text),
         about.get("line", text),
         points,
