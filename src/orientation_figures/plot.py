@@ -38,8 +38,8 @@ SETTINGS = {
 }
 
 
-# How wide a plot is set at most, in pixels. It is shown larger on a wide page; on a telephone of 380 pixels, where 348 are
-# left for it, its words are 11 pixels high.
+# How wide a plot is set at most, in pixels. It is shown larger on a wide page; on a telephone of 380 pixels,
+# where 348 are left for it, its words are 11 pixels high.
 SET = 411
 
 
