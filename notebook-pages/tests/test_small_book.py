@@ -20,8 +20,6 @@ PAGES = ("index", "levers", "triangles")
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """The folder of the site."""
-    if not (FETCHED / "node_modules" / "katex").is_dir():
-        pytest.skip(f"there is no node_modules in {FETCHED}: `make setup` brings it")
     book = tmp_path_factory.mktemp("books") / "small"
     shutil.copytree(HERE / "small-book", book)
     environment = os.environ | {"NOTEBOOK_PAGES_FETCHED": str(FETCHED), "NO_COLOR": "1"}
