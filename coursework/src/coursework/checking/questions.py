@@ -27,7 +27,7 @@ from .points import spellings
 from .question import FORMAT, OUTCOMES, KnownAnswer, Locker, Note, Place, Question, Sealed, Variant
 from .reading import Reading, canonical, distance, fault, fingerprint, read, tolerances
 from .reply import Reply
-from .variants import Given, own_variant, siblings_of, text_of, without_sibling
+from .variants import Given, names_of_variants, own_variant, siblings_of, text_of, without_sibling
 
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
@@ -43,12 +43,14 @@ NOT_IN_THIS_CATALOGUE = (
 ALWAYS_WRONG = ("not unit length",)
 #: Up to so many tolerances from the right answer, its locker opens, and one is told that it is close.
 NEARLY = 3
-#: The note of an answer that is right for another variant, here and in the marks, and what is said of it.
+#: The note of an answer that is right for another variant, here and in the marks, and what is said of it, by whether
+#: that is the one that everybody sees.
 OTHER_NUMBERS = "other numbers"
-FOR_OTHERS = (
-    "This would be right for other numbers than yours: those of another student, or those that everybody sees. Yours "
-    "stand in the text of the question, as its cell shows it once it has run."
-)
+FOR_OTHERS = {
+    True: "This is right for the numbers that everybody sees. Since you have said who you are, yours are others: they ",
+    False: "This is right for other numbers than yours, those of another student. Yours ",
+}
+WHERE_ONES_OWN_ARE = "stand in the text of the question, as its cell shows it once it has run."
 #: As far from it one is told so where the locker has opened all the same: its cell is wider for several numbers.
 CLOSE = 30
 #: What numbers may be off by that were rounded to two digits after the point.
@@ -202,11 +204,19 @@ def variant(name: str) -> Given:
     return Given(text_of(found) + (f"\n\n{note}" if note else ""), found.given)
 
 
-def own_number(name: str, student: str) -> int:
-    """The number of the variant in which a student finds a question, or a sibling; 0 where there is only one."""
-    asked, order = without_sibling(name)
-    questions = notebook_questions(name.partition("/")[0])
-    return own_variant(student, asked, questions[asked].question, order) if asked in questions else 0
+def own_numbers(name: str, student: str) -> tuple[int, str]:
+    """The variant in which a student finds a question, or a sibling, and what its numbers are called.
+
+    0 and nothing where there is only one, and for a question of another release; no name where the variant cannot be
+    had, as without a network.
+    """
+    (asked, order), notebook = without_sibling(name), name.partition("/")[0]
+    number = 0
+    with suppress(RuntimeError, KeyError):
+        number = own_variant(student, asked, notebook_questions(notebook)[asked].question, order)
+        variant = notebook_questions(notebook, number)[asked].question.variant
+        return number, names_of_variants([variant])[0] if variant else ""
+    return number, ""
 
 
 def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str, Json]:
@@ -225,7 +235,10 @@ def judge(name: str, sealed: Sealed, plain: Plain) -> Reply:
     if sealed.question.exam:
         return compare(name, sealed.question, plain, None)
     for_others = functools.partial(is_right_for_others, sealed, plain)
-    return compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
+    reply = compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
+    if reply.note == OTHER_NUMBERS:
+        reply.messages = [FOR_OTHERS[_is_right_for_everybody(name, sealed, plain)] + WHERE_ONES_OWN_ARE]
+    return reply
 
 
 def salt_of_all(name: str) -> str:
@@ -244,6 +257,15 @@ def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
     except (Blank, Fault, Undecidable):
         return False
     return sealing.is_among(names, sealing.slow_key(salt, known))
+
+
+def _is_right_for_everybody(name: str, sealed: Sealed, plain: Plain) -> bool:
+    """Whether an answer to a variant is right for the one that everybody sees."""
+    everybodys = notebook_questions(name.partition("/")[0]).get(without_sibling(name)[0])
+    if everybodys is None or not (sealed.question.variant and sealed.question.variant.number):
+        return False
+    find = functools.partial(opened, everybodys)
+    return compare(name, everybodys.question, plain, find).outcome == "correct"
 
 
 def code_text(code: str) -> str:
@@ -422,7 +444,7 @@ def _not_known(
     texts = near + [fingerprint(question, turned) for _, _, turned in others]
     lockers, right_for_others = _each(find, texts, for_others)
     if right_for_others:
-        return Reply(name, "wrong", OTHER_NUMBERS, [FOR_OTHERS])
+        return Reply(name, "wrong", OTHER_NUMBERS)
     if near and lockers.pop(0) is not None:
         return Reply(
             name,
