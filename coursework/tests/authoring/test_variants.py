@@ -170,7 +170,7 @@ def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_
         force, arm = EDITIONS[edition][number]
         return Sealed(Question("expression", variant=Variant(number, 3, {"force": force, "arm": arm})))
 
-    def judged(name, sealed, plain):
+    def judged(name, sealed, plain, student):
         given = sealed.question.given
         right = plain["nodes"][-1][-1] == str(given["force"] * given["arm"])
         reply = Reply(name, *(("correct",) if right else ("wrong", "added")))

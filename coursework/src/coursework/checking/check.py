@@ -67,7 +67,7 @@ def check(name: str, answer: object) -> Reply:
     student = identity()
     sealed = find_question(name, student)
     try:
-        reply = judge(name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True))
+        reply = judge(name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True), student)
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:

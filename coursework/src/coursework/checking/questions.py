@@ -230,11 +230,15 @@ def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str,
     return {name: question.get(name) for name in {**question, **first} if question.get(name) != first.get(name)}
 
 
-def judge(name: str, sealed: Sealed, plain: Plain) -> Reply:
-    """Compare an answer, as plain data, with what is sealed; the reply holds what it opened."""
+def judge(name: str, sealed: Sealed, plain: Plain, student: str = "") -> Reply:
+    """Compare an answer, as plain data, with what is sealed; the reply holds what it opened.
+
+    What a classmate has answered is looked for where somebody has said who works here: it costs a slow hash, and those
+    who have not hear in each reply that these are nobody's numbers.
+    """
     if sealed.question.exam:
         return compare(name, sealed.question, plain, None)
-    for_others = functools.partial(is_right_for_others, sealed, plain)
+    for_others = functools.partial(is_right_for_others, sealed, plain) if student and sealed.others else None
     reply = compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
     if reply.note == OTHER_NUMBERS:
         reply.messages = [FOR_OTHERS[_is_right_for_everybody(name, sealed, plain)] + WHERE_ONES_OWN_ARE]
@@ -328,7 +332,8 @@ def compare(
         ``None`` where there is nothing to compare with, as in an exam: then only the form of the answer is looked at.
         It gives the locker of a fingerprint, or ``None``.
     for_others : function, optional
-        It says of an answer that is not known whether it is right for other numbers.
+        It says of an answer that is not known whether it is right for other numbers. It is asked at once, beside
+        ``find``, where two things can be done at a time.
     """
     try:
         reading = read(question, plain)
@@ -377,6 +382,7 @@ def _compare(
     find: Find,
     for_others: Callable[[], bool] | None,
 ) -> Reply:
+    for_others = _begun(for_others) if for_others else None
     locker = find(fingerprint)
     known = _known_in(question, reading, locker)
     wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
@@ -442,8 +448,8 @@ def _not_known(
     near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
     others = [] if rounded else list(other_readings(question, reading))
     texts = near + [fingerprint(question, turned) for _, _, turned in others]
-    lockers, right_for_others = _each(find, texts, for_others)
-    if right_for_others:
+    lockers = _each(find, texts)
+    if for_others and for_others():
         return Reply(name, "wrong", OTHER_NUMBERS)
     if near and lockers.pop(0) is not None:
         return Reply(
@@ -468,18 +474,27 @@ def _not_known(
     return Reply(name, "wrong", "", [" ".join(filter(None, lines))])
 
 
-def _each(find: Find, texts: Sequence[str], for_others: Callable[[], bool] | None) -> tuple[list[Locker | None], bool]:
-    """What is known of each fingerprint, and whether an answer is right for others.
+def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
+    """Begin some work in a thread, since the slow hash lets others run; what it gives comes when it is asked for."""
+    from concurrent.futures import ThreadPoolExecutor  # needed here alone
 
-    The slow hash lets other threads run: all is looked up at once.
-    """
-    if texts and for_others or len(texts) > 1:
-        from concurrent.futures import ThreadPoolExecutor  # what it brings is needed here alone
+    threads = ThreadPoolExecutor(1)
+    try:
+        return threads.submit(work).result
+    except RuntimeError:  # a browser's Python has no threads: then it is done if it is asked for
+        return work
+    finally:
+        threads.shutdown(wait=False)
 
-        with suppress(RuntimeError), ThreadPoolExecutor(len(texts) + 1) as threads:  # a browser's Python has no threads
-            asked = threads.submit(for_others) if for_others else None
-            return list(threads.map(find, texts)), asked is not None and asked.result()
-    return [find(text) for text in texts], for_others is not None and for_others()
+
+def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
+    """What is known of each fingerprint; the slow hash lets other threads run: all is looked up at once."""
+    if len(texts) > 1:
+        from concurrent.futures import ThreadPoolExecutor
+
+        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
+            return list(threads.map(find, texts))
+    return [find(text) for text in texts]
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:

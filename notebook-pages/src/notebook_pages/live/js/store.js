@@ -211,13 +211,18 @@ export class Store {
     return { text, at: Math.max(...all.map(([, { at }]) => at)) };
   }
 
+  // Who has said to work here, as names are compared; "" for nobody.
+  get student() {
+    return plainName(this.read("coursework me.txt")?.text ?? "");
+  }
+
   // How a question stands: its outcome with the reader's own numbers; or, where nothing is known with these, what is known
   // with others, and whose those were, "" for everybody's. Older entries do not say whose: a reader's own is taken to be
   // the one that comes first, unless it is everybody's, of a question that ``varies``.
   standing(name, varies) {
     const tried = this.read(`question ${name}`)?.tried;
     if (!isObject(tried)) return null;
-    const student = plainName(this.read("coursework me.txt")?.text ?? "");
+    const { student } = this;
     const all = [tried, ...Object.values(tried[OTHERS] ?? {})].filter((one) => isObject(one) && one.outcome);
     const whose = (one) => one.whose ?? (one !== tried ? undefined : varies && !one.variant ? "" : student);
     const own = all.find((one) => whose(one) !== undefined && plainName(whose(one)) === student);
