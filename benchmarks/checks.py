@@ -77,7 +77,9 @@ def main():
         print("| %s | %s | %.1f ms | %d |" % row)
     took = [row[2] for row in found]
     once = min(_slow_hash() for _ in range(ROUNDS))
-    print(f"{len(took)} answers: median {statistics.median(took):.1f} ms, at most {took[-1]:.1f}; one slow hash {once:.1f}")
+    print(
+        f"{len(took)} answers: median {statistics.median(took):.1f} ms, at most {took[-1]:.1f}; one slow hash {once:.1f}"
+    )
 
 
 def _slow_hash():
