@@ -28,7 +28,7 @@ from coursework.grading.judging.cases import Contracts, case_by_rule, variants_o
 from coursework.grading.judging.contract import Asked, Contract
 from coursework.grading.judging.ledger import CUT, Collision, Ledger
 from coursework.grading.judging.marking import questions_of
-from coursework.grading.record import Answer, Mark, Record, Remembered
+from coursework.grading.record import Answer, Identity, Mark, Record, Remembered
 from coursework.grading.reporting.laboratory import BadPolicy, Policies
 from coursework.grading.review import Class
 from coursework.grading.store import Store
@@ -349,7 +349,7 @@ def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, ou
         "student-0", graded.without_names("asked Student-03, student-030 and STUDENT-04").replace("student-030", "")
     )
     assert graded.without_names(None) is None
-    identity = {"name": "Mark O'Neill", "email": "m.oneill@uni.example"}
+    identity = Identity({"name": "Mark O'Neill", "email": "m.oneill@uni.example"})
     graded.records[0] = dataclasses.replace(graded.records[0], identity=identity)
     graded._know_names()
     alias = graded.aliases[graded.records[0].student]
