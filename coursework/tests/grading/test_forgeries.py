@@ -20,7 +20,10 @@ from coursework.grading.store import Store, file_name
 from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import Roster
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.usefixtures("libraries_are_loaded_once"),
+]
 
 GOOD = nbformat.writes(handed_in()).encode()
 

@@ -37,7 +37,10 @@ from coursework.grading.submissions.roster import Roster
 from coursework.grading.tables import as_cell, as_written, table
 from coursework.grading.workers import TaskLost, side_by_side
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.usefixtures("libraries_are_loaded_once"),
+]
 
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 SCRIPT = "<script>alert(1)</script>"

@@ -34,6 +34,8 @@ from coursework.grading.review import Class
 from coursework.grading.store import Store
 from coursework.grading.submissions import pictures
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 WEIGHTS = [12, 25, 31, 44, 57, 68, 73, 89]
 NAME = "beams/load"

@@ -18,6 +18,8 @@ from coursework.grading.grade import Course, NothingToGrade, grade, sort_work
 from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import BadRoster, Roster
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 GOOD = nbformat.writes(handed_in()).encode()
 
 

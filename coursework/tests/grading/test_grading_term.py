@@ -28,6 +28,8 @@ from coursework.grading.reporting.statistics import HIDDEN_BELOW, Correlation
 from coursework.grading.store import Store
 from coursework.grading.submissions import intake
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 UTC = datetime.UTC
 AMSTERDAM = ZoneInfo("Europe/Amsterdam")
 RULES = """
