@@ -66,6 +66,13 @@ def test_right_place_comes_first_or_nearly(name):
     assert first >= REACHED[name][0] and among_three >= REACHED[name][1]
 
 
+def test_what_engineers_call_it_is_found():
+    names = ["attitude", "SO(3)", "rotation matrix", "DCM", "roll pitch yaw"]
+    names += ["intrinsic", "extrinsic", "Cardan", "versor"]
+    for name, places in zip(names, places_found(names), strict=True):
+        assert any("glossary" in place or "chapters/" in place for place in places[:4]), (name, places[:4])
+
+
 def known():
     """The places of the index, by page and anchor."""
     index = json.loads((HTML / SCRIPT).read_text("utf8").partition("=")[2].partition(";\n")[0])
