@@ -1,4 +1,4 @@
-"""What a student waits for: the time of `check` for 62 wrong answers, one to a question: ``python -m benchmarks.checks``.
+"""What a student waits for: the time of `check` for 62 wrong answers: ``python -m benchmarks.checks``.
 
 Each is read, looked up, looked up again with common slips undone, and looked up among the answers of classmates, since
 somebody has said who they are. The least of several times is kept: whatever else the machine does only adds.
@@ -74,12 +74,11 @@ def main():
         student("ada@uni.example")
         found = sorted(times(), key=lambda row: row[2])
     for row in found[-12:]:
-        print("| %s | %s | %.1f ms | %d |" % row)
+        print("| {} | {} | {:.1f} ms | {} |".format(*row))
     took = [row[2] for row in found]
     once = min(_slow_hash() for _ in range(ROUNDS))
-    print(
-        f"{len(took)} answers: median {statistics.median(took):.1f} ms, at most {took[-1]:.1f}; one slow hash {once:.1f}"
-    )
+    middle = statistics.median(took)
+    print(f"{len(took)} answers: median {middle:.1f} ms, at most {took[-1]:.1f}; one slow hash {once:.1f}")
 
 
 def _slow_hash():
