@@ -153,8 +153,8 @@ def test_the_students_package_has_no_grader(tmp_path):
     }
 
 
-#: What is imported only where it is there, or only on request: a browser's own modules, a cluster, pictures in replies; and
-#: by type checkers alone, which bring it.
+#: What is imported only where it is there, or only on request: a browser's own modules, a cluster, pictures in replies;
+#: and by type checkers alone, which bring it.
 ON_REQUEST = {"js", "pyodide_js", "distributed", "_typeshed"}
 OF_STUDENTS_ON_REQUEST = {"numpy", "latex2mathml"}
 
