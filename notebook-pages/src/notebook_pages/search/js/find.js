@@ -56,7 +56,8 @@ const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 const single = (word) => (word.length < 4 || word.endsWith("ss") ? word
   : word.replace(/(?<=[sxz]|ch|sh)es$|s$/, "").replace(/([iy])z(?=e|ed|ing|ation)/, "$1s"));
 const BETWEEN = new Set(["and", "the"]);
-const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles", "values", "of", "in", "python"]);
+const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles", "values", "of", "in", "rotation",
+  "rotations", "orientation"]);
 const isWay = (sign) => sign.term.includes(">");
 
 // ``more`` holds the words of each entry's text, the TeX of the equations, these and the figures, once they are there.
@@ -71,8 +72,9 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     for (const name of group) {
       const list = read(name).all.filter((word) => !BETWEEN.has(word)).map(single);
       if (list.join("").length < 2) continue;
-      if (list.length === 1) list[0] = stem(list[0]);
-      const head = `${list.length > 1} ${list[0]}`;
+      const exact = list.length > 1 || of === "conversions"; // "rotation" is no "rot"
+      if (!exact) list[0] = stem(list[0]);
+      const head = `${exact} ${list[0]}`;
       heads.set(head, [...heads.get(head) ?? [], { of, number, list }]);
     }
   }
