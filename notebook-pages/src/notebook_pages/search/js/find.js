@@ -48,7 +48,7 @@ const PHRASE = 0.98, SYNONYM = 0.9, SAME = 1.12; // for a phrase, a synonym, the
 const OF_WEAK = 0.4, OF_OTHERS = 0.6, OF_GUESSED = 0.7; // for words that say little, are not the subject's, may be slips
 const APART = 0.7; // for a word of a name of several words, without the others
 const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
-const OTHER_WAY = 0.7, NO_WAY = 0.88; // where a conversion is asked for: the one back, or none
+const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 
