@@ -39,12 +39,12 @@ function slips(one, other) {
 
 // What a reader looks for is rather one than another of these, where both answer as well.
 const KINDS = { page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8 };
-const IN_LONG = { term: 0.95 }; // a question of more than two words asks for more than a term
+const IN_LONG = { term: 0.85 }; // a question of more than two words asks for more than a term
 const READ = { page: true, section: true }; // those of the chapters have numbers
 const NO_CHAPTER = 0.93;
 const ASKED = 0.95; // what a place counts at least that readers ask for in words of their own
-const WITHIN = { chapter: 0.45, about: 0.45, text: 0.4 }; // what a word counts that stands not in a phrase, but there
-const PHRASE = 0.98, SYNONYM = 0.9, SAME = 1.12; // for a phrase, a synonym, the very words
+const WITHIN = { chapter: 0.45, about: 0.45, text: 0.25 }; // what a word counts that stands not in a phrase, but there
+const PHRASE = 0.98, SYNONYM = 0.8, SAME = 1.12; // for a phrase, a synonym, the very words
 const OF_WEAK = 0.4, OF_OTHERS = 0.6, OF_GUESSED = 0.7; // for words that say little, are not the subject's, may be slips
 const APART = 0.7; // for a word of a name of several words, without the others
 const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
