@@ -68,7 +68,6 @@ class Question:
 
     def __init__(self, assignment, mark):
         self.assignment, self.title, self.worth = assignment, mark.title, mark.worth
-        self.is_guessable = mark.guessable is not None
         self.outcomes, self.notes, self.earned, self.decided = Counter(), Counter(), 0.0, 0
         self.discrimination = Correlation()
         self.answers, self.versions = {}, set()
