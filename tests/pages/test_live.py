@@ -241,7 +241,7 @@ def test_nothing_is_loaded_before_the_reader_asks(context, site):
 def test_pages_hardly_grow(name):
     data = re.search(r'<script type="application/json" id="live-data">.*?</script>', (HTML / name).read_text("utf8"))
     button = '<button class="run-page">Run this page</button>' * 3
-    added = [(HTML / "_static" / file).read_bytes() for file in ("live.js", "live.css")]
+    added = [(HTML / "_static" / "live.js").read_bytes(), (scripts.JS / "page.css").read_bytes()]
     added.append((data[0] + button).encode())
     assert sum(len(gzip.compress(part)) for part in added) < 5000
 

@@ -40,7 +40,7 @@ MATHEMATICS = r"""() => {
   const faults = [];
   for (const formula of document.querySelectorAll(".katex")) {
     if (!formula.querySelector("math")) faults.push("no MathML: " + formula.textContent);
-    if (!formula.querySelector('.katex-html[aria-hidden="true"]')) faults.push("spoken twice: " + formula.textContent);
+    if (!formula.querySelector(':scope > i[aria-hidden="true"]')) faults.push("spoken twice: " + formula.textContent);
   }
   for (const bad of document.querySelectorAll(".bad-tex, .katex-error, mjx-container")) faults.push(bad.outerHTML);
   const words = document.querySelector("article, .bd-search-container").cloneNode(true);
@@ -52,7 +52,7 @@ MATHEMATICS = r"""() => {
 # What lies beyond the edge of a box that scrolls or cuts: as good as not there for who does not look for it.
 HIDDEN = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
   && getComputedStyle(box).overflowX !== "visible" && box.scrollWidth > box.clientWidth + 1
-  && !box.closest("svg, input, select, textarea, .katex-mathml, .unseen")).map((box) =>
+  && !box.closest("svg, input, select, textarea, .katex > :first-child, .unseen")).map((box) =>
   `${box.className} hides ${box.scrollWidth - box.clientWidth} px: ${box.textContent.trim().slice(0, 80)}`)"""
 # What scrolls sideways shows that it does, by a shadow at the edge.
 WITHOUT_SHADOW = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
@@ -178,7 +178,7 @@ def test_page_in_dark_and_narrow(browser, site, name):
         assert page.evaluate(WITHOUT_SHADOW) == []
         # What is set of the formulas, thousands of elements, takes the colour of the text around it: the wide
         # pages were looked at with all of them.
-        page.evaluate("document.querySelectorAll('.katex-html > *').forEach((element) => element.remove())")
+        page.evaluate("document.querySelectorAll('.katex > [aria-hidden] > *').forEach((element) => element.remove())")
         assert violations(page) == []
         # The wide page has more around the text.
         page.set_viewport_size(WIDE)
@@ -259,7 +259,7 @@ LETTERS = """async (html) => {
   do await aMoment(); while (document.body.offsetHeight && document.fonts.status === "loading");
   return [...document.querySelectorAll("p")].map((box) => {
     const from = box.getBoundingClientRect(), found = [["box", from.height, 0]];
-    const walker = document.createTreeWalker(box.querySelector(".katex-html"), NodeFilter.SHOW_TEXT);
+    const walker = document.createTreeWalker(box.querySelector("[aria-hidden]"), NodeFilter.SHOW_TEXT);
     for (let node; (node = walker.nextNode());)
       for (let place = 0; place < node.length; place++) {
         if (node.data[place] === "\u200b") continue;
@@ -279,10 +279,13 @@ def stand_as_katex_sets_them(run, within=1):
     formulas = sorted({unescape(tex) for name in PAGES for tex in re.findall(r' data-tex="([^"]*)"', text(name))})
     chosen = random.Random(os.environ.get("BOOK_TEST_SEED", "0")).sample(formulas, 60)
     own = [mathematics.katex(os.getpid())(tex, False, "1.15")["html"] for tex in chosen]
+    light = [mathematics.lighten(html, tex) for html, tex in zip(own, chosen, strict=True)]
+    styles = re.sub(r"@font-face\s*\{[^}]*\}", "", mathematics.KATEX.with_name("katex.css").read_text("utf8"))
     places = []
-    for formulas in (own, [mathematics.lighten(html, tex) for html, tex in zip(own, chosen, strict=True)]):
+    for style, formulas in ((styles, own), ("", light)):
         # Each stands in one line, however wide.
-        places.append(run(LETTERS, "".join(f'<p style="width: 4000px">{html}</p>' for html in formulas)))
+        lines = "".join(f'<p style="width: 4000px">{html}</p>' for html in formulas)
+        places.append(run(LETTERS, f"<style>{style} .katex {{ font-size: 1.08em; }}</style>{lines}"))
     for tex, before, after in zip(chosen, *places, strict=True):
         assert [letter for letter, *_ in before] == [letter for letter, *_ in after], tex
         apart = max(
