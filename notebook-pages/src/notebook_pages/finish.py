@@ -3,7 +3,6 @@
 - The address of each script and style carries a version, made of its contents: no cache mixes old ones with new pages.
 - Each page names the policy by which it lives (Content-Security-Policy): what the browser may load, and from where.
 - Pages with code say what it weighs to start Python.
-- Where the templates leave lines and indents, one line's end is left.
 """
 
 import base64
@@ -19,9 +18,6 @@ from .live.runtime import FOLDER, LOCK
 VERSIONED = re.compile(
     r'(<(?:script|link)\b[^>]*?\s(?:src|href)=")([^"?#:]+\.(?:js|css|svg|png|webmanifest))(?:\?v=\w*)?"'
 )
-#: What stands in a page as it is written; elsewhere blanks are one blank.
-AS_WRITTEN = re.compile(r"(<(?:pre|textarea|script)\b.*?</(?:pre|textarea|script)>)", re.DOTALL)
-LINES_END = re.compile(r"\s*\n\s*")
 INLINE = re.compile(r"<script(?: [^>]*)?>(.*?)</script>", re.DOTALL)
 CHARSET = re.compile(r'(<meta charset="utf-8" ?/?>)(?:<meta http-equiv="Content-Security-Policy"[^>]*>)?')
 #: Styles stand in the text because KaTeX and the drawings place their parts by them. Scripts do not, except for those
@@ -62,6 +58,7 @@ def write(site):
 
     (listed,) = (site / FOLDER).glob(f"lock-*/{LOCK}")
     lock = json.loads(listed.read_text("utf8"))
+    variants = " ".join(sorted(folder.name for folder in (site / FOLDER).glob("sealed-*")))
     addresses = [package["file_name"] for package in lock["packages"].values()]
     elsewhere = sorted({"/".join(address.split("/")[:3]) for address in addresses if "://" in address})
     for page in [*pages_of(site), *sorted(site.glob("embed/*.html"))]:
@@ -74,9 +71,7 @@ def write(site):
         text = VERSIONED.sub(with_version, before)
         text = re.sub(r'("bytes":)\d+', rf"\g<1>{lock['bytes']}", text)
         text = re.sub(r'("lock":")[^"]*', rf"\g<1>{listed.parent.name}/", text)
-        text = "".join(
-            part if place % 2 else LINES_END.sub("\n", part) for place, part in enumerate(AS_WRITTEN.split(text))
-        )
+        text = re.sub(r'("variants":")[^"]*', rf"\g<1>{variants}", text)
         rules = f'<meta http-equiv="Content-Security-Policy" content="{policy(text, elsewhere)}">'
         text, count = CHARSET.subn(lambda match: match[1] + rules, text)
         if count != 1:
