@@ -22,7 +22,7 @@ SMALLER = ["katex-sizing", "reset-size6", "size3"]
 #: What book.css says of every such box.
 USUAL = {"frac-line": ("border-bottom-width", "0.04em"), "arraycolsep": ("width", "0.5em")}
 #: Boxes that hold letters side by side, so that a group within them, which has no style of its own, changes nothing.
-ROWS = {"katex-html", "katex-base", "katex-sizing", "row", "tight", "delimcenter"}
+ROWS = {"katex-html", "katex-sizing", "tight", "delimcenter"}
 #: Operators that are what these attributes say without them.
 FENCES = set("()[]{},")
 
