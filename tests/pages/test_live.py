@@ -260,6 +260,13 @@ def test_pages_hardly_grow(name):
     assert sum(len(gzip.compress(part)) for part in added) < 5000
 
 
+def test_formulas_of_the_page_stay_as_they_are_when_python_comes():
+    """KaTeX's own rules, which come with it, give way to those of the page: they would make all formulas larger."""
+    (sheet,) = HTML.glob("runtime/scripts-*/live.css")
+    before, _, rules = sheet.read_text("utf8").partition("@layer katex {")
+    assert ".katex" not in before and ".vlist" in rules and rules.count("{") + 1 == rules.count("}")
+
+
 @pytest.mark.long
 def test_browser_asks_nobody_else(site, browser, tmp_path):
     """By the browser's own log of the network, from its start to its end."""

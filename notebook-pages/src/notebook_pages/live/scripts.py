@@ -49,10 +49,9 @@ def write(site):
             *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")),
             "--bundle", "--format=esm", "--loader:.py=text", f"--outdir={target}",
         )  # fmt: skip
-    # What Python puts out is set in the page, in KaTeX's own words.
-    (target / "live.css").write_text(
-        (JS / "live.css").read_text("utf8") + katex_rules(f"../../{FONTS_FOLDER.as_posix()}"), "utf8"
-    )
+    # What Python puts out is set in the page, in KaTeX's own words. Its rules are a layer: those of the page go before.
+    rules = f"@layer katex {{{katex_rules(f'../../{FONTS_FOLDER.as_posix()}')}}}\n"
+    (target / "live.css").write_text((JS / "live.css").read_text("utf8") + rules, "utf8")
     static = site / "_static"
     static.mkdir(exist_ok=True)
     esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
