@@ -3,6 +3,8 @@
 import os
 from pathlib import Path
 
+import pytest
+
 REPOSITORY = Path(__file__).resolve().parent.parent
 HTML = REPOSITORY / "_build" / "html"
 # Set where a missing browser must not pass unnoticed (.ci/run sets it).
@@ -18,3 +20,10 @@ def html_pages():
     """
     found = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
     return sorted(str(path) for path in found if path.parts[0] not in ("lite", "embed", "404.html"))
+
+
+def every_day(cases, *chosen):
+    """Cases for a test of which those that are chosen run every day; the others, which are much like them, are long."""
+    if lost := set(chosen) - set(cases):
+        raise ValueError(f"not among the cases: {lost}")
+    return [case if case in chosen else pytest.param(case, marks=pytest.mark.long) for case in cases]

@@ -9,7 +9,7 @@ from coursework.authoring.attack import Family, of_pools, of_words, one_sign, si
 from coursework.checking.reading import calls_for
 
 #: To be raised when what is tried gets better: what was measured before is measured again then.
-VERSION = 1
+VERSION = 2
 
 
 def families(public, at):
@@ -46,6 +46,7 @@ def _of_orientations(public, at, build, size):
     symbols = np.array([at.values[name] for name in at.angular]).reshape(len(at.angular), len(at.ones))
     if at.angular:
         yield family("turns about the axes through the symbols", *_turns_of(at, symbols))
+        yield family("the same, one of them from a quarter turn on", *_shifted(at, symbols))
         yield family("the same with half turns of the frames", *_reframed(at, symbols[:2]))
         yield family("the same and a special angle", *_turns_of(at, symbols, at.constants(15)))
         yield family("the same and two special angles", *_turns_of(at, symbols[:2], at.constants(30), at.constants(90)))
@@ -111,6 +112,26 @@ def _turns_of(at, symbols, *constants):
         return result
 
     return sizes, quaternions
+
+
+def _shifted(at, symbols):
+    """Turns through the symbols, of which one begins at a quarter turn, or at half a turn."""
+    inner, _ = _turns_of(at, symbols)
+    shifts = np.array([math.pi / 2, -math.pi / 2, math.pi])
+    ways = [
+        _turns_of(at, symbols + shift * np.eye(len(symbols))[:, which, None])[1]
+        for which in range(len(symbols))
+        for shift in shifts
+    ]
+
+    def quaternions(choices):
+        found = np.zeros((len(choices), len(at.ones), 4))
+        for number, way in enumerate(ways):
+            rows = choices[:, 0] == number
+            found[rows] = way(choices[rows, 1:])
+        return found
+
+    return (len(ways), *inner), quaternions
 
 
 def _reframed(at, symbols):

@@ -75,6 +75,7 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
     vectors, quaternion = {"force": force, "field": field}, {"whole": whole, "field": field}
     angles = {"psi": 0.3, "theta": 0.8, "phi": -0.5, "field": field}
     rates = np.linalg.solve(angular_velocity_matrix([0.3, 0.8, -0.5], "zxy"), field)
+    turned, sky = dcm_from_rotation_vector(force).tolist(), r"It is $-\tfrac{3}{5}\hat{n}_x + \tfrac{4}{5}\hat{n}_z$."
     tried = {
         "a cross product": ("vector", np.cross(field, force).tolist(), {}, vectors, "", 300),
         "its length": ("expression", float(np.linalg.norm(np.cross(field, force))), {}, vectors, "", 3000),
@@ -82,10 +83,28 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
         "two directions": ("vector", (away / np.linalg.norm(away)).tolist(), {}, vectors, "", 6000),
         "turned": ("vector", (np.asarray(dcm_from_quaternion(unit)).T @ field).tolist(), {}, quaternion, "", 6000),
         "of a gimbal": ("vector", rates.tolist(), {}, angles, "The gimbal is z-x-y.", 6000),
+        "angles with the axes": ("vector", np.degrees(np.arccos(unit[:3])).tolist(), {}, {"row": whole}, "", 20000),
+        "a matrix and a row": ("matrix", [*turned, field], {"shape": (4, 3)}, vectors, "", 20000),
+        "a sum in the text": (
+            "direction cosine matrix",
+            dcm_from_rotation_vector([-0.6, 0, 0.8]),
+            FRAMES,
+            {},
+            sky,
+            3000,
+        ),
     }
     for name, (kind, answer, about, data, text, most) in tried.items():
         found = attack(question("trial/data", kind, answer, variant=Variant(0, 2, data), **about), text)
         assert found.way and found.tries < most, (name, found)
+
+
+def test_turns_are_composed_of_which_one_begins_at_a_quarter_turn():
+    """As where an angle is counted from the horizon, and the frame begins upright."""
+    about = {"frames": ("T", "N"), "symbols": "alpha theta"}
+    answer = simple_dcm("z", -alpha) * simple_dcm("y", theta - sm.pi / 2)
+    found = attack(question("trial/shifted", "direction cosine matrix", answer, **about), budget=4000)
+    assert "from a quarter turn on" in found.way
 
 
 @pytest.mark.long

@@ -6,7 +6,7 @@ from test_release import CELLS, COURSE, made_in, needs_solutions, write_source
 from coursework.__main__ import main
 from coursework.authoring import release
 from coursework.authoring import selftest as selftest_module
-from coursework.authoring.attack import BUDGET, Found
+from coursework.authoring.attack import BUDGET, CODE, Found
 from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive as pack
 from coursework.authoring.selftest import (
@@ -17,6 +17,7 @@ from coursework.authoring.selftest import (
     measured_of,
     released_texts,
     selftest,
+    text_of,
     try_question,
     write_measured,
     write_page,
@@ -46,6 +47,14 @@ def test_what_was_measured_of_the_book_is_of_questions_that_it_asks():
     asked = {name for path in SOURCES.values() for name in names_asked(path)}
     assert set(measured) <= asked and len(measured) > 100
     assert all(0 <= tries <= BUDGET for tries in measured.values())
+
+
+@needs_solutions
+def test_a_question_of_a_chapter_is_attacked_with_its_text_in_the_chapter():
+    """Its source has no text: without the chapter's an attack would know none of the numbers that a student reads."""
+    source = release.read_source(SOURCES[release.CHAPTERS])
+    texts = [text_of(source, question, COURSE).partition(CODE)[0] for question in source.questions.values()]
+    assert all("{exercise}" in text or "Bind" in text for text in texts)
 
 
 @needs_solutions

@@ -3,6 +3,7 @@
 import gzip
 import hashlib
 import json
+import math
 import re
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import zipfile
 import nbformat
 import pytest
 from places import HTML, REPOSITORY, html_pages
+from playwright.sync_api import expect
 from test_site import Visit, violations
 
 from coursework.checking.questions import notebook_questions
@@ -101,6 +103,14 @@ class Page:
         self.wait()
         assert "ran." in self.words(), self.words()
 
+    def results_of_a_run(self):
+        """What stands below each cell before the page is run, and after it, and what notes stand there then."""
+        before = self.page.evaluate(RESULTS)
+        self.run()
+        self.page.wait_for_function(PLAYABLE)
+        notes = [self.cell(k).locator(".live-note, .live-error").all_inner_texts() for k in range(1, len(before) + 1)]
+        return before, self.page.evaluate(RESULTS), notes
+
     def cell(self, number):
         return self.page.locator("div.cell").nth(number - 1)
 
@@ -144,7 +154,7 @@ def context(browser):
 def page_that_has_run(context, site):
     page = Page(context, site, QUIET)
     opened.remove(page.page)
-    page.run()
+    page.results = page.results_of_a_run()
     yield page
 
 
@@ -186,38 +196,42 @@ def test_every_notebook_is_a_page_with_code():
     assert notebooks - shown == {"index.html", "rotations.html"}  # whose figures need no code on the page
 
 
-# The build has run all cells with the same Python code; pages of exercises are alike in a browser.
-@pytest.mark.sampled(1)
-@pytest.mark.parametrize("name", [name for name in PAGES if not name.startswith(STORED)])
-def test_results_equal_the_stored_ones(context, site, name):
+def equal_the_stored_ones(page, name, before, after, notes):
     """Every cell that needs SymPy only gives what is printed; the others say why they did not run."""
-    page = Page(context, site, name)
     # What a check says where nobody has answered yet is shown only once somebody has asked it.
-    before = [result.replace(' hidden=""', "") for result in page.page.evaluate(RESULTS)]
-    if all(kind.get("skip") for kind in kinds(name)):
-        page.page.click("button.run-page")
-        page.page.wait_for_function("document.querySelector('#live-words').textContent.includes('there already')")
-        assert not [url for url in page.asked if url.endswith(".wasm")]
-        return
-    page.run()
-    page.page.wait_for_function(PLAYABLE)
-    after = page.page.evaluate(RESULTS)
-    for number, kind in enumerate(kinds(name), start=1):
-        note = page.cell(number).locator(".live-note, .live-error")
+    before = [result.replace(' hidden=""', "") for result in before]
+    for number, (kind, note) in enumerate(zip(kinds(name), notes, strict=True), start=1):
         if not kind["needs"]:
             assert after[number - 1] == before[number - 1], f"cell {number}"
-            assert note.count() == 0, f"cell {number}: {note.inner_text()}"
+            assert note == [], f"cell {number}"
         elif kind["skip"]:
-            assert note.count() == 0
+            assert note == []
         elif kind["needs"] == ["anywidget"]:  # a figure, or what asks one: all that it needs comes with the site
-            assert note.count() == 0, f"cell {number}: {note.inner_text()}"
+            assert note == [], f"cell {number}"
         else:
-            assert "Not run here" in note.inner_text(), f"cell {number}"
+            assert "Not run here" in note[0], f"cell {number}"
             built = before[number - 1].partition("<figcaption>")[0]
             assert after[number - 1].startswith(built), f"cell {number} has lost its printed result"
     assert page.errors == []
     needed = any(set(kind["needs"]) - {"anywidget"} and not kind["skip"] for kind in kinds(name))
     assert needed or page.outside() == []
+
+
+def test_results_of_a_page_equal_the_stored_ones(page_that_has_run):
+    equal_the_stored_ones(page_that_has_run, QUIET, *page_that_has_run.results)
+
+
+# The build has run all cells with the same Python code.
+@pytest.mark.long
+@pytest.mark.parametrize("name", [name for name in PAGES if not name.startswith(STORED)])
+def test_results_equal_the_stored_ones(context, site, name):
+    page = Page(context, site, name)
+    if all(kind.get("skip") for kind in kinds(name)):
+        page.page.click("button.run-page")
+        page.page.wait_for_function("document.querySelector('#live-words').textContent.includes('there already')")
+        assert not [url for url in page.asked if url.endswith(".wasm")]
+        return
+    equal_the_stored_ones(page, name, *page.results_of_a_run())
 
 
 def test_the_list_of_cells_is_that_of_the_build(site):
@@ -396,7 +410,7 @@ def test_numpy_is_fetched_and_checked(context, site, made_wheels):
     assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
 
 
-@pytest.mark.sampled(1, of="pages that start otherwise")
+@pytest.mark.long
 def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
     page = Page(context, site, QUIET)
     page.page.click("button.run-cell >> nth=2")  # with it comes the editor
@@ -442,7 +456,7 @@ def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, 
     assert page.errors == [] and not any(sent)
 
 
-@pytest.mark.sampled(1, of="pages that start otherwise")
+@pytest.mark.long
 def test_hidden_code_runs_before_the_cell_below_it(context, site):
     """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the next one."""
 
@@ -585,7 +599,7 @@ def test_exercise_is_checked_in_the_page(context, site):
     assert page.outside() == [] and page.errors == []
 
 
-@pytest.mark.sampled(1, of="what a page keeps")
+@pytest.mark.long
 def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
@@ -644,7 +658,6 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
     assert page.outside() == [] and page.errors == []
 
 
-@pytest.mark.sampled(1, of="what a page keeps")
 def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, site):
     """Its outputs are those of nobody: everybody's numbers, and questions that nobody has attempted."""
     name, question = "exercises/simple-orientations.html", "simple-orientations/boom"
@@ -666,7 +679,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     assert page.cell(shown).locator("details:has-text('that everybody sees')").get_attribute("open") is None
 
 
-@pytest.mark.sampled(1, of="what a page keeps")
+@pytest.mark.long
 def test_tries_and_hints_of_a_page_outlive_it(context, site):
     name = "exercises/simple-orientations.html"
     places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
@@ -688,7 +701,7 @@ OFFERED = """from IPython.display import HTML
 HTML('<div class="coursework-reply" data-sibling="simple-orientations/compass/sibling">Right, with help</div>')"""
 
 
-@pytest.mark.sampled(1, of="what a page keeps")
+@pytest.mark.long
 def test_a_sibling_question_is_one_button_away(context, site):
     name = "exercises/simple-orientations.html"
     page = Page(context, site, name)
@@ -791,20 +804,26 @@ def test_start_afresh(context, site):
 
 # --- failures of the network, named ---------------------------------------------------------------
 
-FAILURES = {
-    "**/*.wasm": [
-        ("404", dict(status=404)),
-        ("broken", dict(body=b"\0asm, but broken", content_type="application/wasm")),
-    ],
-    "**/sympy*.whl": [("not the file that this edition names", dict(body=b"no wheel"))],
-    "**/pyodide-lock.json": [("500", dict(status=500))],
-}
+# The cheapest every day: of all of them the reader is told, and the next run asks once more.
+FAILURES = [
+    ("**/pyodide-lock.json", "500", dict(status=500)),
+    pytest.param("**/*.wasm", "404", dict(status=404), marks=pytest.mark.long),
+    pytest.param(
+        "**/*.wasm",
+        "broken",
+        dict(body=b"\0asm, but broken", content_type="application/wasm"),
+        marks=pytest.mark.long,
+    ),
+    pytest.param(
+        "**/sympy*.whl",
+        "not the file that this edition names",
+        dict(body=b"no wheel"),
+        marks=pytest.mark.long,
+    ),
+]
 
 
-@pytest.mark.sampled(1, of="pages that start otherwise")
-@pytest.mark.parametrize(
-    ("pattern", "words", "answer"), [(p, *case) for p, cases in FAILURES.items() for case in cases]
-)
+@pytest.mark.parametrize(("pattern", "words", "answer"), FAILURES)
 def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, words, answer):
     page = Page(context, site, QUIET)
     page.page.route(pattern, lambda route: route.fulfill(**answer))
@@ -819,7 +838,7 @@ def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, w
     assert "Cell 3 ran" in page.words()
 
 
-@pytest.mark.sampled(1, of="pages that start otherwise")
+@pytest.mark.long
 def test_tab_that_is_older_than_the_pages_says_so(context, site):
     """Its scripts are gone from the server, where by now the same page asks for others."""
     page = Page(context, site, QUIET)
@@ -835,7 +854,7 @@ def test_tab_that_is_older_than_the_pages_says_so(context, site):
     page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
 
 
-@pytest.mark.sampled(1, of="pages that start otherwise")
+@pytest.mark.long
 def test_script_that_did_not_come_is_asked_for_again(context, site):
     """Browsers remember a script that failed for as long as the page is open."""
     page = Page(context, site, QUIET)
@@ -847,7 +866,7 @@ def test_script_that_did_not_come_is_asked_for_again(context, site):
     page.page.wait_for_selector("#live-words:has-text('Cell 3 ran')")
 
 
-@pytest.mark.sampled(1, of="pages that start otherwise")
+@pytest.mark.long
 def test_python_starts_where_the_storage_is_full(context, site):
     """All sites of one address share it: it may be full before the book is opened."""
     page = Page(context, site, QUIET)
@@ -889,7 +908,7 @@ BEGUN = (
 SLOW = "print('begun')\nimport time\nuntil = time.time() + 4\nwhile time.time() < until: pass\n"
 
 
-@pytest.mark.sampled(2, of="a hurried hand")
+@pytest.mark.long
 def test_page_asked_for_twice_runs_once_and_in_order(context, site):
     """While Python loads, and in the midst of the run: cells above would else run again after those below."""
     page = Page(context, site, QUIET)
@@ -909,7 +928,6 @@ def test_page_asked_for_twice_runs_once_and_in_order(context, site):
     assert order == sorted(set(order)) and len(order) > 5 and page.errors == []
 
 
-@pytest.mark.sampled(2, of="a hurried hand")
 def test_cell_changed_while_it_runs_has_to_run_again(shared):
     shared.try_code(3, f"{SLOW}word = 'old'", wait=False)
     shared.page.wait_for_function(BEGUN, arg=3)
@@ -918,7 +936,6 @@ def test_cell_changed_while_it_runs_has_to_run_again(shared):
     assert "new" in shared.try_code(4, "word")
 
 
-@pytest.mark.sampled(2, of="a hurried hand")
 def test_cell_that_runs_is_not_run_again_by_a_second_press(shared):
     shared.try_code(3, "count = 0")
     shared.try_code(3, f"{SLOW}count += 1", wait=False)
@@ -938,7 +955,7 @@ def test_what_is_asked_for_right_after_stop_runs(shared):
     assert "Cell 4 ran" in shared.words()
 
 
-@pytest.mark.sampled(2, of="a hurried hand")
+@pytest.mark.long
 def test_stop_while_python_loads_and_run_again(context, site):
     page = Page(context, site, QUIET)
     page.page.click("button.run-cell >> nth=2")
@@ -1095,12 +1112,15 @@ class FigurePage(Page):
         self.figure = self.page.evaluate(find, "SimpleFigure(") + 1
         self.asking = self.page.evaluate(find, "figure.angle") + 1
 
+    def field(self):
+        """Where its angle is typed; another figure of the page may have one of the same name."""
+        return self.cell(self.figure).get_by_label("theta in degrees")
+
     def turn(self, degrees):
-        """Type an angle into the figure."""
-        self.page.get_by_label("theta in degrees").fill(str(degrees))
+        self.field().fill(str(degrees))
 
     def angle(self):
-        return float(self.page.get_by_label("theta in degrees").input_value())
+        return float(self.field().input_value())
 
     def run_below(self, number):
         self.cell(number).locator("button.run-cell").click()
@@ -1115,9 +1135,9 @@ class FigurePage(Page):
         )
 
 
-@pytest.mark.sampled(1, of="figures and code")
 def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context, site):
     page = FigurePage(context, site)
+    as_the_code_says = page.angle()
     page.turn(90)
     page.run_below(page.asking)  # and, before it, the figure's own cell
     assert page.angle() == 90
@@ -1126,7 +1146,7 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     assert page.try_code(page.asking, "print(figure.angle)").startswith("-0.5235987")
     # The other way round, a matrix as well, and no word that is wrong.
     page.try_code(page.asking, "figure.angle = 0.5")
-    page.page.wait_for_function("() => document.querySelector('.moving .field input').value === '28.65'")
+    expect(page.field()).to_have_value("28.65")
     assert "0.479" in page.try_code(page.asking, "figure.dcm")
     assert "did you mean angle" in page.try_code(page.asking, "figure.angel = 0.5")
     assert "Angles are in radians" in page.try_code(page.asking, "figure.angle = 30")
@@ -1140,14 +1160,15 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     # Run below the figure itself makes it anew, as its code says, and a cell further down asks the new one.
     page.cell(page.figure).locator("summary").first.click()
     page.cell(page.figure).locator("button.run-cell").click()
-    page.page.wait_for_function("() => document.querySelector('.moving .field input').value === '34.38'")
+    expect(page.field()).to_have_value(str(as_the_code_says))
     page.wait()
-    assert page.page.locator(".moving").count() == 1
-    assert page.try_code(page.asking, "print(figure.angle)").startswith("0.6")
+    assert page.cell(page.figure).locator(".moving").count() == 1
+    angle = float(page.try_code(page.asking, "print(figure.angle)"))
+    assert angle == pytest.approx(math.radians(as_the_code_says), abs=1e-3)
     assert page.outside() == [] and page.errors == []
 
 
-@pytest.mark.sampled(1, of="figures and code")
+@pytest.mark.long
 def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
     """Where the server gives no shared memory, the first run loads the page again, by a service worker."""
     context = browser.new_context()
@@ -1188,7 +1209,7 @@ def test_a_figure_is_set_from_a_matrix_of_the_readers_own(context, site):
     assert page.errors == []
 
 
-@pytest.mark.sampled(1, of="figures and code")
+@pytest.mark.long
 def test_the_explorer_of_sequences_works_in_the_page(context, site):
     page = Page(context, site, "chapters/euler-angles.html")
     text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
@@ -1204,7 +1225,7 @@ def test_the_explorer_of_sequences_works_in_the_page(context, site):
     assert page.outside() == [] and page.errors == []
 
 
-@pytest.mark.sampled(1, of="figures and code")
+@pytest.mark.long
 def test_controls_that_only_a_notebook_can_show_say_so(context, site):
     page = FigurePage(context, site)
     page.page.click("button.run-page")

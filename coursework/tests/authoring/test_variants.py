@@ -365,8 +365,8 @@ def test_a_notebook_remembers_tries_and_help(recorded):
     ]
     data = nbformat.writes(nbformat.v4.new_notebook(cells=cells)).encode()
     found = intake.remembered_in(data)
-    tried = found[NAME].pop("tried")
-    assert found == {NAME: {"tries": 2, "help": "mistake"}} and tried == shown[0].tried == shown[1].tried
+    tried = found[NAME].tried
+    assert found == {NAME: Remembered(2, tried, "mistake")} and [*tried] == shown[0].tried == shown[1].tried
     assert len(tried) == 1 and shown[0].answer.startswith(tried[0])
     assert intake.remembered_in(b"{}") == {} and intake.remembered_in(b'\xff coursework-reply "') == {}
 

@@ -24,6 +24,8 @@ from coursework.grading.judging.ledger import APPEALS, FORMAT, REJECTED, UNDER_R
 from coursework.grading.review import Class
 from coursework.grading.store import Store
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 SCRIPT = "<script>alert(1)</script>"
 ESSAY, SUM = "essays/why", "essays/sum"

@@ -15,7 +15,7 @@ import pytest
 from grading_class import handed_in, put, write_sources
 
 from coursework.grading.execution import cluster_keys
-from coursework.grading.execution.sandbox import Limits
+from coursework.grading.execution.sandbox import Limits, given_up
 from coursework.grading.grade import grade
 
 distributed = pytest.importorskip("distributed")
@@ -125,6 +125,28 @@ def run_job(job, name):
 
 cluster.run_job = run_job
 """
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        {"finished": "yes"},
+        {"cells": [{"outcome": 3}]},
+        {"cells": "done"},
+        {"isolation": {"layers": [], "weak": 0}},
+        {"answers": {"turns/sum": {"outcome": "recorded", "plain": {"nodes": [], "value": ["no such kind"]}}}},
+        {"answers": {}},
+        {"id": "another"},
+    ],
+)
+def test_what_a_captured_worker_sends_is_read_as_strictly_as_what_a_notebook_sends(damage):
+    from coursework.grading.execution import cluster as of_a_cluster  # not before it is known that Dask is there
+
+    job = {"id": "1", "cells": [], "questions": {"turns/sum": {}}}
+    result, ours = given_up(job, "a trial"), {"python": "3"}
+    assert of_a_cluster._demand_sound({"result": result, "software": ours}, job, ours) == result
+    with pytest.raises(ValueError, match="The cluster sent damaged data"):
+        of_a_cluster._demand_sound({"result": result | damage, "software": ours}, job, ours)
 
 
 @pytest.mark.long

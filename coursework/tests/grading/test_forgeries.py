@@ -15,12 +15,15 @@ from coursework.checking.points import points
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade
 from coursework.grading.judging.marking import questions_of
-from coursework.grading.record import Record
+from coursework.grading.record import Identity, Record
 from coursework.grading.store import Store, file_name
 from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import Roster
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.usefixtures("libraries_are_loaded_once"),
+]
 
 GOOD = nbformat.writes(handed_in()).encode()
 
@@ -128,7 +131,7 @@ class Class:
         self.students, self.worth, self.store = identities, 6, Store(folder)
 
     def identity(self, student):
-        return self.students[student]
+        return Identity.from_json(self.students[student], student)
 
     def points(self, student):
         return 6

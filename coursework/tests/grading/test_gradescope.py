@@ -15,6 +15,8 @@ from grading_class import handed_in, write_sources
 from coursework.__main__ import main
 from coursework.grading.export.gradescope import requirements
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 BWRAP = ["bwrap", "--bind", "/", "/", "true"]
 IMITATED = shutil.which("bwrap") and subprocess.run(BWRAP, stderr=subprocess.DEVNULL).returncode == 0
 needs_a_machine = pytest.mark.skipif(not IMITATED, reason="the machine is imitated with bubblewrap")

@@ -28,7 +28,7 @@ from coursework.grading.execution.sandbox import Limits, Sandbox, WeakIsolation,
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.judging.ledger import Ledger
-from coursework.grading.record import Answer
+from coursework.grading.record import Answer, Identity
 from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
 from coursework.grading.store import InUse, Store, file_name
@@ -37,7 +37,10 @@ from coursework.grading.submissions.roster import Roster
 from coursework.grading.tables import as_cell, as_written, table
 from coursework.grading.workers import TaskLost, side_by_side
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+pytestmark = [
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.usefixtures("libraries_are_loaded_once"),
+]
 
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 SCRIPT = "<script>alert(1)</script>"
@@ -165,7 +168,7 @@ def test_a_record_says_what_it_rests_on(course):
     written = (course / "submissions" / "endless" / "turns.ipynb").read_bytes()
     (one,) = found.notebooks
     assert one.sha256 == hashlib.sha256(written).hexdigest()
-    assert one.isolation["layers"] and one.isolation["weak"] is False and one.seed == 0
+    assert one.isolation.layers and one.isolation.weak is False and one.seed == 0
     assert [cell.outcome for cell in one.cells][3] == "timeout"
     assert found.limits == dataclasses.asdict(LIMITS)
     assert set(found.software) >= {"python", "sympy", "numpy", "coursework"}
@@ -640,7 +643,7 @@ def test_what_dies_under_a_notebook_costs_only_that_one(course, prepared, tmp_pa
     for found in Store(prepared).all():
         expected = "undecided" if found.student == "student-4" else "not attempted"
         assert {mark.outcome for mark in found.marks.values()} == {expected}
-        assert ("given up" in found.notebooks[0].isolation) == (expected == "undecided")
+        assert (found.notebooks[0].isolation.given_up is not None) == (expected == "undecided")
     assert len(graded_lines(prepared)) == len(set(graded_lines(prepared))) == 9
     # No final record of a machine's failure: it is tried again, and nothing else is.
     assert grade(tmp_path / "few", prepared, **options)["graded"] == 1
@@ -996,7 +999,7 @@ def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
 
         names = [name for name in zipfile.ZipFile(tmp_path / "submissions.zip").namelist() if name.endswith("ipynb")]
         whose = {one.student: dict(one.keys) for one in map(Layout(names, ["turns"]).claim, names)}
-        stub = type("Marks", (), {"students": whose, "identity": lambda self, student: whose[student]})()
+        stub = type("Marks", (), {"students": whose, "identity": lambda self, student: Identity(whose[student])})()
         first = gradebooks._scale(book, layout.title(), 4)[1]
         found, several = gradebooks._match(book, layout.title(), stub, first)
         assert len(found) == 3 and several == []

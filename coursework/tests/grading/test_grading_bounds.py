@@ -20,6 +20,8 @@ from coursework.grading.judging.ledger import Ledger
 from coursework.grading.record import Answer, Record
 from coursework.grading.store import Store
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 NAME = "turns/sum"
 alpha, beta = sm.symbols("alpha beta")
 

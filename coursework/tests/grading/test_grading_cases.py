@@ -28,11 +28,13 @@ from coursework.grading.judging.cases import Contracts, case_by_rule, variants_o
 from coursework.grading.judging.contract import Asked, Contract
 from coursework.grading.judging.ledger import CUT, Collision, Ledger
 from coursework.grading.judging.marking import questions_of
-from coursework.grading.record import Answer, Mark, Record, Remembered
+from coursework.grading.record import Answer, Identity, Mark, Record, Remembered
 from coursework.grading.reporting.laboratory import BadPolicy, Policies
 from coursework.grading.review import Class
 from coursework.grading.store import Store
 from coursework.grading.submissions import pictures
+
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 WEIGHTS = [12, 25, 31, 44, 57, 68, 73, 89]
@@ -347,7 +349,7 @@ def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, ou
         "student-0", graded.without_names("asked Student-03, student-030 and STUDENT-04").replace("student-030", "")
     )
     assert graded.without_names(None) is None
-    identity = {"name": "Mark O'Neill", "email": "m.oneill@uni.example"}
+    identity = Identity({"name": "Mark O'Neill", "email": "m.oneill@uni.example"})
     graded.records[0] = dataclasses.replace(graded.records[0], identity=identity)
     graded._know_names()
     alias = graded.aliases[graded.records[0].student]

@@ -22,11 +22,13 @@ from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade
 from coursework.grading.judging import term
 from coursework.grading.judging.ledger import Ledger
-from coursework.grading.record import Answer, Mark, Record, RunNotebook
+from coursework.grading.record import Answer, Identity, Mark, Record, RunNotebook
 from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.statistics import HIDDEN_BELOW, Correlation
 from coursework.grading.store import Store
 from coursework.grading.submissions import intake
+
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
 UTC = datetime.UTC
 AMSTERDAM = ZoneInfo("Europe/Amsterdam")
@@ -59,7 +61,7 @@ def rules(tmp_path):
 def record(points, worth=6, when="", late=False, assignment="turns", identity=None):
     notebook = RunNotebook(late=late, handed_in=when)
     marks = {f"{assignment}/sum": Mark("correct", points=points, worth=worth)}
-    return Record("ann", assignment, identity=identity or {}, notebooks=(notebook,), marks=marks)
+    return Record("ann", assignment, identity=Identity(identity or {}), notebooks=(notebook,), marks=marks)
 
 
 def result(rules, *records, student="ann", now=datetime.datetime(2026, 12, 1, tzinfo=UTC), worth=None):
@@ -184,6 +186,9 @@ def test_what_is_dropped_is_best_for_the_student(rules):
         ("[late]", "[extensions.ann]\ntruns = 'excused'\n[late]", "no assignment 'truns'"),
         ("[late]", "[[drop]]\nof = ['turns']\n[late]", "a whole number below 1"),
         ("[late]", "[[drop]]\n[[drop]]\n[late]", "in two rules"),
+        ("[late]", "[[drop]]\nof = 'turns'\n[late]", "drop.of is a list of assignments, and this is 'turns'"),
+        ("[late]", "[drop]\nof = ['turns']\n[late]", "drop is a list of tables"),
+        ("weight = 3", "times = 3", "assignments.turns.times is the name of a table, and this is 3"),
         ('"Europe/Amsterdam"', "Europe", "line 3"),
     ],
 )

@@ -26,6 +26,8 @@ from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.laboratory import Policies
 from coursework.grading.store import Store
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 WEIGHTS = [12, 25, 31, 44, 57, 68, 73, 89]
 ASSIGNMENTS = [f"hw{number}" for number in range(6)]
 DUE = {

@@ -53,7 +53,7 @@ def test_no_student_code_runs_where_isolation_is_weak(without):
 def test_each_layer_alone_stops_what_it_is_for():
     """Every layer is tried by itself; here with all the others off, so that nothing else can have helped."""
     with Sandbox() as sandbox:
-        available = sandbox.isolation_in_force()["layers"]
+        available = sandbox.isolation_in_force().layers
     for layer in available:
         if layer == NAMESPACES:
             continue  # tried on its own at every start; what it hides cannot be tried from outside
@@ -82,7 +82,7 @@ def test_copies_of_a_warm_parent_are_as_much_apart_as_those_that_are_started():
 
     def who(sandbox):
         result = sandbox.run(job)
-        assert result["finished"] and result["isolation"] == alone.isolation_in_force()
+        assert result["finished"] and result["isolation"] == alone.isolation_in_force().as_json()
         return result["answers"]["mine"]["plain"]["nodes"]
 
     with Sandbox() as alone, Sandbox() as first, Sandbox(like=first) as one, Sandbox(like=first) as other:

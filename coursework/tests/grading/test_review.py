@@ -25,6 +25,8 @@ from coursework.grading.record import Record, Remembered
 from coursework.grading.review import POLICY, Class, application, hints_of
 from coursework.grading.store import Store
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"
 UNUSUAL = "sine = sm.sin(alpha)*sm.cos(beta)**7 + sm.Rational(3, 17)*sm.cos(alpha - 2*beta)"

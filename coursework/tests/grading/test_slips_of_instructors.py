@@ -16,6 +16,8 @@ from coursework.grading.judging.ledger import Ledger
 from coursework.grading.store import Store
 from coursework.grading.submissions.roster import Roster
 
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
 LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
 
 

@@ -11,6 +11,7 @@ import sys
 import urllib.error
 import urllib.parse
 import urllib.request
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 
 from .install import BY_CONTENT, LASTING
@@ -19,16 +20,17 @@ from .paths import HTML
 PATIENCE = 60  # seconds
 
 
-def reader(previous):
+def reader(previous: str) -> Callable[[str], bytes | None]:
     """What gives a file of the last edition by its path: its bytes, or ``None`` where there is none."""
     if "://" not in previous:
         return lambda path: (Path(previous) / path).read_bytes() if (Path(previous) / path).is_file() else None
 
-    def read(path):
+    def read(path: str) -> bytes | None:
         address = urllib.parse.urljoin(previous.rstrip("/") + "/", urllib.parse.quote(path))
         try:
             with urllib.request.urlopen(address, timeout=PATIENCE) as answer:
-                return answer.read()
+                content: bytes = answer.read()
+                return content
         except urllib.error.HTTPError as error:
             if error.code in (404, 410):
                 return None
@@ -37,7 +39,7 @@ def reader(previous):
     return read
 
 
-def carry_over(previous, site=HTML):
+def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
     """Put into ``site`` what the edition at ``previous`` names by its content; return the paths, or ``None``.
 
     ``None`` means that nothing is published there, or no list: it is the first edition that has one.
@@ -47,8 +49,9 @@ def carry_over(previous, site=HTML):
     if listed is None:
         return None
     carried = []
-    for path in json.loads(listed):
-        if not BY_CONTENT.fullmatch(path) or ".." in PurePosixPath(path).parts:
+    names = json.loads(listed)
+    for path in names if isinstance(names, list) else [names]:
+        if not isinstance(path, str) or not BY_CONTENT.fullmatch(path) or ".." in PurePosixPath(path).parts:
             raise ValueError(f"{LASTING} of {previous} names {path!r}, which is not named by its content")
         place = site / path
         if not place.exists() and (content := read(path)) is not None:
@@ -58,7 +61,7 @@ def carry_over(previous, site=HTML):
     return carried
 
 
-def main():
+def main() -> None:
     if not 2 <= len(sys.argv) <= 3:
         sys.exit(
             "python -m notebook_pages.carry_over PREVIOUS [SITE]: where the last edition is, and the new one's folder"

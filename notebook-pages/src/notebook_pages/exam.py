@@ -9,6 +9,8 @@ import re
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.application import Sphinx
+from sphinx.config import Config
 
 from .paths import exam_edition, is_solutions
 
@@ -18,7 +20,7 @@ BETWEEN = re.compile(r"(?<=[.!?])\s+")
 LABEL = re.compile(r"solutions?(?:-|$)")
 
 
-def leads_to_solution(node):
+def leads_to_solution(node: nodes.Node) -> bool:
     """Whether ``node`` refers to a worked solution, or to a page of them."""
     if not isinstance(node, addnodes.pending_xref):
         return False
@@ -26,9 +28,9 @@ def leads_to_solution(node):
     return is_solutions(target) if node["reftype"] == "doc" else LABEL.match(target) is not None
 
 
-def sentences(paragraph):
+def sentences(paragraph: nodes.paragraph) -> list[list[nodes.Node]]:
     """The children of ``paragraph`` by sentence: lists of nodes, text cut where a sentence ends."""
-    found = [[]]
+    found: list[list[nodes.Node]] = [[]]
     for child in paragraph.children:
         if not isinstance(child, nodes.Text):
             found[-1].append(child)
@@ -41,7 +43,7 @@ def sentences(paragraph):
     return [sentence for sentence in found if sentence]
 
 
-def without_solutions(paragraph):
+def without_solutions(paragraph: nodes.paragraph) -> None:
     """Take the sentences that lead to a solution out of ``paragraph``; the whole of it, if no other is left."""
     kept = [
         sentence
@@ -56,18 +58,18 @@ def without_solutions(paragraph):
         paragraph += [*([nodes.Text(" ")] if place else []), *sentence]
 
 
-def strip(app, doctree):
+def strip(app: Sphinx, doctree: nodes.document) -> None:
     """Leave in a page nothing that leads to a solution."""
     for paragraph in list(doctree.findall(nodes.paragraph)):
         if any(leads_to_solution(node) for node in paragraph.findall()):
             without_solutions(paragraph)
 
 
-def begin(app, config):
+def begin(app: Sphinx, config: Config) -> None:
     if exam_edition():
         app.connect("doctree-read", strip, priority=100)  # before others note what a page refers to
 
 
-def setup(app):
+def setup(app: Sphinx) -> None:
     app.add_config_value("exam_edition", False, "env", bool)
     app.connect("config-inited", begin)

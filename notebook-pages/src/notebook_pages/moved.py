@@ -17,6 +17,8 @@ import posixpath
 import re
 from pathlib import Path
 
+from docutils import nodes
+from sphinx.application import Sphinx
 from sphinx.errors import SphinxError
 
 REDIRECT = """<!DOCTYPE html>
@@ -29,22 +31,24 @@ REDIRECT = """<!DOCTYPE html>
 NOTE = '<p class="moved" id="{old}">What stood here has moved: <a href="{address}">{title}</a></p>'
 
 
-def parted(place):
+def parted(place: str) -> tuple[str, str]:
     page, _, name = place.partition("#")
     return page, name
 
 
-def address_of(place, seen_from):
+def address_of(place: str, seen_from: str) -> str:
     """The address of a place, relative to the page it is ``seen_from``."""
     page, name = parted(place)
     return posixpath.relpath(f"{page}.html", posixpath.dirname(seen_from) or ".") + (f"#{name}" if name else "")
 
 
-def title_of(app, place):
+def title_of(app: Sphinx, place: str) -> str:
     return html.escape(app.env.titles[parted(place)[0]].astext())
 
 
-def keep_places(app, pagename, templatename, context, doctree):
+def keep_places(
+    app: Sphinx, pagename: str, templatename: str, context: dict[str, str], doctree: nodes.document | None
+) -> None:
     """Let the old names of places on a page lead on."""
     for old, new in app.config.moved.items():
         page, name = parted(old)
@@ -56,7 +60,7 @@ def keep_places(app, pagename, templatename, context, doctree):
                 context["body"] += NOTE.format(old=name, address=address_of(new, page), title=title_of(app, new))
 
 
-def lead_on(app, exception):
+def lead_on(app: Sphinx, exception: Exception | None) -> None:
     """Write the pages that lead on, and refuse what leads nowhere."""
     if exception or app.builder.format != "html":
         return
@@ -79,7 +83,7 @@ def lead_on(app, exception):
             target.write_text(REDIRECT.format(**about), "utf8")
 
 
-def setup(app):
+def setup(app: Sphinx) -> None:
     app.add_config_value("moved", {}, "env", dict)
     app.connect("html-page-context", keep_places)
     app.connect("build-finished", lead_on, priority=900)  # before the pages get their policies

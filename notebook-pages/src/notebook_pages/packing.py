@@ -12,6 +12,7 @@ import sys
 import tempfile
 import tomllib
 import zipfile
+from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from functools import cache, cached_property
 from pathlib import Path
@@ -37,20 +38,28 @@ class Project:
     repository : path, optional
     """
 
-    def __init__(self, folder, packages, left_out=(), repository=REPOSITORY):
+    def __init__(
+        self,
+        folder: str | Path,
+        packages: Iterable[str],
+        left_out: Iterable[str] = (),
+        repository: str | Path = REPOSITORY,
+    ) -> None:
         self.repository, self.folder = Path(repository), Path(folder)
         self.packages, self.left_out = tuple(packages), tuple(left_out)
 
     @cached_property
-    def about(self):
+    def about(self) -> Mapping[str, object]:
         """What ``pyproject.toml`` says of it."""
-        return tomllib.loads((self.repository / self.folder / "pyproject.toml").read_text("utf8"))["project"]
+        said = tomllib.loads((self.repository / self.folder / "pyproject.toml").read_text("utf8"))
+        about: dict[str, object] = said["project"]
+        return about
 
     @property
-    def name(self):
-        return self.about["name"]
+    def name(self) -> str:
+        return str(self.about["name"])
 
-    def sources(self):
+    def sources(self) -> list[Path]:
         """The files that the wheel is made of."""
         files = [path for place in self.packages for path in Path(self.repository, place).rglob("*") if path.is_file()]
         left_out = [self.repository / place for place in self.left_out]
@@ -64,14 +73,18 @@ class Project:
         )
 
     @cache  # noqa: B019  (there are as many as the book names, and they last)
-    def version(self):
+    def version(self) -> str:
         """The version of the wheel: as the sources state it, or ``1.1.0.post20261122093000``.
 
         A package that readers hold is only replaced by one of another version. So the version that is stated is for
         the sources of its tag alone; built from others, it adds when they were last changed, in UTC: when they were
         last committed or, where something is not committed or there is no repository, when the files were written.
         """
-        stated = STATED.search(self._stating(self.repository).read_text("utf8"))["version"]
+        file = self._stating(self.repository)
+        found = STATED.search(file.read_text("utf8"))
+        if found is None:
+            raise RuntimeError(f"{file} must state the version")
+        stated = found["version"]
         tag, committed, changed = f"{self.name}-{stated}", self._git("log", "-1", "--format=%ct"), self.sources()
         if committed:
             unknown = self._named("ls-files", "--others", "--exclude-standard")
@@ -84,7 +97,7 @@ class Project:
         written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
         return f"{stated}.post{datetime.fromtimestamp(max([int(committed or 0), *written]), UTC):%Y%m%d%H%M%S}"
 
-    def _git(self, *arguments):
+    def _git(self, *arguments: str) -> str:
         """What git says of the sources, or nothing where there is no git, or no repository that it would read."""
         if not shutil.which("git"):
             return ""
@@ -93,19 +106,19 @@ class Project:
         done = subprocess.run(["git", "-C", self.repository, *arguments, "--", *paths], capture_output=True, text=True)
         return done.stdout.strip() if done.returncode == 0 else ""
 
-    def _named(self, *arguments):
+    def _named(self, *arguments: str) -> list[Path]:
         return [Path(self.repository, name) for name in self._git(*arguments, "-z").split("\0") if name]
 
-    def _stating(self, repository):
+    def _stating(self, repository: str | Path) -> Path:
         """The file that states the version."""
         file = "pyproject.toml" if "version" in self.about else None
         return Path(repository, self.folder, file) if file else Path(repository, self.packages[0], "__init__.py")
 
-    def wheel_name(self):
+    def wheel_name(self) -> str:
         """The name of the wheel's file."""
         return f"{self.name.replace('-', '_')}-{self.version()}-py3-none-any.whl"
 
-    def build_wheel(self, folder):
+    def build_wheel(self, folder: str | Path) -> Path:
         """Build the wheel, from a copy: setuptools leaves files behind, and here the version is set."""
         with tempfile.TemporaryDirectory() as place:
             for path in self.sources():
@@ -129,26 +142,26 @@ class Project:
 class Ready:
     """A project of which there is only the wheel; the same is asked of it as of a :class:`Project`."""
 
-    def __init__(self, file, packages):
+    def __init__(self, file: str, packages: Iterable[str]) -> None:
         self.file, self.packages = REPOSITORY / file, tuple(packages)
         distribution, self._version = self.file.name.split("-")[:2]
         self.name = distribution.replace("_", "-")
 
-    def version(self):
+    def version(self) -> str:
         return self._version
 
-    def sources(self):
+    def sources(self) -> list[Path]:
         return [self.file]
 
-    def wheel_name(self):
+    def wheel_name(self) -> str:
         return self.file.name
 
-    def build_wheel(self, folder):
+    def build_wheel(self, folder: str | Path) -> Path:
         Path(folder).mkdir(parents=True, exist_ok=True)
         return Path(shutil.copy(self.file, folder))
 
 
-def write_zip(target, files):
+def write_zip(target: Path, files: Mapping[str, str | bytes]) -> None:
     """Write contents by name into a zip, always the same way."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):
@@ -156,7 +169,6 @@ def write_zip(target, files):
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = 0o644 << 16
             box.writestr(entry, files[name])
-    return target
 
 
 #: What the book names, its own project last.
@@ -168,6 +180,6 @@ PROJECTS = [
 ]
 
 
-def build_wheels(folder):
+def build_wheels(folder: str | Path) -> list[Path]:
     """Build the wheels for students; give their files."""
     return [project.build_wheel(folder) for project in PROJECTS]

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 WEBSITE = Path(__file__).resolve().parent
 
 #: A wheel that readers take away, as ``pyproject.toml`` names it.
-Wheel = TypedDict("Wheel", {"project": str, "packages": list[str], "leave-out": NotRequired[list[str]]})
+Wheel = TypedDict(
+    "Wheel", {"project": str, "file": NotRequired[str], "packages": list[str], "leave-out": NotRequired[list[str]]}
+)
 
 
 class Data(TypedDict):

@@ -8,6 +8,7 @@ import hashlib
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from .paths import BUILD, HTML, REPOSITORY
@@ -19,14 +20,14 @@ NO_SOURCES = ("_build", "node_modules", "__pycache__", "tests")
 SET_UP = (".venv/ready-book", ".venv/runtime/ready", "node_modules/ready")
 
 
-def sources(folder):
+def sources(folder: Path) -> Iterator[Path]:
     """All files that a book in a folder may be made from."""
     for place, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if name[0] != "." and name not in NO_SOURCES]
         yield from (Path(place, name) for name in files)
 
 
-def fingerprint_of_all():
+def fingerprint_of_all() -> str:
     """A text that changes with the sources, with what is installed, or when a file of the site has gone."""
     roots = dict.fromkeys((Path.cwd(), REPOSITORY))
     files = [path for root in roots for path in sources(root)]
@@ -39,11 +40,11 @@ def fingerprint_of_all():
     return hashlib.sha256("\n".join(sorted(said)).encode("utf8", "surrogateescape")).hexdigest()
 
 
-def is_unchanged():
+def is_unchanged() -> bool:
     """Whether all is as it was when :func:`note` was called last."""
     return STAMP.is_file() and STAMP.read_text("utf8") == fingerprint_of_all()
 
 
-def note():
+def note() -> None:
     """Write down what the site was made from, now that it is whole."""
     STAMP.write_text(fingerprint_of_all(), "utf8")

@@ -11,8 +11,12 @@ import re
 import threading
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .paths import PACKAGES, REGISTERED, REPOSITORY
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
 
 #: What ``coursework`` finds by its entry point, which no import shows.
 PLUGIN = REGISTERED.get("plugin", "")
@@ -22,13 +26,13 @@ PINS = REPOSITORY / "constraints.txt"
 _PARSING = threading.Lock()
 
 
-def parse(code):
+def parse(code: str) -> ast.Module:
     """The syntax tree of some code, from any thread: Python 3.11 fails when two threads make trees at once."""
     with _PARSING:
         return ast.parse(code)
 
 
-def file_of(module):
+def file_of(module: str) -> Path | None:
     """The file of one of our modules, or ``None`` if there is none of this name."""
     package, *inner = module.split(".")
     if package not in PACKAGES:
@@ -37,16 +41,17 @@ def file_of(module):
     return next((path for path in (place / "__init__.py", place.with_suffix(".py")) if path.is_file()), None)
 
 
-def names_imported(code, module=None):
+def names_imported(code: str, module: str = "") -> set[str]:
     """All that ``code`` may import, by full names; ``module`` is where it stands, for relative imports."""
-    found = set()
+    found: set[str] = set()
+    file = file_of(module)
     for node in ast.walk(parse(code)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
-                is_package = file_of(module).name == "__init__.py"
+                is_package = file is not None and file.name == "__init__.py"
                 above = module.split(".")
                 above = above[: len(above) - node.level + is_package]
                 base = ".".join([*above, *filter(None, [node.module])])
@@ -54,7 +59,7 @@ def names_imported(code, module=None):
     return found
 
 
-def modules_imported(code, module=None):
+def modules_imported(code: str, module: str = "") -> set[str]:
     """The names of our modules that ``code`` imports; ``module`` as in :func:`names_imported`."""
     found = names_imported(code, module)
     ours = {name for name in found if file_of(name)}
@@ -63,13 +68,15 @@ def modules_imported(code, module=None):
 
 
 @cache
-def _imported_by(module):
-    return frozenset(modules_imported(file_of(module).read_text("utf8"), module))
+def _imported_by(module: str) -> frozenset[str]:
+    file = file_of(module)
+    return frozenset(modules_imported(file.read_text("utf8"), module) if file else ())
 
 
-def modules_used(code):
+def modules_used(code: str) -> set[str]:
     """The names of all our modules that running ``code`` may lead to."""
-    found, waiting = set(), list(modules_imported(code))
+    found: set[str] = set()
+    waiting = list(modules_imported(code))
     while waiting:
         module = waiting.pop()
         if module not in found:
@@ -80,10 +87,10 @@ def modules_used(code):
     return found
 
 
-def files_used(code):
+def files_used(code: str) -> list[Path]:
     """The files of this repository that running ``code`` may read, in their order."""
     modules = modules_used(code)
-    files = {file_of(module) for module in modules} | ({PINS} if PINS.is_file() else set())
+    files = {file for module in modules if (file := file_of(module))} | ({PINS} if PINS.is_file() else set())
     for folder in {path.parent for path in files if path != PINS} - {SEALED.parent}:
         beside = {path for path in folder.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")}
         files |= {path for path in beside if package_of(path) == folder}
@@ -93,7 +100,7 @@ def files_used(code):
     return sorted(files)
 
 
-def package_of(path):
+def package_of(path: Path) -> Path:
     """The folder of the package that a file belongs to."""
     return next(folder for folder in path.parents if (folder / "__init__.py").is_file())
 
@@ -103,18 +110,18 @@ VERSION = re.compile(rb"^__version__ = .*$", re.MULTILINE)
 
 
 @cache
-def _digest(path):
+def _digest(path: Path) -> bytes:
     return hashlib.sha256(VERSION.sub(b"", Path(path).read_bytes())).digest()
 
 
-def fingerprint_of_used(notebook):
+def fingerprint_of_used(notebook: "NotebookNode") -> str:
     """A text that changes when anything changes that the cells of ``notebook`` use, themselves not among it."""
     code = "\n".join(code_of(notebook))
     parts = [f"{path.relative_to(REPOSITORY)} {_digest(path).hex()}" for path in files_used(code)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
-def code_of(notebook):
+def code_of(notebook: "NotebookNode") -> list[str]:
     """The code of each cell that is Python; what cannot be read as Python is left for the run to complain of."""
     codes = []
     for cell in notebook.cells:

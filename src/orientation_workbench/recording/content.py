@@ -1,12 +1,18 @@
 """What the columns of a recording are: by how they behave, with their headings heard as witnesses only."""
 
+from __future__ import annotations
+
 import re
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .motion import fit_axes
-from .table import RecordingError, read_tables
+from .table import RecordingError, Table, read_tables
+
+if TYPE_CHECKING:
+    from .table import Array, Source
 
 #: Of what a heading may say, the sign that it speaks of a sensor.
 HEADINGS = {
@@ -58,9 +64,9 @@ class Group(NamedTuple):
 
     kind: str
     called: str
-    names: list
-    time: np.ndarray
-    values: np.ndarray
+    names: list[str]
+    time: Array
+    values: Array
 
 
 class Content(NamedTuple):
@@ -79,14 +85,14 @@ class Content(NamedTuple):
         Headings of columns that nothing was made of.
     """
 
-    groups: dict
+    groups: dict[str, Group]
     clock: str
     counted: bool
-    remarks: list
-    unused: list
+    remarks: list[str]
+    unused: list[str]
 
 
-def read_content(source, name=None, rate=None):
+def read_content(source: Source, name: str | None = None, rate: float | None = None) -> Content:
     """Read a recording and find out what its columns are.
 
     Parameters
@@ -107,14 +113,16 @@ def read_content(source, name=None, rate=None):
         If the file cannot be read, or holds no instrument.
     """
     tables = read_tables(source, name)
-    groups, unused, remarks, clocks = [], [], [], []
+    groups: list[Group] = []
+    clocks: list[tuple[str, bool]] = []
+    unused: list[str] = []
+    remarks: list[str] = []
     for table in tables:
         remarks += [f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks]
         column, time, clock, counted = _time(table)
         clocks.append((clock, counted))
         found, left = _groups(table, column, time)
-        found = found if counted else _without_headings(found)
-        groups += found
+        groups += found if counted else _without_headings(found)
         unused += left
     chosen = _roles(groups)
     for group in groups:
@@ -151,15 +159,15 @@ def read_content(source, name=None, rate=None):
     return Content(kinds, clock, counted and not rate, remarks, unused)
 
 
-def _unit(heading):
+def _unit(heading: str) -> str:
     """What stands in brackets in a heading, or behind its last blank."""
     found = re.search(r"[(\[]([^)\]]*)[)\]]", heading)
     return (found[1] if found else heading.rpartition("_")[2]).strip().lower()
 
 
-def _time(table):
+def _time(table: Table) -> tuple[int | None, Array, str, bool]:
     """The column of the time, the time in seconds, in what words, and whether it is only counted."""
-    candidates = []
+    candidates: list[tuple[float, int]] = []
     for k, column in enumerate(table.columns):  # whole seconds, and beside them what is left of each
         rest = [c for c, other in enumerate(table.columns) if re.search(r"n(?:ano)?secs?$", other.lower()) and c != k]
         if (
@@ -181,11 +189,11 @@ def _time(table):
             if even > 0.6 or called:
                 precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
                 counts = bool(re.search(COUNTS, column.lower()))
-                candidates.append((called + precise + 0.5 * even - counts - 0.01 * k, k))
+                candidates.append((float(called + precise + 0.5 * even - counts - 0.01 * k), k))
     for k in range(len(table.columns) - 1) if not candidates else ():  # the same without headings
-        whole, rest = table.values[:, k], table.values[:, k + 1]
-        if np.ptp(whole) > 0 and (whole == whole.round()).all() and 0 <= rest.min() and 1e8 < rest.max() < 1e9:
-            time = whole - whole[0] + 1e-9 * rest
+        whole, part = table.values[:, k], table.values[:, k + 1]
+        if np.ptp(whole) > 0 and (whole == whole.round()).all() and 0 <= part.min() and 1e8 < part.max() < 1e9:
+            time = whole - whole[0] + 1e-9 * part
             if np.mean(np.diff(time) > 0) > 0.97:
                 return k, time, f"{table.columns[k]} with {table.columns[k + 1]}, in s", False
     if not candidates:
@@ -194,7 +202,7 @@ def _time(table):
             steps = np.diff(table.values[:, k])
             if re.search(TIME, column.lower()) and (steps < 0).any():
                 words += f": {column} goes back {int((steps < 0).sum())} times"
-        return None, np.arange(len(table.values)), words, True
+        return None, np.arange(len(table.values), dtype=float), words, True
     k = max(candidates)[1]
     column, values = table.columns[k], table.values[:, k]
     step = np.median(np.diff(values)[np.diff(values) > 0])
@@ -211,7 +219,7 @@ def _time(table):
     return k, values * scale, words, False
 
 
-def _by_rate(table, step):
+def _by_rate(table: Table, step: float) -> float | None:
     """The unit of a clock, some power of ten of a second, that gives the rate in the lines above the numbers."""
     said = re.search(RATE, table.head, re.IGNORECASE)
     if not said or not float(said[1]):
@@ -220,7 +228,7 @@ def _by_rate(table, step):
     return float(10.0 ** round(power)) if abs(power - round(power)) < 0.05 else None
 
 
-def _parts(heading):
+def _parts(heading: str) -> tuple[str, str]:
     """A heading without its unit, parted into what it is about and the letter of its axis."""
     heading = re.sub(r"^field\.", "", heading)  # before every heading of a robot's log
     text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
@@ -242,15 +250,15 @@ def _parts(heading):
     return text, ""
 
 
-def _called(text):
+def _called(text: str) -> str:
     return next((kind for kind, pattern in HEADINGS.items() if re.search(pattern, text)), "")
 
 
-def _called_by_unit(heading):
+def _called_by_unit(heading: str) -> str:
     return next((kind for kind, pattern in UNITS.items() if re.search(pattern, _unit(heading))), "")
 
 
-def _named(stem, table, column):
+def _named(stem: str, table: Table, column: int) -> str:
     """What the heading of an axis, its unit or the name of its table say that it is."""
     unit, name = _called_by_unit(table.columns[column]), _called(table.name.lower())
     if _unit(table.columns[column]) in ("g", "mg"):  # gauss or gravity: the name of the table knows better
@@ -259,17 +267,20 @@ def _named(stem, table, column):
     return ("" if stem == "alpha" else _called(stem)) or unit or name
 
 
-def _groups(table, time_column, time):
+def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Group], list[str]]:
     """Columns that belong together, and the headings of those that are left."""
-    groups, taken = [], {time_column}
+    groups: list[Group] = []
+    taken = {time_column}
     parts = [_parts(column) for column in table.columns]
     usable = [k for k in range(len(table.columns)) if k != time_column and np.isfinite(table.values[:, k]).sum() > 8]
 
-    def add(kind, columns, called):
+    def add(kind: str, columns: Sequence[int], called: str) -> None:
         rows = np.isfinite(table.values[:, columns]).all(axis=1)
         if rows.sum() > 8:
             names = [table.columns[k] for k in columns]
-            groups.append(Group(kind, called, names, time[rows], table.values[np.ix_(rows, columns)]))
+            groups.append(
+                Group(kind, called, names, time[rows], table.values[np.ix_(np.flatnonzero(rows), np.array(columns))])
+            )
             taken.update(columns)
 
     rates = [k for k in usable if re.search("roll|pitch|yaw", (name := table.columns[k].lower()))
@@ -280,7 +291,7 @@ def _groups(table, time_column, time):
         if all(three):
             add("vector", [places[0] for places in three], "gyroscope")
     usable = [k for k in usable if k not in taken]
-    stems = {}
+    stems: dict[str, list[tuple[str, int]]] = {}
     for k in usable:
         stem, axis = parts[k]
         if axis:
@@ -290,8 +301,8 @@ def _groups(table, time_column, time):
         called = _named(stem, table, found[0][1])
         columns = [k for _, k in found]
         if len(found) == 4 and _is_unit(table.values[:, columns]):
-            letters = "".join(axis for axis, _ in found)
-            if set(letters) == set("wxyz") and letters not in ("wxyz", "xyzw"):
+            order = "".join(axis for axis, _ in found)
+            if set(order) == set("wxyz") and order not in ("wxyz", "xyzw"):
                 columns = [axes[axis] for axis in "wxyz"]  # some write z before y before x
             add("quaternion", columns, "quaternion")
         elif {"x", "y", "z"} <= set(axes) and len(found) in (3, 4):
@@ -307,7 +318,7 @@ def _groups(table, time_column, time):
         four = [k, k + 1, k + 2, k + 3]
         if set(four) <= set(rest) and not set(four) & taken and _is_unit(table.values[:, four]):
             add("quaternion", four, "")
-    runs = []
+    runs: list[list[int]] = []
     for k in usable:
         if k not in taken and np.nanstd(table.values[:, k]) > 0:
             if runs and runs[-1][-1] == k - 1:
@@ -318,8 +329,8 @@ def _groups(table, time_column, time):
         spare = len(run) % 3
         sizes = np.log(np.nanstd(table.values[:, run], axis=0) + np.abs(np.nanmedian(table.values[:, run], axis=0)))
 
-        def unlike(first):
-            return sum(np.std(sizes[k : k + 3]) for k in range(first, len(run) - spare + first, 3))
+        def unlike(first: int) -> float:
+            return sum(float(np.std(sizes[k : k + 3])) for k in range(first, len(run) - spare + first, 3))
 
         first = min(range(spare + 1), key=unlike)
         for k in range(first, len(run) - spare + first, 3):
@@ -327,7 +338,7 @@ def _groups(table, time_column, time):
     return groups, [table.columns[k] for k in range(len(table.columns)) if k not in taken]
 
 
-def places_by_name(names):
+def places_by_name(names: Iterable[str]) -> tuple[int, ...] | None:
     """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their headings; None where there is doubt."""
     text = [name.lower() for name in names]
     for words in (
@@ -338,16 +349,14 @@ def places_by_name(names):
         ("psi", "theta", "phi"),
     ):
         # Beside an angle there may stand the one that was wanted: the shorter name is the angle's.
-        places = [
-            min((k for k, one in enumerate(text) if word in one), key=lambda k: len(text[k]), default=None)
-            for word in words
-        ]
-        if None not in places and len(set(places)) == 3:
-            return tuple(places)
+        having = [[k for k, one in enumerate(text) if word in one] for word in words]
+        places = tuple(min(places, key=lambda k: len(text[k])) for places in having if places)
+        if len(set(places)) == 3:
+            return places
     return None
 
 
-def _is_unit(values):
+def _is_unit(values: Array) -> bool:
     values = values[np.isfinite(values).all(axis=1)]
     squares = (values**2).sum(axis=1)
     off = np.median(np.abs(squares - 1))
@@ -356,7 +365,7 @@ def _is_unit(values):
     return len(values) > 8 and abs(np.median(squares) - 1) < 0.02 and np.mean(np.abs(squares - 1) < 0.05) > 0.98
 
 
-def _without_headings(groups):
+def _without_headings(groups: Sequence[Group]) -> Sequence[Group]:
     """Name what no heading names and its length alone does not tell: gravity by itself, and what turns it."""
     unnamed = [k for k, group in enumerate(groups) if group.kind == "vector" and not group.called]
     alone = [k for k in unnamed if _has_length_one(groups[k].values)]
@@ -380,7 +389,7 @@ def _without_headings(groups):
     return groups
 
 
-def _with_gravity(chosen, groups):
+def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str]:
     """Where acceleration and gravity stand in columns of their own, their sum is what an accelerometer feels."""
     felt = chosen.get("accelerometer")
     apart = [group for group in groups if group.called == "gravity" and points_one_way(group.values)]
@@ -396,25 +405,26 @@ def _with_gravity(chosen, groups):
     return [f"{', '.join(felt.names)} holds no gravity; {', '.join(apart[0].names)} was added to it"]
 
 
-def _has_length_one(values):
+def _has_length_one(values: Array) -> bool:
     lengths = np.linalg.norm(values, axis=1)
-    return abs(np.median(lengths) - 1) < 1e-3 and np.ptp(lengths) < 1e-2
+    return bool(abs(np.median(lengths) - 1) < 1e-3 and np.ptp(lengths) < 1e-2)
 
 
-def points_one_way(values):
+def points_one_way(values: Array) -> bool:
     """Whether vectors have nearly one length, as gravity and the Earth's field have, and a gyroscope's have not."""
     low, middle, high = np.percentile(np.linalg.norm(values, axis=1), (10, 50, 95))
-    return middle > 0 and low / middle > 0.6 and high / middle < 2.2
+    return bool(middle > 0 and low / middle > 0.6 and high / middle < 2.2)
 
 
-def _roughness(values):
+def _roughness(values: Array) -> float:
     """How much of what a vector does it does from one sample to the next."""
-    return np.median(np.linalg.norm(np.diff(values, 2, axis=0), axis=1)) / np.median(np.linalg.norm(values, axis=1))
+    changes = np.linalg.norm(np.diff(values, 2, axis=0), axis=1)
+    return float(np.median(changes) / np.median(np.linalg.norm(values, axis=1)))
 
 
-def _roles(groups):
+def _roles(groups: Sequence[Group]) -> dict[str, Group]:
     """The group that plays each part: by behaviour where that decides, by its heading where it does not."""
-    chosen = {}
+    chosen: dict[str, Group] = {}
     quaternions = [group for group in groups if group.kind == "quaternion"]
     angles = [group for group in groups if group.kind == "angles"]
     vectors = [group for group in groups if group.kind == "vector" and np.ptp(group.values, axis=0).max() > 0]
@@ -440,17 +450,18 @@ def _roles(groups):
         changing = [group for group in steady if group.called == "gyroscope"][:1]
         steady = [group for group in steady if not any(group is one for one in changing)]
 
-    def length(group):
-        return np.median(np.linalg.norm(group.values, axis=1))
+    def length(group: Group) -> float:
+        return float(np.median(np.linalg.norm(group.values, axis=1)))
 
-    def uneven(group):
+    def uneven(group: Group) -> float:
         lengths = np.linalg.norm(group.values, axis=1)
-        return lengths.std() / lengths.mean()
+        return float(lengths.std() / lengths.mean())
 
-    def as_gravity(group):
+    def as_gravity(group: Group) -> int:
         off = min(abs(np.log(length(group) / one)) for one in GRAVITY.values())
         alone = not any(low < length(group) < high for low, high in list(FIELD.values())[:4])
-        return (group.called == "accelerometer") * 2 - (group.called == "magnetometer") * 2 + alone * (off < 0.06)
+        named = (group.called == "accelerometer") - (group.called == "magnetometer")
+        return 2 * named + (alone and bool(off < 0.06))
 
     if steady:
         best = max(steady, key=lambda group: (as_gravity(group), not group.called and _roughness(group.values)))
@@ -482,7 +493,7 @@ def _roles(groups):
     return chosen
 
 
-def unit_of_gravity(values, rate=0.0):
+def unit_of_gravity(values: Array, rate: float = 0.0) -> tuple[str, float, float]:
     """The unit in which vectors have gravity's length, how many of it make one, and by how much it is off."""
     middle = float(np.median(np.linalg.norm(values, axis=1)))
     units = GRAVITY | ({"m/s a sample": GRAVITY["m/s²"] / rate} if rate > 20 else {})
@@ -492,7 +503,7 @@ def unit_of_gravity(values, rate=0.0):
     return f"counts, {middle:.4g} for gravity", middle, 0.0
 
 
-def unit_of_field(values):
+def unit_of_field(values: Array) -> tuple[str, float]:
     """The unit in which vectors have the length of the Earth's field, and their length in it."""
     middle = float(np.median(np.linalg.norm(values, axis=1)))
     for unit, (low, high) in FIELD.items():

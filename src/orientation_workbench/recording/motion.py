@@ -1,11 +1,17 @@
 """What a gyroscope, and vectors that stay where they are while the instrument turns, say of each other."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from itertools import permutations, product
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from orientation import dcm_from_rotation_vector
+
+if TYPE_CHECKING:
+    from .table import Array
 
 #: The 48 matrices that take axes for each other and change signs; the proper ones, which turn, first.
 ASSIGNMENTS = np.array(
@@ -21,7 +27,7 @@ PROPER = ASSIGNMENTS[:24]
 OPPOSITE = np.array([24 + int(np.abs(ASSIGNMENTS[24:] + one).sum(axis=(1, 2)).argmin()) for one in PROPER])
 
 
-def written(assignment, letters="xyz"):
+def written(assignment: Array, letters: str = "xyz") -> str:
     """An assignment in words: what the new x, y and z are.
 
     >>> written(np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]))
@@ -32,7 +38,7 @@ def written(assignment, letters="xyz"):
     )
 
 
-def turned(rates, steps):
+def turned(rates: Array, steps: Array) -> Array:
     """Direction cosine matrices of each moment from the first one, by a gyroscope.
 
     Parameters
@@ -59,7 +65,7 @@ def turned(rates, steps):
     return dcms.reshape(*rates.shape[:-2], size * size, 3, 3)[..., :count, :, :]
 
 
-def to_rotation_vectors(dcms):
+def to_rotation_vectors(dcms: Array) -> Array:
     """Rotation vectors of many direction cosine matrices, for turns of less than half a turn."""
     axis = np.stack(
         [dcms[..., 1, 2] - dcms[..., 2, 1], dcms[..., 2, 0] - dcms[..., 0, 2], dcms[..., 0, 1] - dcms[..., 1, 0]],
@@ -70,7 +76,7 @@ def to_rotation_vectors(dcms):
     return axis / 2 * (angle / np.where(sine > 1e-12, sine, 1.0) + (sine <= 1e-12))[..., None]
 
 
-def steps_of(time):
+def steps_of(time: Array) -> Array:
     """Seconds before each sample."""
     return np.diff(time, prepend=time[0])
 
@@ -104,7 +110,7 @@ class Stretch(NamedTuple):
 TREMBLE, QUIET = np.radians(0.15), np.radians(4.0)
 
 
-def likeness(rates, lags=5):
+def likeness(rates: Array, lags: int = 5) -> float:
     """Root mean square correlation of neighbours, less what white noise gives by chance."""
     count = len(rates)
     rates = rates - rates.mean(axis=0)
@@ -115,7 +121,7 @@ def likeness(rates, lags=5):
     return float(np.sqrt(max(0.0, np.mean(squares) - 1 / count)))
 
 
-def stretches(time, rates, seconds=0.5):
+def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     """Find where an instrument hardly moves, and whether it lies or is held.
 
     Parameters
@@ -178,22 +184,24 @@ class Fit(NamedTuple):
         By which the gyroscope's numbers are multiplied in the best one.
     """
 
-    shares: np.ndarray
+    shares: Array
     scale: float
 
     @property
-    def best(self):
+    def best(self) -> Array:
         """The assignment that leaves least."""
         return ASSIGNMENTS[self.shares.argmin()]
 
     @property
-    def margin(self):
+    def margin(self) -> float:
         """How many times as much the next one leaves."""
         first, second = np.sort(self.shares)[:2]
         return float(second / max(first, 1e-9))
 
 
-def pieces(time, rates, longest=40.0, seconds=0.5):
+def pieces(
+    time: Array, rates: Array, longest: float = 40.0, seconds: float = 0.5
+) -> tuple[list[slice[int, int, None]], int]:
     """Samples, cut into runs of blocks, in which there is most turning: a slice for each run, and the block's size."""
     step = np.median(np.diff(time))
     size = max(2, round(seconds / step))
@@ -204,7 +212,9 @@ def pieces(time, rates, longest=40.0, seconds=0.5):
     return [slice(start, start + run) for start in np.sort(chosen)], size
 
 
-def fit_axes(time, rates, vectors, scales, seconds=0.5, longest=40.0):
+def fit_axes(
+    time: Array, rates: Array, vectors: Array, scales: Array, seconds: float = 0.5, longest: float = 40.0
+) -> Fit:
     """Try all 48 assignments of a gyroscope's axes to those of a vector that stays where it is.
 
     While the instrument turns, a vector that stays (gravity, the Earth's field) turns backwards in it. Carried back by
@@ -251,7 +261,7 @@ def fit_axes(time, rates, vectors, scales, seconds=0.5, longest=40.0):
     return Fit(shares[best], float(scales[best]))
 
 
-def carried(time, rates, poses):
+def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
     """Turns from the middle of each pose to that of the next, by a gyroscope; shape ``(..., m - 1, 3, 3)``."""
     found = []
     for one, other in zip(poses, poses[1:], strict=False):
@@ -260,7 +270,9 @@ def carried(time, rates, poses):
     return np.stack(found, axis=-3)
 
 
-def fit_scale(time, rates, forces, poses, bias=None):
+def fit_scale(
+    time: Array, rates: Array, forces: Array, poses: Sequence[Stretch], bias: Array | None = None
+) -> tuple[float, float, Array, Array, float] | None:
     """Scale and bias of a gyroscope: turns must carry gravity from one pose to the next.
 
     Parameters
@@ -287,7 +299,7 @@ def fit_scale(time, rates, forces, poses, bias=None):
     known = bias is not None
     middle = np.zeros(3) if bias is None else np.asarray(bias)
 
-    def residuals(parameters):
+    def residuals(parameters: Array) -> Array:
         """By how much gravity is missed with scales and biases of shape ``(..., 4)``."""
         biases = middle if known else parameters[..., None, 1:]
         found = carried(time, parameters[..., :1, None] * (rates - biases), poses)
@@ -340,10 +352,10 @@ class Reading(NamedTuple):
     disagreement: float
     order: str
     conjugate: bool
-    mounting: np.ndarray
+    mounting: Array
 
 
-def dcm_of_quaternions(values, order):
+def dcm_of_quaternions(values: Array, order: str) -> Array:
     """``B_C_N`` of quaternions, read in the book's way, with their scalar first or last."""
     values = values / np.linalg.norm(values, axis=1, keepdims=True)
     w, x, y, z = (values if order == "scalar first" else np.roll(values, 1, axis=1)).T
@@ -355,7 +367,7 @@ def dcm_of_quaternions(values, order):
     return np.moveaxis(np.array(rows), -1, 0)
 
 
-def readings(time, rates, orientation_time, candidates):
+def readings(time: Array, rates: Array, orientation_time: Array, candidates: Mapping[str, Array]) -> list[Reading]:
     """Read an orientation in every way there is, and compare its turns with those of the gyroscope.
 
     Parameters
@@ -401,7 +413,7 @@ def readings(time, rates, orientation_time, candidates):
                 for square, mounting in zip(squares, ASSIGNMENTS, strict=True)
             ]
 
-    def plain(reading):
+    def plain(reading: Reading) -> tuple[float, bool, float]:
         return (
             round(reading.disagreement, 3),
             np.linalg.det(reading.mounting) < 0,

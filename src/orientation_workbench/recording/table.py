@@ -4,6 +4,8 @@ Nothing is repaired: a row that does not fit is left out, counted and named by i
 fit, the file is refused in the same words.
 """
 
+from __future__ import annotations
+
 import csv
 import gzip
 import io
@@ -11,11 +13,20 @@ import json
 import re
 import zipfile
 from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
+from math import inf
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array: TypeAlias = NDArray[np.float64]
+    #: A file, a folder or several of them, or what a file holds.
+    Source: TypeAlias = str | Path | bytes | Sequence[str | Path]
 
 DELIMITERS = (",", ";", "\t", "|", None)  # None stands for blanks
 TEXTS = (".csv", ".txt", ".tsv", ".log", ".json", ".dat", ".gz", ".zip")
@@ -62,13 +73,13 @@ class Table(NamedTuple):
     """
 
     name: str
-    columns: list
-    values: np.ndarray
-    remarks: list
+    columns: list[str]
+    values: Array
+    remarks: list[str]
     head: str = ""
 
 
-def read_tables(source, name=None):
+def read_tables(source: Source, name: str | None = None) -> list[Table]:
     """Read all tables of files, of a folder, or of a text that is at hand.
 
     Parameters
@@ -98,19 +109,19 @@ def read_tables(source, name=None):
         return _from_text(source, name or "recording")
     if isinstance(source, bytes):
         return _from_bytes(source, name or "recording")
-    paths = [Path(one) for one in (source if isinstance(source, (list, tuple)) else [source])]
-    files = {}
+    paths = [Path(one) for one in ([source] if isinstance(source, (str, Path)) else source)]
+    files: dict[Path, None] = {}
     for path in paths:
         if not path.exists():
             raise RecordingError(f"there is no file {path}")
         inside = sorted(path.rglob("*")) if path.is_dir() else [path]
-        files |= {one: one for one in inside if one == path or one.is_file() and one.suffix.lower() in TEXTS}
+        files |= {one: None for one in inside if one == path or one.is_file() and one.suffix.lower() in TEXTS}
     if [*files] == paths and len(paths) == 1:
         return _from_bytes(paths[0].read_bytes(), name or paths[0].name)
     return _from_several(((one.name, one.read_bytes()) for one in files), name or ", ".join(map(str, paths)))
 
 
-def _from_bytes(content, name):
+def _from_bytes(content: bytes, name: str) -> list[Table]:
     if content[:2] == b"\x1f\x8b":
         return _from_bytes(gzip.decompress(content), name)
     if content[:4] == b"PK\x03\x04":
@@ -140,9 +151,11 @@ def _from_bytes(content, name):
     return _from_text(text, name)
 
 
-def _from_several(files, name):
+def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
     """All tables of pairs of a name and what it holds."""
-    tables, broken, reasons = [], [], []
+    tables: list[Table] = []
+    broken: list[str] = []
+    reasons: list[str] = []
     for one, content in files:
         try:
             tables += _from_bytes(content, one if Path(one).suffix in (".gz", ".zip") else Path(one).stem)
@@ -157,7 +170,7 @@ def _from_several(files, name):
     return tables
 
 
-def _from_text(text, name):
+def _from_text(text: str, name: str) -> list[Table]:
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
     lines = [re.sub(r"\*[0-9A-Fa-f]{2}\s*$", "", line) if line[:1] == "$" else line for line in text.splitlines()]
@@ -172,13 +185,15 @@ def _from_text(text, name):
     return [_scaled(_table(rows, name, comma))]
 
 
-def _key_column(rows, comma):
+def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
     """The column that says what each row holds, where rows of several kinds or instruments take turns."""
     rows = [row for row in rows if len(row) > 3]
     if len(rows) <= 20:
         return None
     sample = rows[len(rows) // 4 :][:400]
-    head = next((row for row in rows if sum(_number(field, comma) is None for field in row) > len(row) / 2), [])
+    head: Sequence[str] = next(
+        (row for row in rows if sum(_number(field, comma) is None for field in row) > len(row) / 2), ()
+    )
     for k in range(min(map(len, sample))):
         found = [row[k] for row in sample]
         keys = set(found)
@@ -195,7 +210,7 @@ def _key_column(rows, comma):
     return None
 
 
-def _scaled(table):
+def _scaled(table: Table) -> Table:
     """Counts, where the lines above them name their scales, as cameras that steady a picture write them."""
     scales = {letter: float(value) for letter, value in re.findall(r"^([tgam])scale\W+([\d.eE+-]+)$", table.head, re.M)}
     if not scales:
@@ -208,7 +223,7 @@ def _scaled(table):
     return table._replace(columns=columns, values=values)
 
 
-def _split(line, delimiter):
+def _split(line: str, delimiter: str | None) -> list[str]:
     if delimiter is None:
         return line.split()
     if '"' in line:
@@ -216,11 +231,11 @@ def _split(line, delimiter):
     return [field.strip() for field in line.split(delimiter)]
 
 
-def _is_comma(field):
+def _is_comma(field: str) -> bool:
     return re.fullmatch(r"[-+]?\d+,\d+([eE][-+]?\d+)?", field) is not None
 
 
-def _number(field, comma=False):
+def _number(field: str, comma: bool = False) -> float | None:
     """The number that a field says, NaN for one that is missing, None for what is no number."""
     try:
         return float(field.replace(",", ".") if comma else field)
@@ -241,7 +256,7 @@ def _number(field, comma=False):
     return None
 
 
-def _numbers_per_line(lines, delimiter):
+def _numbers_per_line(lines: Sequence[str], delimiter: str | None) -> float:
     """The median count of numbers in the lines of the middle, were they parted so."""
     middle = [line for line in lines[len(lines) // 4 :] if line.strip()][:200]
     counts = []
@@ -253,15 +268,21 @@ def _numbers_per_line(lines, delimiter):
     return float(np.median(counts)) if counts else 0
 
 
-def _table(rows, name, comma, numbers=None, columns=None):
+def _table(
+    rows: Sequence[Sequence[str]],
+    name: str,
+    comma: bool,
+    numbers: Iterable[int] | None = None,
+    columns: Sequence[str] | None = None,
+) -> Table:
     """One table out of rows of fields; ``numbers`` are the lines' numbers, where they are not all there."""
     numbers = range(1, len(rows) + 1) if numbers is None else numbers
-    rows = [(line, row) for line, row in zip(numbers, rows, strict=True) if any(row)]
-    widths = Counter(len(row) for _, row in rows)
+    there = [(line, row) for line, row in zip(numbers, rows, strict=True) if any(row)]
+    widths = Counter(len(row) for _, row in there)
     if not widths:
         raise RecordingError(f"{name} is empty")
     width = widths.most_common(1)[0][0]
-    full = [(line, row) for line, row in rows if len(row) == width]
+    full = [(line, row) for line, row in there if len(row) == width]
     sample = full[len(full) // 4 :][:300] or full
     numeric = [
         k
@@ -270,25 +291,27 @@ def _table(rows, name, comma, numbers=None, columns=None):
         and any(_number(row[k], comma) is not None and row[k].lower() not in MISSING for _, row in full)
     ]
     if len(numeric) < 3 or len(full) < 8:
-        line, row = (sample or rows)[0]
+        line, row = (sample or there)[0]
         raise RecordingError(
             f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} columns of numbers, "
             f"where a recording has eight rows and three columns at least. Line {line} begins: {' '.join(row)[:60]!r}"
         )
 
-    def values(row):
+    def values(row: Sequence[str]) -> list[float | None]:
         return [_number(row[k], comma) for k in numeric]
 
     begin = next(
-        k for k, (_, row) in enumerate(rows) if len(row) == width and all(value is not None for value in values(row))
+        k for k, (_, row) in enumerate(there) if len(row) == width and all(value is not None for value in values(row))
     )
     if columns is None:
-        columns = _names([row for _, row in rows[:begin]], width)
-    kept, broken = [], []
-    for line, row in rows[begin:]:
+        columns = _names([row for _, row in there[:begin]], width)
+    kept: list[list[float | None]] = []
+    broken: list[str] = []
+    for line, row in there[begin:]:
         if len(row) != width:
             broken.append(f"line {line} has {len(row)} columns where the others have {width}")
             continue
+        found: list[float | None]
         try:
             found = [float(row[k]) for k in numeric]
         except ValueError:
@@ -296,7 +319,7 @@ def _table(rows, name, comma, numbers=None, columns=None):
         if None in found:
             column = numeric[found.index(None)]
             broken.append(f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is no number")
-        elif any(abs(value) == float("inf") for value in found):
+        elif inf in found or -inf in found:
             broken.append(f"line {line} holds an infinite number")
         else:
             kept.append(found)
@@ -304,32 +327,33 @@ def _table(rows, name, comma, numbers=None, columns=None):
     if len(broken) > max(2, MOST_BROKEN * (len(kept) + len(broken))):
         raise BrokenTable(f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}")
     remarks = [f"{len(broken)} rows are left out: {told}"] if broken else []
-    head = "\n".join(",".join(row) for _, row in rows[:begin])
-    return Table(name, [columns[k] for k in numeric], np.array(kept), remarks, head)
+    head = "\n".join(",".join(row) for _, row in there[:begin])
+    return Table(name, [columns[k] for k in numeric], np.array(kept, dtype=float), remarks, head)
 
 
-def _names(head, width):
+def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
     """Names of the columns: of the last line above the numbers that has as many, with the units below it."""
-    head = [[re.sub(r"^[#%/\s\"']+|[\"']+$", "", field) for field in row] for row in head]
-    head = [row[1:] if len(row) == width + 1 and not row[0] else row for row in head]  # a sign that stands alone
-    head = [
-        row for row in head if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", one) for one in row)
+    bare = [[re.sub(r"^[#%/\s\"']+|[\"']+$", "", field) for field in row] for row in head]
+    bare = [row[1:] if len(row) == width + 1 and not row[0] else row for row in bare]  # a sign that stands alone
+    bare = [
+        row for row in bare if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", one) for one in row)
     ]
-    if not head:
+    if not bare:
         return [f"column {k + 1}" for k in range(width)]
     # Above the numbers there may be lines of kinds and of units: they repeat themselves, names do not.
-    most = max(range(len(head)), key=lambda k: (len(set(head[k])), k))
-    names = head[most]
-    below = head[-1]
-    if most < len(head) - 1 and len(below) == len(names):
+    most = max(range(len(bare)), key=lambda k: (len(set(bare[k])), k))
+    names = bare[most]
+    below = bare[-1]
+    if most < len(bare) - 1 and len(below) == len(names):
         names = [f"{name} [{unit.strip('()[]')}]" if unit else name for name, unit in zip(names, below, strict=True)]
     names = [*names, *(f"column {k + 1}" for k in range(len(names), width))][:width]
     return [name or f"column {k + 1}" for k, name in enumerate(names)]
 
 
-def _from_log(rows, name, comma, key):
+def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> list[Table]:
     """A log of lines of several kinds, as those of drones and phones: which, a word says, mostly the first."""
-    lines, names = {}, {}
+    lines: dict[str, list[tuple[int, list[str]]]] = {}
+    names: dict[str, list[str]] = {}
     for number, row in enumerate(rows, 1):
         if len(row) < max(3, key + 1):
             continue
@@ -348,7 +372,7 @@ def _from_log(rows, name, comma, key):
     for kind, found in lines.items():
         if len(found) < 8:
             continue
-        columns = names.get(kind.partition(" ")[0])
+        called = names.get(kind.partition(" ")[0])
         width = Counter(len(row) for _, row in found).most_common(1)[0][0]
         try:
             tables.append(
@@ -357,7 +381,7 @@ def _from_log(rows, name, comma, key):
                     kind if _number(kind) is None else f"{name} {kind}",
                     comma,
                     [number for number, _ in found],
-                    columns if columns and len(columns) == width else None,
+                    called if called and len(called) == width else None,
                 )
             )
         except RecordingError:  # a kind of line that holds no measurements
@@ -367,7 +391,7 @@ def _from_log(rows, name, comma, key):
     return tables
 
 
-def _from_json(text, name):
+def _from_json(text: str, name: str) -> list[Table]:
     try:
         content = json.loads(text)
     except json.JSONDecodeError as error:
@@ -375,7 +399,7 @@ def _from_json(text, name):
             f"{name} begins like JSON but is not: line {error.lineno}, column {error.colno}: {error.msg}"
         ) from None
     lists = content if isinstance(content, dict) else {name: content}
-    kinds = {}
+    kinds: dict[str, list[dict[str, object]]] = {}
     for key, entries in lists.items():
         for entry in entries if isinstance(entries, list) else []:
             if isinstance(entry, dict):
@@ -383,7 +407,7 @@ def _from_json(text, name):
     return _from_entries(kinds, f"{name} is JSON without a list of measurements in it")
 
 
-def _from_entries(kinds, otherwise):
+def _from_entries(kinds: Mapping[str, Sequence[Mapping[str, object]]], otherwise: str) -> list[Table]:
     """Tables out of dictionaries, by what they hold."""
     tables = []
     for kind, entries in kinds.items():
@@ -398,9 +422,11 @@ def _from_entries(kinds, otherwise):
     return tables
 
 
-def _from_blocks(lines, name):
+def _from_blocks(lines: Sequence[str], name: str) -> list[Table]:
     """Messages one after another, parted by hyphens, as robots print them; indented lines belong to the one above."""
-    entries, entry, path = [], {}, []
+    entries: list[dict[str, str]] = []
+    entry: dict[str, str] = {}
+    path: list[tuple[int, str]] = []
     for line in [*lines, "---"]:
         if line.startswith("---"):
             if entry:
@@ -415,8 +441,8 @@ def _from_blocks(lines, name):
     return _from_entries({name: entries}, f"{name} holds messages, but no table of numbers comes of them")
 
 
-def _flat(entry, before=""):
-    found = {}
+def _flat(entry: Mapping[str, object], before: str = "") -> dict[str, object]:
+    found: dict[str, object] = {}
     for key, value in entry.items():
         if isinstance(value, dict):
             found |= _flat(value, f"{before}{key}.")

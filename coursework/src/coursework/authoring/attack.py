@@ -34,15 +34,16 @@ from . import typed
 #: What parts the words of a question from the open code of its cell.
 CODE = "\n\n```python\n"
 #: To be raised when the attack gets better: what an older one has measured is measured again then.
-VERSION = 1
+VERSION = 2
 #: Slow hashes that the attack on one question may need; a question beyond it counts as not guessable.
 BUDGET = 2**16
 #: Candidates that are worked out together, and those that are tried before another idea has its turn.
 CHUNK, PORTION = 8192, 256
 #: Answers that are orientations: of what is built only that is tried which is one.
 ROTATIONS = ("direction cosine matrix", "quaternion", "Euler angles", "axis and angle")
-#: Numbers of a vector that are found one by one: so many values for each, by how many numbers there are.
-EACH = {1: 0, 2: 150, 3: 30}
+#: Of so many values each part of an answer is taken, again and again while there are more; numbers that a vector is put
+#: together of one by one.
+PARTS_TRIED, MOST_PARTS = (6, 12, 24, 40, 150), 5
 
 
 class Found(NamedTuple):
@@ -143,7 +144,7 @@ def _attack(public, text, budget, open_):
     tried = set()
     for family, choices in _in_turns(public, text) if budget else ():
         with np.errstate(all="ignore"):
-            known = fingerprints_of(public, family.evaluate(choices))
+            known = _keys_of(public, family.evaluate(choices))
         for choice, one in zip(choices.tolist(), known, strict=True):
             for way, candidate in _and_beside(public, family, choice, one, open_, tried):
                 if candidate == 1:
@@ -183,17 +184,17 @@ def _and_beside(public, family, choice, known, open_, tried):
     if known is None or known in tried:
         return
     tried.add(known)
-    opened = open_(known)
+    opened = open_(_text_of(known))
     yield family.name, opened
     if opened != 2:
         return
     with np.errstate(all="ignore"):
         beside = family.near(choice) if family.near else family.evaluate(family.beside(choice))
-        others = fingerprints_of(public, beside)
+        others = _keys_of(public, beside)
     for other in others:
         if other is not None and other not in tried:
             tried.add(other)
-            yield f"{family.name}, then by the reply", open_(other)
+            yield f"{family.name}, then by the reply", open_(_text_of(other))
 
 
 def _beginning(public, text):
@@ -250,27 +251,33 @@ def _tables(public, pool, price, whole):
 
 
 def _of_parts(public, pool):
-    """Vectors that are put together: of numbers, and of a vector and a number, that a pool has by then."""
-    size = size_of(public)
-    if public.kind_of_values != "vector" or size < 2:
+    """Answers that are put together of what a pool has by then: a list of its parts, a matrix of rows or of columns."""
+    shape = shape_of(public)
+    if public.kind_of_values not in ("vector", "matrix") or len(shape) not in (1, 2):
         return
-    for most in (6, 12, 24, EACH.get(size, 0)):
-        numbers = np.array(pool.of_shape(())[: min(most, int((4 * BUDGET) ** (1 / size)))])
-        if len(numbers):
-            places = np.array(list(itertools.product(range(len(numbers)), repeat=size)))
-            yield _of_table(public, _as_answers(public, np.moveaxis(numbers[places], 1, 2)), (size,))
-        for first in range(1, size) if size > 2 else ():
-            ones = [pool.of_shape((part,) if part > 1 else ())[: 4 * most] for part in (first, size - first)]
-            if all(ones):
-                ones = [np.array(one).reshape(len(one), pool.points, -1) for one in ones]
-                pairs = np.indices([len(one) for one in ones]).reshape(2, -1)
-                both = [one[places] for one, places in zip(ones, pairs, strict=True)]
-                yield _of_table(public, _as_answers(public, np.concatenate(both, axis=-1)), (size,))
+    cuts = [(axis, sizes) for axis in range(len(shape)) for sizes in _compositions(shape[axis])]
+    for most in PARTS_TRIED:
+        for axis, sizes in cuts:
+            others = [shape[:axis] + ((size,) if size > 1 else ()) + shape[axis + 1 :] for size in sizes]
+            ones = [pool.of_shape(other)[:most] for other in others]
+            if not all(ones) or math.prod(map(len, ones)) > 4 * BUDGET:
+                continue
+            ones = [
+                np.array(one).reshape(len(one), pool.points, *shape[:axis], size, *shape[axis + 1 :])
+                for one, size in zip(ones, sizes, strict=True)
+            ]
+            places = np.indices([len(one) for one in ones]).reshape(len(ones), -1)
+            places = places[:, np.argsort(places.sum(axis=0), kind="stable")]
+            whole = np.concatenate([one[of] for one, of in zip(ones, places, strict=True)], axis=2 + axis)
+            yield _of_table(public, one_sign(public, whole.reshape(len(whole), -1), math.prod(shape)), shape)
 
 
-def _as_answers(public, values):
-    """Vectors, shape (values, points, size), as the numbers of answers."""
-    return one_sign(public, values.reshape(len(values), -1), values.shape[-1])
+def _compositions(size):
+    """All ways to make a size of at least two parts, those of few parts first: as large ones, or numbers alone."""
+    found = [
+        sizes for count in (2, 3) for sizes in itertools.product(range(1, size), repeat=count) if sum(sizes) == size
+    ]
+    return found + [(1,) * size] * (3 < size <= MOST_PARTS)
 
 
 def _with_units(public, numbers):
@@ -292,6 +299,11 @@ def fingerprints_of(public, numbers):
 
     As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the two.
     """
+    return [key and _text_of(key) for key in _keys_of(public, numbers)]
+
+
+def _keys_of(public, numbers):
+    """The cells of each candidate as bytes, from which its fingerprint is written only where it is a new one."""
     if isinstance(numbers, list):
         return numbers
     absolute, relative = (float(part) for part in tolerances(public))
@@ -302,9 +314,13 @@ def fingerprints_of(public, numbers):
         scale = np.sign(numbers) * np.log1p(relative * np.abs(numbers) / absolute) / relative
     offsets = np.array([float(offset) for offset in offsets_of(public.salt, count)])
     cells = np.floor(scale / width + offsets)
-    finite = np.isfinite(cells).all(axis=1)
-    cells = np.where(np.isfinite(cells), cells, 0).astype(np.int64).tolist()
-    return [" ".join(map(str, row)) if good else None for row, good in zip(cells, finite, strict=True)]
+    finite = np.isfinite(cells).all(axis=1).tolist()
+    packed = np.where(np.isfinite(cells), cells, 0).astype(np.int64).tobytes()
+    return [packed[8 * count * row : 8 * count * (row + 1)] if good else None for row, good in enumerate(finite)]
+
+
+def _text_of(key):
+    return key if isinstance(key, str) else " ".join(map(str, np.frombuffer(key, np.int64).tolist()))
 
 
 def one_sign(public, numbers, size):

@@ -22,6 +22,7 @@ import inspect
 import itertools
 import json
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -506,7 +507,7 @@ def _replay(results):
     return lambda *arguments: next(following)
 
 
-def to_page(markdown, formula=None):
+def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
     """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is otherwise left to whoever shows it."""
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin

@@ -460,7 +460,7 @@ def attack_variant(source, course, name, number, one, budget=BUDGET):
     if number:
         source = read_source(course.sources / f"{source.name}.ipynb", number, course.edition, only=[name])
     question = source.questions[name]
-    found, before = attack(question, text_of(source, question), budget), weakest_of(one)
+    found, before = attack(question, text_of(source, question, course), budget), weakest_of(one)
     one["tries"][number] = found.tries if found.way else 0
     if found.way and (not before.way or found.tries < before.tries):
         one["way"] = found.way
@@ -482,6 +482,8 @@ def digest_of_question(source, course, name):
             above -= 1
         for cell in cells[above : number + 1]:
             digest.update(cell.source.encode())
+    if source.name == CHAPTERS:
+        digest.update(text_of(source, source.questions[name], course).encode())
     return digest.hexdigest()[:16]
 
 
@@ -533,18 +535,33 @@ def _says_nothing(question):
     return bool(question.public.exam) or kinds()[question.public.kind].by_a_person
 
 
-def text_of(source, question):
-    """The text of a question, that of its variant or the Markdown above its check, and the open code of its cell."""
-    above, text = "", ""
-    for cell in source.notebook.cells:
-        if cell.cell_type == "markdown":
-            above = cell.source
-        elif f"check({question.name!r}" in cell.source.replace('"', "'"):
-            text = above
-            break
+def text_of(source, question, course):
+    """The text of a question, that of its variant or the Markdown above its check, and the open code of its cell.
+
+    Where a question stands in a chapter, its text stands there, and not in the source.
+    """
+    if source.name == CHAPTERS:
+        for path in sorted((course.root / CHAPTERS).glob("*.ipynb")):
+            found = _above_check(json.loads(path.read_text("utf8"))["cells"], question)
+            if found:
+                return f"{found[0]}{CODE}{found[1]}"
+    cells = [{"cell_type": cell.cell_type, "source": cell.source} for cell in source.notebook.cells]
+    text = (_above_check(cells, question) or [""])[0]
     if question.public.variant:
         text = shown(question.public.variant.text, question.public.variant.shown)
     return f"{text}{CODE}{_open_code(source, question)}"
+
+
+def _above_check(cells, question):
+    """The Markdown above the cell that checks a question, and that cell; ``None`` where none does."""
+    above = ""
+    for cell in cells:
+        said = "".join(cell["source"])
+        if cell["cell_type"] == "markdown":
+            above = said
+        elif f"check({question.name!r}" in said.replace('"', "'"):
+            return above, said
+    return None
 
 
 def _open_code(source, question):

@@ -12,6 +12,7 @@ import functools
 import importlib
 import inspect
 import itertools
+import math
 import operator
 import re
 from typing import NamedTuple
@@ -20,15 +21,17 @@ import numpy as np
 
 from ..checking.plugins import packages, plugins
 
-#: Values that one step may give at one price, values in all, and calls of a function that takes one value at a time.
-MOST_OF_A_STEP, MOST, MOST_CALLS = 1_500, 100_000, 300
+#: Values that one step may give at one price, values in all, and calls that a function needs for them.
+MOST_OF_A_STEP, MOST, MOST_CALLS = 1_500, 100_000, 60
+#: Calls of functions, in all.
+MOST_CALLS_IN_ALL = 25_000
 #: Values of one sort and price that a step is applied to: where it takes one, two or three.
 TAKEN = {1: 4000, 2: 400, 3: 40}
 #: The dearest values that are made.
 DEAREST = 12
 #: The dearest values of each dimension that are made where the answer is of another shape.
-DEAREST_PART = (3, 5, 6, 3)
-#: Calls after which a function that has refused each of them is left alone.
+DEAREST_PART = (3, 5, 5, 1)
+#: Single values after which a function that has refused each of them is left alone.
 FEW = 3
 #: As many numbers of a text all matter.
 FEW_NUMBERS = 8
@@ -39,6 +42,9 @@ DEGREES = re.compile(r"degree|°|\\circ")
 NUMBER = r"-?\d+(?:\.\d+)?"
 TUPLE = re.compile(rf"[\[(]\s*({NUMBER}(?:\s*,\s*{NUMBER})+)\s*[\])]")
 FRACTION = re.compile(rf"\\[td]?frac\{{({NUMBER})\}}\{{({NUMBER})\}}|({NUMBER})\s*/\s*(\d+)")
+#: A vector as a sum of unit vectors.
+TERM = rf"([+-]?)\s*(?:{FRACTION.pattern}|({NUMBER}))?\s*\\hat\{{\w+\}}_([xyz])"
+SUM = re.compile(rf"{TERM}(?:\s*{re.sub(r'[(](?![?])', '(?:', TERM)})+")
 #: A matrix, and a table, as they stand in a text.
 MATRIX = re.compile(r"\\begin\{[bp]?matrix\}(.*?)\\end|\\begin\{array\}\{[clr|]*\}(.*?)\\end", re.S)
 ROWS = re.compile(r"(?:^\|.*\|[ ]*\n?){2,}", re.M)
@@ -65,7 +71,8 @@ class Pool:
     """
 
     def __init__(self, points, wanted=()):
-        self.points, self.wanted, self.sorts, self.seen, self.data = points, wanted, {}, set(), 0
+        self.points, self.wanted, self.sorts, self.seen = points, wanted, {}, set()
+        self.data = self.calls = 0
 
     def of_new_data(self):
         """The bit of one more thing that the question gives."""
@@ -77,28 +84,31 @@ class Pool:
         values = np.asarray(values, dtype=float)
         if values.ndim < 2 or values.ndim > 5 or values.shape[1] != self.points or not values.size:
             return
-        if values[0, 0].size > 48 or values.shape[2:] not in self.wanted and price > DEAREST_PART[values.ndim - 2]:
+        shape = values.shape[2:]
+        dearest = DEAREST_PART[len(shape)] if shape not in self.wanted else price
+        if math.prod(shape) > 48 or price > dearest:
             return
-        uses = np.broadcast_to(uses, len(values))
         flat = values.reshape(len(values), -1)
         good = np.isfinite(flat).all(axis=1)
         good[good] = np.abs(flat[good]).max(axis=1) < 1e9
-        values, uses, flat = values[good], uses[good].tolist(), np.round(flat[good], 8) + 0.0
-        shape, special = values.shape[2:], _special(values)
-        for place, row in enumerate(flat):
-            known = shape, row.tobytes()
+        uses = np.broadcast_to(uses, len(values))[good].tolist()
+        values, flat = values[good], np.round(flat[good], 8) + 0.0
+        special, size, packed = _special(values).tolist(), flat[:1].nbytes, flat.tobytes()
+        for place in range(len(values)):
+            known = shape, packed[place * size : (place + 1) * size]
             if known not in self.seen:
                 self.seen.add(known)
-                at_price = self.sorts.setdefault((shape, bool(special[place])), {}).setdefault(price, ([], []))
+                at_price = self.sorts.setdefault((shape, special[place]), {}).setdefault(price, ([], []))
                 at_price[0].append(values[place])
                 at_price[1].append(uses[place])
 
-    def add_whole(self, value, price, uses=0):
-        """Add one value, and the rows and entries that it is made of."""
-        value = np.asarray(value, dtype=float)
-        self.add(value[None], price, uses)
-        for place in range(min(value.shape[1], 12) if value.ndim > 1 else 0):
-            self.add_whole(value[:, place], price + (value.ndim == 2), uses)
+    def add_whole(self, values, price, uses=0):
+        """Add values like :meth:`add`, and the rows and entries that they are made of."""
+        self.add(values, price, uses)
+        if values.ndim > 2 and values.size:
+            rows = np.moveaxis(values[:, :, :12], 2, 1)
+            uses = np.repeat(np.broadcast_to(uses, len(values)), rows.shape[1])
+            self.add_whole(rows.reshape(-1, *rows.shape[2:]), price + (values.ndim == 4), uses)
 
     def of_shape(self, shape, only_special=False, price=None, whole=None):
         """All values of a shape, the cheap ones first, or those of one price: shape (values, points, ...).
@@ -159,9 +169,9 @@ def beginning(at, given, text, code, wanted):
             return
         uses = pool.of_new_data() if uses is None else uses
         value = np.broadcast_to(value, (pool.points, *value.shape))
-        pool.add_whole(value, price, uses)
+        pool.add_whole(value[None], price, uses)
         if in_degrees:
-            pool.add_whole(np.radians(value), price, uses)
+            pool.add_whole(np.radians(value)[None], price, uses)
         if value.ndim == 3 and value.shape[1] % 2 == 0:
             # Rows that belong together: every other one, or half of them.
             half = value.shape[1] // 2
@@ -169,7 +179,7 @@ def beginning(at, given, text, code, wanted):
                 pool.add(value[None, :, rows], price, uses)
         if value.ndim > 1:
             with np.errstate(all="ignore"):
-                pool.add_whole(value / np.linalg.norm(value, axis=-1, keepdims=True), price, uses)
+                pool.add_whole(_unit(value)[None], price, uses)
 
     for name in at.symbols:
         pool.add(at.values[name][None], 1, pool.of_new_data())
@@ -182,6 +192,12 @@ def beginning(at, given, text, code, wanted):
         add(value, uses=0 if given else None)
     for found in TUPLE.finditer(text):
         add([float(part) for part in found[1].split(",")], uses=0)
+    for found in SUM.finditer(text):
+        components = [0.0, 0.0, 0.0]
+        for sign, above, below, over, under, whole, axis in re.findall(TERM, found[0]):
+            size = float(above or over or whole or 1) / (float(below or under) if above or over else 1)
+            components["xyz".index(axis)] += -size if sign == "-" else size
+        add(components, uses=0)
     for above, below, over, under in FRACTION.findall(text):
         add(float(above or over) / (float(below or under) or 1), uses=0)
     found = list(dict.fromkeys(re.findall(NUMBER, text)))
@@ -243,7 +259,7 @@ def of_arguments(calls, wanted):
                     pool.add(np.array([work(one) for one in column], dtype=float)[None], 2, uses)
                 for work in OF_ROWS if column[0].ndim > 1 else ():
                     pool.add(np.array([work(one) for one in column])[None], 2, uses)
-            pool.add_whole(np.array(column, dtype=float), 1, uses)
+            pool.add_whole(np.array(column, dtype=float)[None], 1, uses)
         except (TypeError, ValueError, IndexError):
             continue
     _add_constants(pool)
@@ -363,7 +379,8 @@ OPERATIONS = (
     *_steps(
         2, (1,), lambda v: np.roll(v, 1, -1), lambda v: np.roll(v, -1, -1), lambda v: v[..., ::-1], np.radians,
         lambda v: np.concatenate([v[..., :1], -v[..., 1:]], -1), lambda v: v / 2, lambda v: v.sum(-1), _crossed,
-        np.diff,        *(_entry(place) for place in range(4)), *(_without_sign(place, 3) for place in range(3)),
+        np.diff, np.arccos, np.arcsin, np.sin, np.cos, np.square, np.abs,
+        *(_entry(place) for place in range(4)), *(_without_sign(place, 3) for place in range(3)),
     ),
     *_steps(1, (2,), _turn_round, _inverse, _vee),
     *_steps(
@@ -512,21 +529,27 @@ def _swaps(size):
 def by_price(pool, steps, most=MOST):
     """Make all values of a price from cheaper ones, price by price; yields the price, first that of what is given."""
     yield from (1, 2)
-    refused = set()
+    refused, made = set(), {}
     for price in range(2, DEAREST):
-        before = {sort: dict(values) for sort, values in pool.sorts.items()}
+        # What costs less than this is there by now.
+        for sort, values in pool.sorts.items():
+            of_sort = made.setdefault(sort, {})
+            for one, (some, uses) in values.items():
+                if one < price and one not in of_sort:
+                    of_sort[one] = np.array(some[: max(TAKEN.values())]), np.array(uses[: max(TAKEN.values())])
         for step in steps:
-            if price - step.price < step.arity:
-                continue
-            for sorts in itertools.product(before, repeat=step.arity):
-                fits = not step.shapes or tuple(len(shape) for shape, _ in sorts) == step.shapes
-                if not fits or (step, sorts) in refused:
+            sorts_of = [
+                [sort for sort in made if not step.shapes or len(sort[0]) == step.shapes[place]]
+                for place in range(step.arity)
+            ]
+            for sorts in itertools.product(*sorts_of) if price - step.price >= step.arity else ():
+                if len(pool.seen) >= most or step.name and pool.calls > MOST_CALLS_IN_ALL:
+                    break
+                if (step, sorts) in refused:
                     continue
-                for prices in _sums(price - step.price, step.arity):
-                    if len(pool.seen) >= most:
-                        break
-                    chosen = [before[sort].get(one) for sort, one in zip(sorts, prices, strict=True)]
-                    if all(chosen) and not _apply(pool, chosen, step, price):
+                for prices in _sums(price - step.price, [made[sort] for sort in sorts]):
+                    chosen = [made[sort][one] for sort, one in zip(sorts, prices, strict=True)]
+                    if not _apply(pool, chosen, step, price):
                         refused.add((step, sorts))
                         break
         yield price
@@ -534,54 +557,69 @@ def by_price(pool, steps, most=MOST):
             return
 
 
-def _sums(whole, count):
-    """All lists of positive numbers that make a sum."""
-    if count == 1:
-        return [(whole,)]
-    return [(first, *rest) for first in range(1, whole) for rest in _sums(whole - first, count - 1)]
+def _sums(whole, allowed):
+    """All lists of numbers that make a sum, each of those that are allowed in its place."""
+    if len(allowed) == 1:
+        return [(whole,)] if whole in allowed[0] else []
+    return [(first, *rest) for first in allowed[0] if first < whole for rest in _sums(whole - first, allowed[1:])]
 
 
 def _apply(pool, chosen, step, price):
-    """Apply a step to values, all at once; or, where it takes one at a time, to some. Whether it can."""
+    """Apply a step to values of some prices, all at once. Whether it can."""
     lengths = [min(len(values), TAKEN[step.arity]) for values, _ in chosen]
     while np.prod(lengths) > MOST_OF_A_STEP:
         lengths[int(np.argmax(lengths))] //= 2
-    chosen = [[np.array(part[:length]) for part in one] for one, length in zip(chosen, lengths, strict=True)]
     # What is made of the first values comes first.
-    order = np.argsort(sum(np.indices(lengths)).ravel(), kind="stable")
-    uses = functools.reduce(np.bitwise_or.outer, [uses for _, uses in chosen]).ravel()[order]
+    places = np.indices(lengths).reshape(len(lengths), -1)
+    places = places[:, np.argsort(places.sum(axis=0), kind="stable")]
+    values = [values[one] for (values, _), one in zip(chosen, places, strict=True)]
+    uses = functools.reduce(np.bitwise_or, [uses[one] for (_, uses), one in zip(chosen, places, strict=True)])
+    if not step.name:
+        found = _parts(step.work, values, len(values[0]), pool.points)
+        for part in found:
+            pool.add(part, price, uses)
+        return bool(found)
+    by_shape = {}
+    for rows, parts in _called(step.work, values, pool):
+        for part in parts:
+            by_shape.setdefault(part.shape[2:], []).append((part, uses[rows]))
+    for found in by_shape.values():
+        parts, used = zip(*found, strict=True)
+        pool.add(np.concatenate(parts), price, np.concatenate(used))
+        pool.add_whole(np.concatenate(parts), price + 1, np.concatenate(used))
+    return bool(by_shape)
+
+
+def _parts(work, values, *begin):
+    """What a step gives for all values at once, each part of it, as far as their shapes begin so; or nothing."""
     try:
-        spread = [
-            values.reshape(*(len(values) if k == place else 1 for k in range(len(chosen))), *values.shape[1:])
-            for place, (values, _) in enumerate(chosen)
-        ]
-        found, able = step.work(*spread), False
-        for part in found if isinstance(found, tuple) else (found,):
-            part = np.asarray(part, dtype=float)
-            if part.shape[: len(lengths) + 1] == (*lengths, pool.points):
-                pool.add(part.reshape(-1, *part.shape[len(lengths) :])[order], price, uses)
-                able = True
-        return able
-    except Exception:
-        return bool(step.name) and _one_by_one(pool, step, chosen, price, order, uses)
+        found = work(*values)
+        found = [np.asarray(part, dtype=float) for part in (found if isinstance(found, tuple) else (found,))]
+    except Exception:  # whatever a function says to what it was not made for
+        return []
+    return [part for part in found if part.shape[: len(begin)] == begin]
 
 
-def _one_by_one(pool, step, chosen, price, order, uses):
-    able, calls = False, 0
-    batch = [len(values) for values, _ in chosen]
-    for flat, used in zip(order[:MOST_CALLS], uses, strict=False):
-        values = [some[place] for (some, _), place in zip(chosen, np.unravel_index(flat, batch), strict=True)]
-        calls += 1
-        if calls > FEW and not able:
-            return False
-        try:
-            found = step.work(*(value[0] if pool.points == 1 else value for value in values))
-            for part in found if isinstance(found, tuple) else (found,):
-                part = np.asarray(part, dtype=float)
-                part = part[None] if pool.points == 1 else part
-                if part.ndim and part.shape[0] == pool.points:
-                    pool.add_whole(part, price, used)
-                    able = True
-        except Exception:
-            continue  # this value is refused; another of its sort may not be
-    return able
+def _called(function, values, pool):
+    """What a function of the course gives: rows, and the parts of what it gives for them.
+
+    Most take a batch, which must have more rows than a vector has numbers. It is tried on one value, then on more and
+    more at once, and on fewer again where one of them is refused.
+    """
+    points, first, size, refused = pool.points, 0, 1, 0
+    for _ in range(MOST_CALLS):
+        pool.calls += 1
+        last = min(first + size, len(values[0]))
+        count, some = last - first, [value[first:last].reshape(-1, *value.shape[2:]) for value in values]
+        parts = _parts(function, some, len(some[0])) if len(some[0]) > 4 or points > 1 and count == 1 else []
+        if not parts and count == points == 1:
+            parts = [part[None] for part in _parts(function, [value[0] for value in some])]
+        if parts:
+            yield slice(first, last), [part.reshape(count, points, *part.shape[1:]) for part in parts]
+            first, size, refused = last, 4 * size, -math.inf
+        elif count > 1:
+            size = max(1, count // 8)
+        else:
+            first, refused = last, refused + 1
+        if first == len(values[0]) or refused == FEW:
+            return

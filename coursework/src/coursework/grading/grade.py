@@ -5,6 +5,8 @@ that it depends on: the bytes of the notebooks, the questions, the limits, the v
 run that finds a record with the right key leaves it alone, so a run that was killed goes on where it was.
 """
 
+from __future__ import annotations
+
 import base64
 import contextlib
 import hashlib
@@ -14,27 +16,41 @@ import json
 import platform
 import sys
 import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from ..authoring.course import edition_of, find_course, links_of
+from ..authoring.source import names_asked
+from ..checking.fields import Json, by_name, many, text
 from ..checking.identity import plain_identity
 from ..checking.plugins import kinds
 from .execution.cluster_keys import demand_keys
 from .judging import marking
 from .judging.cases import Contracts, answered, changed_since, variants_of
+from .judging.contract import Asked, Contract
 from .judging.judge import Judge
 from .judging.ledger import APPEALS, DECISIONS, Ledger, Standing, appeals_open, with_decisions
 from .judging.secret import secret_beside
-from .record import FORMAT, Answer, Cell, Record, Remembered, RunNotebook, Superseded
+from .record import FORMAT, Answer, Isolation, Record, Result, Superseded, read_result
 from .reporting.laboratory import Laboratory, Policies
 from .store import REFUSED, Store, as_text, write
 from .submissions import intake
+from .submissions.intake import Notebook, Refused
 from .submissions.roster import BadRoster, Roster
 from .tables import in_a_line, lines, number
 from .versions import software
 from .workers import processors, side_by_side
+
+if TYPE_CHECKING:  # what runs code takes a while to be loaded, and where nothing is graded it is not needed
+    from .execution.sandbox import Job, Limits
+
+#: The questions of an assignment, each in all its variants, by name.
+Questions = Mapping[str, Sequence[Contract]]
+#: Which work was graded, and how it was kept apart, as JSON.
+Finished = tuple[int, dict[str, Json]]
+Finish = Callable[[int, Sequence[Result]], Finished]
 
 COURSE, WHOSE, ROSTER = "course.json", "whose.csv", "roster.json"
 
@@ -51,8 +67,12 @@ class Work(NamedTuple):
 
     student: str
     assignment: str
-    notebooks: list
-    superseded: list
+    notebooks: list[Notebook]
+    superseded: list[Notebook]
+
+
+#: A notebook that says that it is of somebody else than whose work it is in.
+Foreign = tuple[Work, Notebook]
 
 
 class Course:
@@ -66,7 +86,9 @@ class Course:
         The notebooks that make up each assignment, where they are not one each.
     """
 
-    def __init__(self, solutions=None, assignments=None):
+    def __init__(
+        self, solutions: str | Path | None = None, assignments: Mapping[str, Sequence[str]] | None = None
+    ) -> None:
         folder = self.folder = Path(solutions or find_course().sources)
         self.edition = edition_of(folder)
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
@@ -80,11 +102,11 @@ class Course:
                 f"there are {', '.join(self.sources)}."
             )
         self.names = {
-            assignment: [name for stem in stems for name in marking.names_asked(self.sources[stem])]
+            assignment: [name for stem in stems for name in names_asked(self.sources[stem])]
             for assignment, stems in self.assignments.items()
         }
 
-    def assignments_of(self, notebook):
+    def assignments_of(self, notebook: Notebook) -> list[str]:
         """The assignments that a notebook answers, by the names in its cells, or else by its own name."""
         by_cell = {name.replace("/", "-"): name for names in self.names.values() for name in names}
         named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
@@ -104,7 +126,7 @@ class Course:
                 return [max(fitting, key=len)]
         return list(self.assignments) if len(self.assignments) == 1 else []
 
-    def questions(self, assignments, kept):
+    def questions(self, assignments: Iterable[str], kept: Path) -> dict[str, Questions]:
         """The questions of some assignments, by assignment and name."""
         stems = sorted({stem for assignment in assignments for stem in self.assignments[assignment]})
         secret = secret_beside(self.folder)
@@ -112,24 +134,24 @@ class Course:
         return {assignment: {name: found[name] for name in self.names[assignment]} for assignment in assignments}
 
 
-def sort_work(notebooks, course, refused):
+def sort_work(notebooks: Iterable[Notebook], course: Course, refused: list[Refused]) -> list[Work]:
     """Sort notebooks by student and assignment; say of each which counts.
 
     Of several notebooks for one assignment the newest counts, and older ones only for questions that no newer
     one has: an assignment may be handed in as several notebooks.
     """
-    handed_in = {}
+    handed_in: dict[tuple[str, str], list[Notebook]] = {}
     for notebook in notebooks:
         assignments = course.assignments_of(notebook)
         if not assignments:
-            refused.append(
-                intake.Refused(notebook.file, notebook.student, "No question of any assignment is named in it.")
-            )
+            refused.append(Refused(notebook.file, notebook.student, "No question of any assignment is named in it."))
         for assignment in assignments:
             handed_in.setdefault((notebook.student, assignment), []).append(notebook)
     found = []
     for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0]):
-        counting, superseded, taken = [], [], set()
+        counting: list[Notebook] = []
+        superseded: list[Notebook] = []
+        taken: set[str] = set()
         for notebook in sorted(mine, key=_by_age, reverse=True):
             names = set(notebook.named) & set(course.names[assignment])
             if counting and (names & taken or not names):
@@ -141,7 +163,7 @@ def sort_work(notebooks, course, refused):
     return found
 
 
-def _by_age(notebook):
+def _by_age(notebook: Notebook) -> tuple[tuple[int, ...], tuple[int, ...], str]:
     declared, when = notebook.order
     return declared, when if isinstance(when, tuple) else (when,), notebook.file
 
@@ -150,22 +172,22 @@ def _by_age(notebook):
 
 
 def grade(
-    submissions,
-    out,
+    submissions: str | Path,
+    out: str | Path,
     *,
-    solutions=None,
-    assignments=None,
-    roster=None,
-    student=None,
-    dry_run=False,
-    workers=None,
-    scheduler=None,
-    keys=None,
-    allow_weak_isolation=False,
-    as_listed=False,
-    limits=None,
-    show=None,
-):
+    solutions: str | Path | None = None,
+    assignments: Mapping[str, Sequence[str]] | None = None,
+    roster: str | Path | None = None,
+    student: str | None = None,
+    dry_run: bool = False,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    keys: str | Path | None = None,
+    allow_weak_isolation: bool = False,
+    as_listed: bool = False,
+    limits: Limits | None = None,
+    show: TextIO | None = None,
+) -> dict[str, int]:
     """Grade what was handed in and write records and reports to the folder ``out``.
 
     Parameters
@@ -211,52 +233,52 @@ def grade(
         raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
     if scheduler and importlib.util.find_spec("distributed") is None:
         raise ValueError("To give notebooks to a cluster, install what speaks to it: python -m pip install distributed")
-    keys = Path(keys) if keys else None
+    folder_of_keys = Path(keys) if keys else None
     if scheduler:
-        demand_keys(scheduler, keys)
+        demand_keys(scheduler, folder_of_keys)
     store, limits, show = Store(out), limits or Limits(), show or sys.stderr
-    roster = Roster(roster) if roster else None
-    if student is not None and roster and student not in roster.people:
+    people = Roster(roster) if roster else None
+    if student is not None and people and student not in people.people:
         raise BadRoster(f"There is no student {student!r} in the roster.")
     with contextlib.ExitStack() as closing:
         closing.enter_context(store.locked())
         course = Course(solutions, assignments)
         _demand_submissions(Path(submissions), course)
         try:
-            notebooks, refused = intake.take_in(submissions, course.assignments, roster, student, store.folder)
+            notebooks, refused = intake.take_in(submissions, course.assignments, people, student, store.folder)
         except intake.Unfit as error:
             raise NothingToGrade(str(error)) from None
         if not notebooks and not refused:
             raise NothingToGrade(f"There is nothing in {submissions}: no notebook, and no other file.")
         work = sort_work(notebooks, course, refused)
-        _say_whose(work, refused, roster, store, show)
+        _say_whose(work, refused, people, store, show)
         foreign = _say_foreign(work, course, show)
-        _demand_a_class(work, roster, student)
+        _demand_a_class(work, people, student)
         questions = course.questions(sorted({one.assignment for one in work}), store.folder / "questions")
         if not as_listed:
-            _demand_own_numbers(work, questions, foreign, roster)
+            _demand_own_numbers(work, questions, foreign, people)
         ledger = Ledger(store.folder)
         for line in _put_renamed_aside(store, work, ledger, dry_run):
             print(line, file=show)
         if not dry_run:
-            if roster:
-                write(store.folder / ROSTER, as_text(sorted(roster.people)))
-            known = _read(store.folder / COURSE)
-            write(store.folder / COURSE, as_text({**known, **course.assignments}))
+            if people:
+                write(store.folder / ROSTER, as_text(sorted(people.people)))
+            write(store.folder / COURSE, as_text(dict(_assignments_kept(store), **course.assignments)))
             _take_in_decisions(ledger, store, show)
 
         standing, contracts, policies = ledger.standing(), Contracts(store.folder), Policies.of(store.folder)
 
-        def before(one):
+        def before(one: Work) -> Record | None:
             """The record of the same student before, from which it is known which variants are whose."""
             return store.read(one.student, one.assignment)
 
-        def key(one):
+        def key(one: Work) -> str:
             own, _ = marking.of_student(questions[one.assignment], one.student, before(one), contracts)
             asked = marking.asked_of_sandbox(marking.with_second_chances(own))
             return key_of(one, asked, limits, allow_weak_isolation)
 
-        waiting, kept = [], []
+        waiting: list[Work] = []
+        kept: list[Work] = []
         for one in work:
             (kept if _is_done(store, one, key(one)) else waiting).append(one)
         print(
@@ -269,7 +291,7 @@ def grade(
         jobs = _Jobs(waiting, questions, store, contracts, before)
         judge = closing.enter_context(Judge(questions, contracts, store.log))
 
-        def finish(order, results):
+        def finish(order: int, results: Sequence[Result]) -> Finished:
             """Judge one student's work, and write its record."""
             one = waiting[order]
             asked = questions[one.assignment]
@@ -277,29 +299,29 @@ def grade(
             of_student, cases = marking.of_student(asked, one.student, old, contracts)
             record = record_of(one, results, key(one), of_student, limits)
             # By whose mending nobody is to lose, nobody loses who handed the same answer in again.
-            marks = old.marks if old else {}
+            same = {name: mark for name, mark in old.marks.items() if _is_same(old, record, name)} if old else {}
             record = replace(
                 record,
-                marks={name: mark for name, mark in marks.items() if _is_same(old, record, name)},
+                marks=same,
                 cases={name: answered(case, of_student[name]) for name, case in cases.items()},
             )
             store.save(marked(record, judge, standing, policies))
-            return order, record.notebooks[0].isolation
+            return order, record.notebooks[0].isolation.as_json()
 
         progress = _Progress(len(waiting), show)
         finished = (
-            _on_cluster(jobs, finish, workers, scheduler, keys, limits, allow_weak_isolation, store)
+            _on_cluster(jobs, finish, workers, scheduler, folder_of_keys, limits, allow_weak_isolation, store)
             if scheduler
             else _here(jobs, finish, workers, limits, allow_weak_isolation, store)
         )
         for order, isolation in finished:
             store.log(f"graded: {waiting[order].student!r} {waiting[order].assignment}")
-            progress.one_more(isolation)
+            progress.one_more(Isolation.from_json(isolation))
         # What was kept may have been decided on since.
         for one in kept:
-            record = store.read(one.student, one.assignment)
-            again = marked(record, judge, standing, policies)
-            if again != record:
+            found = store.read(one.student, one.assignment)
+            again = found and marked(found, judge, standing, policies)
+            if again and again != found:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
@@ -312,7 +334,7 @@ def grade(
     return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
 
 
-def _demand_submissions(submissions, course):
+def _demand_submissions(submissions: Path, course: Course) -> None:
     """Refuse the folder of the course, or of results, where that of the students' work is asked for."""
     if course.folder.resolve().is_relative_to(submissions.resolve()):
         raise NothingToGrade(f"{submissions} holds the notebooks with solutions: name the folder that was handed in.")
@@ -320,10 +342,12 @@ def _demand_submissions(submissions, course):
         raise NothingToGrade(f"{submissions} holds results of grading: name the folder that was handed in.")
 
 
-def _say_whose(work, refused, roster, store, show):
+def _say_whose(
+    work: Sequence[Work], refused: Sequence[Refused], roster: Roster | None, store: Store, show: TextIO
+) -> None:
     """Say before anything is run whose each file is, and how that is known."""
 
-    def rows():
+    def rows() -> Iterator[tuple[str, ...]]:
         for one in work:
             for notebook in (*one.notebooks, *one.superseded):
                 yield one.student, one.assignment, notebook.file, notebook.matched, notebook.says
@@ -350,7 +374,7 @@ def _say_whose(work, refused, roster, store, show):
                 print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
 
 
-def _say_foreign(work, course, show):
+def _say_foreign(work: Sequence[Work], course: Course, show: TextIO) -> list[Foreign]:
     """Say which notebooks say that they are of somebody else than whose they are graded as; give these."""
     foreign = [
         (one, notebook)
@@ -373,7 +397,9 @@ def _say_foreign(work, course, show):
 FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
 
 
-def _demand_own_numbers(work, questions, foreign, roster):
+def _demand_own_numbers(
+    work: Sequence[Work], questions: Mapping[str, Questions], foreign: Sequence[Foreign], roster: Roster | None
+) -> None:
     """Numbers follow from who one is: where many say to be somebody else, all would be judged by wrong numbers."""
     varied = {name for name, asked in questions.items() if any(len(variants) > 1 for variants in asked.values())}
     saying = sum(bool(notebook.says) for one in work if one.assignment in varied for notebook in one.notebooks)
@@ -399,7 +425,7 @@ def _demand_own_numbers(work, questions, foreign, roster):
 MANY_OTHER_NUMBERS = 0.1
 
 
-def _say_other_numbers(store, work, questions, show):
+def _say_other_numbers(store: Store, work: Sequence[Work], questions: Mapping[str, Questions], show: TextIO) -> None:
     """Say it where many answers are right for other numbers than those that their authors are believed to have had."""
     for assignment, asked in questions.items():
         varied = {name for name, variants in asked.items() if len(variants) > 1}
@@ -418,7 +444,7 @@ def _say_other_numbers(store, work, questions, show):
             )
 
 
-def _demand_a_class(work, roster, student):
+def _demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | None) -> None:
     """Everything from one student is a question, not a result: a folder around it may have been taken for one."""
     students = {one.student for one in work}
     doubtful = [notebook for one in work for notebook in one.superseded if not notebook.claim.given_by_system]
@@ -431,19 +457,20 @@ def _demand_a_class(work, roster, student):
         )
 
 
-def _put_renamed_aside(store, work, ledger, dry_run=False):
+def _put_renamed_aside(store: Store, work: Sequence[Work], ledger: Ledger, dry_run: bool = False) -> Iterator[str]:
     """Move the record of a student away whose very notebooks are now another's: the folder was renamed.
 
     What people decided on the answers is entered for the new name too.
     """
     present = {(one.student, one.assignment) for one in work}
-    known, absent = set(), []
+    known = set()
+    absent: list[tuple[str, str, set[tuple[str, str]]]] = []
     for record in store.all():
         known.add((record.student, record.assignment))
         if (record.student, record.assignment) not in present:
             files = {(notebook.file, notebook.sha256) for notebook in record.notebooks}
             absent.append((record.student, record.assignment, files))
-    owners = {}
+    owners: dict[tuple[str, frozenset[str]], list[Work]] = {}
     for one in work if absent else ():
         if (one.student, one.assignment) not in known:
             digests = frozenset(notebook.digest for notebook in one.notebooks)
@@ -469,7 +496,7 @@ def _put_renamed_aside(store, work, ledger, dry_run=False):
             yield said
 
 
-def _take_in_decisions(ledger, store, show):
+def _take_in_decisions(ledger: Ledger, store: Store, show: TextIO) -> None:
     if said := ledger.said_of_cut():
         print(said, file=show)
     for line in ledger.take_in_table(store.folder / DECISIONS, store.all()):
@@ -478,9 +505,11 @@ def _take_in_decisions(ledger, store, show):
         print(f"{APPEALS}, not used: {line}.", file=show)
 
 
-def said_of_people(store, standing):
+def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
     """What waits for people beside undecided answers: appeals, and decisions on what has changed since."""
-    contracts, appeals, changed = Contracts(store.folder), [], []
+    appeals: list[str] = []
+    changed: list[str] = []
+    contracts = Contracts(store.folder)
     for record in store.all():
         appeals += [record.student] * len(appeals_open(record))
         for name in record.marks:
@@ -501,7 +530,7 @@ def said_of_people(store, standing):
             yield f"{len(names)} {what[len(names) > 1]}{since} ({whose}): `coursework review` shows them as {shown!r}."
 
 
-def _say_guessable(questions, show):
+def _say_guessable(questions: Mapping[str, Questions], show: TextIO) -> None:
     """Say which points a script could have guessed: whoever tries answers in the check earns them."""
     for assignment, asked in questions.items():
         worth = sum(first.worth for first, *_ in asked.values())
@@ -515,26 +544,27 @@ def _say_guessable(questions, show):
             )
 
 
-def _read(path):
-    return json.loads(path.read_text("utf8")) if path.exists() else {}
+def _assignments_kept(store: Store) -> dict[str, tuple[str, ...]]:
+    """The notebooks of each assignment that was graded into a folder."""
+    return store.said(COURSE, by_name(many(text))) or {}
 
 
-def _is_done(store, one, key):
+def _is_done(store: Store, one: Work, key: str) -> bool:
     record = store.read(one.student, one.assignment)
     # A notebook that this machine could not run is tried again.
     return (
         record is not None
         and record.key == key
-        and not any("given up" in notebook.isolation for notebook in record.notebooks)
+        and not any(notebook.isolation.given_up is not None for notebook in record.notebooks)
     )
 
 
-def _is_same(record, other, name):
+def _is_same(record: Record, other: Record, name: str) -> bool:
     """Whether two records hold the same answer, in whatever cell."""
     return record.answer(name).plain == other.answer(name).plain
 
 
-def key_of(work, asked, limits, weak):
+def key_of(work: Work, asked: Mapping[str, Json], limits: Limits, weak: bool) -> str:
     """What of a record depends on running the work, as one short text; it is judged again without that.
 
     ``asked`` is what the sandbox is told of the questions: with a call that was mended just those are run again.
@@ -555,7 +585,7 @@ def key_of(work, asked, limits, weak):
     return hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
 
 
-def reply_of(work):
+def reply_of(work: Work) -> str:
     """How the name of a page begins that goes back to the student: what the system wrote of the newest notebook."""
     return max((*work.notebooks, *work.superseded), key=_by_age).claim.reply
 
@@ -563,21 +593,28 @@ def reply_of(work):
 class _Jobs:
     """The jobs of the sandbox, one for each notebook, and which work each belongs to."""
 
-    def __init__(self, work, questions, store, contracts, before):
+    def __init__(
+        self,
+        work: Sequence[Work],
+        questions: Mapping[str, Questions],
+        store: Store,
+        contracts: Contracts,
+        before: Callable[[Work], Record | None],
+    ) -> None:
         self.work = work
         self.questions = questions
         self.store = store
         self.contracts = contracts
         self.before = before
 
-    def __len__(self):
+    def __len__(self) -> int:
         return sum(len(one.notebooks) for one in self.work)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Job]:
         for order in range(len(self.work)):
             yield from self.of(order)
 
-    def of(self, order):
+    def of(self, order: int) -> Iterator[Job]:
         """The jobs of one student's work."""
         one = self.work[order]
         named = {name for notebook in one.notebooks for name in notebook.named}
@@ -590,20 +627,20 @@ class _Jobs:
             if for_a_person:
                 self.store.keep_pictures(notebook.digest, notebook.pictures)
             files = {name: base64.b64encode(data).decode() for name, data in notebook.files.items()}
-            job = {"id": f"{order} {part}", "cells": cells, "questions": asked, "seed": 0}
+            job: Job = {"id": f"{order} {part}", "cells": cells, "questions": asked, "seed": 0}
             yield {**job, "files": files} if files else job
 
-    def given_up(self, order, why):
+    def given_up(self, order: int, why: str) -> list[Result]:
         """The results of work that could not be run."""
         from .execution.sandbox import given_up
 
         return [given_up(job, why) for job in self.of(order)]
 
-    def whole(self, results):
+    def whole(self, results: Iterable[Result]) -> Iterator[tuple[int, list[Result]]]:
         """Give the order of each work with the results of its notebooks, once it has them all."""
-        found = {}
+        found: dict[int, dict[int, Result]] = {}
         for result in results:
-            order, part = map(int, result["id"].split())
+            order, part = map(int, text(result["id"], "'id'").split())
             parts = found.setdefault(order, {})
             parts[part] = result
             if len(parts) == len(self.work[order].notebooks):
@@ -614,17 +651,19 @@ class _Jobs:
 MARKING_ENDED = "The process that ran and judged it ended again and again."
 
 
-def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
+def _here(
+    jobs: _Jobs, finish: Finish, workers: int, limits: Limits, allow_weak_isolation: bool, store: Store
+) -> Iterator[Finished]:
     """Run and judge on this machine: each process has a sandbox, and does one student's work after another."""
     from .execution.sandbox import Sandbox, WeakIsolation, WorkerDied, copies_are_apart, given_up
 
     first = None
 
-    def prepare(stack):
+    def prepare(stack: contextlib.ExitStack) -> Callable[[int], Finished]:
         store.in_copy_of_process()
         sandbox = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation, like=first))
 
-        def run(job):
+        def run(job: Job) -> Result:
             try:
                 return sandbox.run(job)
             except WorkerDied as error:  # it costs only the notebook under which the sandbox dies again and again
@@ -645,56 +684,48 @@ def _here(jobs, finish, workers, limits, allow_weak_isolation, store):
         )
 
 
-def _on_cluster(jobs, finish, workers, scheduler, keys, limits, allow_weak_isolation, store):
+def _on_cluster(
+    jobs: _Jobs,
+    finish: Finish,
+    workers: int,
+    scheduler: str,
+    keys: Path | None,
+    limits: Limits,
+    allow_weak_isolation: bool,
+    store: Store,
+) -> Iterator[Finished]:
     """Run on a cluster and judge here: right answers do not leave this machine."""
     from .execution.cluster import run_on_cluster
 
-    def prepare(stack):
+    def prepare(stack: contextlib.ExitStack) -> Callable[[tuple[int, list[Result]]], Finished]:
         store.in_copy_of_process()
         return lambda task: finish(*task)
 
-    def results():
+    def results() -> Iterator[tuple[int, list[Result]]]:
         # Not before the processes are there, which are to have no part in the connection.
         if jobs.work:
             yield from jobs.whole(
                 run_on_cluster(jobs, scheduler, limits, keys=keys, allow_weak_isolation=allow_weak_isolation)
             )
 
-    def lost(task):
+    def lost(task: tuple[int, list[Result]]) -> Finished:
         return finish(task[0], jobs.given_up(task[0], MARKING_ENDED))
 
     return side_by_side(results(), min(workers, len(jobs.work)), prepare, lost=lost)
 
 
-def record_of(work, results, key, questions, limits):
+def record_of(
+    work: Work, results: Sequence[Result], key: str, questions: Mapping[str, Asked], limits: Limits
+) -> Record:
     """The record of a student's work, before it is judged."""
-    notebooks = []
-    for notebook, result in zip(work.notebooks, results, strict=True):
-        notebooks.append(
-            RunNotebook(
-                notebook.file,
-                notebook.digest,
-                result["finished"],
-                tuple(Cell.from_json(cell, notebook.file) for cell in result["cells"]),
-                tuple(result["notes"]),
-                tuple(result.get("tried", ())),
-                tuple(one.name for one in notebook.beside),
-                tuple(result["unknown questions"]),
-                result["runs"],
-                result["seed"],
-                result["isolation"],
-                notebook.late,
-                notebook.handed_in,
-            )
-        )
+    ran, given = zip(*(read_result(result, one.file) for result, one in zip(results, work.notebooks, strict=True)))
     known = marking.with_second_chances(questions)
-    answers, finished = {}, all(result["finished"] for result in results)
-    for name in results[0]["answers"]:
-        given = [Answer.from_json(result["answers"][name], name) for result in results]
+    answers = {}
+    for name in given[0]:
         # Of several notebooks the one that says something; they have no question in common.
-        answer = min(given, key=_says_little)
-        if answer.secret is not None:
-            answer = replace(answer, secret={**answer.secret, "calls": known[name].secret.digest})
+        answer = min((one[name] for one in given), key=_says_little)
+        if answer.secret is not None and (secret := known[name].secret):
+            answer = replace(answer, secret={**answer.secret, "calls": secret.digest})
         answers[name] = answer
     return Record(
         work.student,
@@ -703,30 +734,33 @@ def record_of(work, results, key, questions, limits):
         work.notebooks[0].identity,
         tuple(sorted({notebook.says for notebook in work.notebooks if notebook.says})),
         reply_of(work),
-        tuple(notebooks),
+        tuple(
+            replace(
+                run,
+                file=notebook.file,
+                sha256=notebook.digest,
+                beside=tuple(one.name for one in notebook.beside),
+                late=notebook.late,
+                handed_in=notebook.handed_in,
+            )
+            for run, notebook in zip(ran, work.notebooks)
+        ),
         tuple(Superseded(notebook.file, notebook.digest) for notebook in work.superseded),
         software(),
         vars(limits),
-        finished,
+        all(one.finished for one in ran),
         answers,
-        {
-            name: Remembered.from_json(about, notebook.file)
-            for notebook in work.notebooks
-            for name, about in notebook.remembered.items()
-        },
+        {name: about for notebook in work.notebooks for name, about in notebook.remembered.items()},
     )
 
 
-def _says_little(answer):
-    blank = answer.outcome == "recorded" and answer.plain["value"] == ["blank"]
-    return (
-        ("recorded", "unreadable").index(answer.outcome) + 3 * blank
-        if answer.outcome in ("recorded", "unreadable")
-        else 2 + 2 * (answer.outcome == "missing")
-    )
+def _says_little(answer: Answer) -> int:
+    if answer.outcome in ("recorded", "unreadable"):
+        return 3 if answer.is_blank else ("recorded", "unreadable").index(answer.outcome)
+    return 4 if answer.outcome == "missing" else 2
 
 
-def marked(record, judge, standing=None, policies=None):
+def marked(record: Record, judge: Judge, standing: Standing | None = None, policies: Policies | None = None) -> Record:
     """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
     questions = judge.questions[record.assignment]
     own, cases = marking.of_student(judge.questions[record.assignment], record.student, record, judge.contracts)
@@ -737,10 +771,9 @@ def marked(record, judge, standing=None, policies=None):
     found = judge.marks(record)
     marks = {}
     for name, asked in own.items():
-        old = record.marks.get(name)
-        old = old and old.judged
+        before = record.marks.get(name)
         taken_out = cases[name].own.variant not in variants_of(questions[name])
-        mark = (policies or Policies()).applied(name, found[name], old, cases[name], taken_out)
+        mark = (policies or Policies()).applied(name, found[name], before and before.judged, cases[name], taken_out)
         # What the lines of a rubric are worth, where its author said so.
         rubric = asked.contract.rubric if isinstance(asked.contract.rubric, dict) else None
         marks[name] = replace(mark, title=asked.contract.title, rubric=rubric)
@@ -750,18 +783,18 @@ def marked(record, judge, standing=None, policies=None):
 class _Progress:
     """How far it is and how long it will take, on one line that is written over."""
 
-    def __init__(self, total, show):
+    def __init__(self, total: int, show: TextIO) -> None:
         self.total, self.show, self.done = total, show, 0
         self.start = self.last = time.monotonic()
         self.told = False
 
-    def one_more(self, isolation):
+    def one_more(self, isolation: Isolation) -> None:
         self.done += 1
         if not self.told:
             self.told = True
-            kind = "WEAK isolation" if isolation["weak"] else "Isolation"
-            print(f"{kind}: {', '.join(isolation['layers']) or 'none'}.", file=self.show)
-            for line in isolation.get("not stopped", ()):
+            kind = "WEAK isolation" if isolation.weak else "Isolation"
+            print(f"{kind}: {', '.join(isolation.layers) or 'none'}.", file=self.show)
+            for line in isolation.not_stopped or ():
                 print(f"  not stopped: {line}", file=self.show)
         now = time.monotonic()
         on_screen = self.show.isatty()
@@ -778,7 +811,7 @@ class _Progress:
             print(f"\r\x1b[K{said}" if on_screen else said, end=end, file=self.show, flush=True)
 
 
-def _span(seconds):
+def _span(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
@@ -792,10 +825,17 @@ class Moved(NamedTuple):
     assignment: str
     before: float
     after: float
-    questions: list
+    questions: list[str]
 
 
-def regrade(out, *, solutions=None, policies=None, dry_run=False, show=None):
+def regrade(
+    out: str | Path,
+    *,
+    solutions: str | Path | None = None,
+    policies: Policies | None = None,
+    dry_run: bool = False,
+    show: TextIO | None = None,
+) -> list[Moved] | Laboratory:
     """Judge the stored answers again, by the questions and people's decisions as they are now.
 
     Parameters
@@ -822,7 +862,7 @@ def regrade(out, *, solutions=None, policies=None, dry_run=False, show=None):
         names = sorted({record.assignment for record in store.all()})
         if not names:
             raise NothingToGrade(f"There are no records in {store.folder}.")
-        known = _read(store.folder / COURSE)
+        known = _assignments_kept(store)
         unknown = sorted(set(names) - set(known))
         if unknown:
             raise NothingToGrade(
@@ -861,7 +901,7 @@ def regrade(out, *, solutions=None, policies=None, dry_run=False, show=None):
     return moved
 
 
-def changed_in(record, again):
+def changed_in(record: Record, again: Record) -> list[str]:
     """The questions of which points or outcome are others in a second record."""
     return [
         name
@@ -871,14 +911,14 @@ def changed_in(record, again):
     ]
 
 
-def moved_in(record, again):
+def moved_in(record: Record, again: Record) -> list[Moved]:
     """What moved from one record to another, if anything did."""
     changed = changed_in(record, again)
     points = record.points, again.points
     return [Moved(record.student, record.assignment, *points, changed)] if changed else []
 
 
-def bring_in_decisions(out, *, show=None):
+def bring_in_decisions(out: str | Path, *, show: TextIO | None = None) -> list[Moved]:
     """Bring what people decided into marks and pages; nothing is judged anew.
 
     Returns

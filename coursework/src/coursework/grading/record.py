@@ -61,6 +61,11 @@ class Answer:
     secret: Mapping[str, Json] | None = None
     more: Mapping[str, Json] = field(default_factory=dict)
 
+    @property
+    def is_blank(self) -> bool:
+        """Whether what was answered is the blank that the exercise came with."""
+        return self.outcome == "recorded" and self.plain is not None and self.plain["value"] == ["blank"]
+
     @classmethod
     def from_json(cls, found: object, where: str = "an answer") -> Answer:
         about = Fields(found, where)
@@ -333,6 +338,51 @@ class Cell:
 
 
 @dataclass(frozen=True)
+class Isolation:
+    """How the code of a notebook was kept apart.
+
+    Attributes
+    ----------
+    layers : tuple of str
+        Those in force.
+    weak : bool
+    namespaces_by : str or None
+        What made the namespaces.
+    not_stopped : tuple of str or None
+        What student code could have done.
+    given_up : str or None
+        Why it could not be run.
+    """
+
+    layers: tuple[str, ...] = ()
+    weak: bool = False
+    namespaces_by: str | None = None
+    not_stopped: tuple[str, ...] | None = None
+    given_up: str | None = None
+
+    @classmethod
+    def from_json(cls, found: object, where: str = "isolation") -> Isolation:
+        about = Fields(found, where)
+        return cls(
+            about.maybe("layers", many(text)) or (),
+            about.maybe("weak", truth) or False,
+            about.maybe("namespaces made by", text),
+            about.maybe("not stopped", many(text)),
+            about.maybe("given up", text),
+        )
+
+    def as_json(self) -> dict[str, Json]:
+        found: dict[str, Json] = {
+            "layers": written(self.layers),
+            "namespaces made by": self.namespaces_by,
+            "weak": self.weak,
+            "not stopped": written(self.not_stopped),
+            "given up": self.given_up,
+        }
+        return {name: value for name, value in found.items() if value is not None}
+
+
+@dataclass(frozen=True)
 class RunNotebook:
     """A notebook that was handed in, and what came of running it.
 
@@ -349,7 +399,7 @@ class RunNotebook:
     unknown_questions : tuple of str
         What it checks, and there is not.
     runs, seed : int
-    isolation : mapping
+    isolation : Isolation
     late : bool
     handed_in : str
     """
@@ -364,7 +414,7 @@ class RunNotebook:
     unknown_questions: tuple[str, ...] = ()
     runs: int = 1
     seed: int = 0
-    isolation: Mapping[str, Json] = field(default_factory=dict)
+    isolation: Isolation = Isolation()
     late: bool = False
     handed_in: str | None = ""
 
@@ -382,14 +432,14 @@ class RunNotebook:
             about.maybe("unknown questions", many(text)) or (),
             about.maybe("runs", whole) or 0,
             about.maybe("seed", whole) or 0,
-            about.get("isolation", by_name(anything)),
+            about.get("isolation", Isolation.from_json),
             about.maybe("late", truth) or False,
             about.maybe("handed in", text),
         )
 
     def as_json(self) -> dict[str, Json]:
         found = {name.replace("_", " "): written(value) for name, value in vars(self).items()}
-        return found | {"cells": [cell.as_json() for cell in self.cells]}
+        return found | {"cells": [cell.as_json() for cell in self.cells], "isolation": self.isolation.as_json()}
 
 
 @dataclass(frozen=True)
@@ -406,6 +456,30 @@ class Superseded:
 
 
 @dataclass(frozen=True)
+class Identity:
+    """What a student is called, as far as it is known.
+
+    Attributes
+    ----------
+    called : mapping of str to str
+        The number in each system, ``"name"`` and ``"email"``.
+    own : tuple of str or None
+        The course's own words for the student, where there is a roster.
+    """
+
+    called: Mapping[str, str] = field(default_factory=dict)
+    own: tuple[str, ...] | None = None
+
+    @classmethod
+    def from_json(cls, found: object, where: str) -> Identity:
+        about = Fields(found, where)
+        return cls(by_name(text)(about.beside(("own",)), where), about.maybe("own", many(text)))
+
+    def as_json(self) -> dict[str, Json]:
+        return {**self.called} | ({} if self.own is None else {"own": [*self.own]})
+
+
+@dataclass(frozen=True)
 class Record:
     """A student's work on an assignment.
 
@@ -414,8 +488,7 @@ class Record:
     student, assignment : str
     key : str
         What follows from everything that running the work depends on.
-    identity : mapping
-        What the student is called, as far as it is known.
+    identity : Identity
     says : tuple of str
         Whose the notebooks say to be.
     reply : str or None
@@ -438,7 +511,7 @@ class Record:
     student: str
     assignment: str
     key: str = ""
-    identity: Mapping[str, Json] = field(default_factory=dict)
+    identity: Identity = Identity()
     says: tuple[str, ...] = ()
     reply: str | None = None
     notebooks: tuple[RunNotebook, ...] = ()
@@ -492,7 +565,7 @@ class Record:
             about.get("student", text),
             about.get("assignment", text),
             about.maybe("key", text) or "",
-            about.maybe("identity", by_name(anything)) or {},
+            about.maybe("identity", Identity.from_json) or Identity(),
             about.maybe("says", many(text)) or (),
             about.maybe("reply", text),
             about.get("notebooks", many(RunNotebook.from_json)),
@@ -514,7 +587,7 @@ class Record:
             "key": self.key,
             "student": self.student,
             "assignment": self.assignment,
-            "identity": written(self.identity),
+            "identity": self.identity.as_json(),
             "says": written(self.says),
             "reply": self.reply,
             "notebooks": [notebook.as_json() for notebook in self.notebooks],
@@ -529,6 +602,21 @@ class Record:
         if self.cases is not None:
             found["cases"] = {name: case.as_json() for name, case in self.cases.items()}
         return found | {"points": self.points, "worth": self.worth, "undecided": self.undecided}
+
+
+#: What the sandbox says of a notebook, as JSON: a cluster sends it.
+Result = dict[str, Json]
+
+
+def read_result(result: Result, file: str) -> tuple[RunNotebook, dict[str, Answer]]:
+    """Read what the sandbox says of a notebook: what came of running it, and the answers.
+
+    Raises
+    ------
+    Misread
+    """
+    ran = RunNotebook.from_json({**result, "file": file, "sha256": ""}, file)
+    return ran, Fields(result, file).get("answers", by_name(Answer.from_json))
 
 
 #: An answer of which the sandbox says nothing.

@@ -12,6 +12,8 @@ import itertools
 import re
 import secrets
 from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlencode
 
@@ -20,23 +22,29 @@ from tornado import httpserver, ioloop, netutil, web
 
 from ..authoring.author import to_page
 from ..checking.identity import plain_identity
+from ..checking.plain import Plain
 from ..checking.variants import text_of
 from .judging.cases import Contracts, changed_since, questions_in
+from .judging.contract import Contract
 from .judging.ledger import (
     LONGEST_WORDS,
+    RAISED,
     REJECTED,
     UNDER_REVIEW,
     Appeal,
+    Appealed,
     Collision,
     Decision,
+    Event,
     Ledger,
     Worth,
     digest_of_answer,
 )
+from .record import Answer, Mark, Record
 from .reporting import pages
 from .reporting.mathematics import answer_as_mathematics
 from .reporting.reports import deed
-from .reporting.templates_of_pages import ENVIRONMENT
+from .reporting.templates_of_pages import ENVIRONMENT, source_of
 from .store import Store
 from .submissions.intake import SAYS
 from .tables import number, readable
@@ -72,6 +80,8 @@ FEW = 0.05
 SHORTEST_CODE = 60
 #: What is shorter is no name that is looked for in what was written.
 SHORTEST_NAME = 3
+#: What a person may want to look at, by student and question.
+Hints = defaultdict[tuple[str, str], list[str]]
 
 
 class Cluster(NamedTuple):
@@ -81,8 +91,7 @@ class Cluster(NamedTuple):
     ----------
     id : str
     assignment, question : str
-    members : list of dict
-        The records.
+    members : list of Record
     hints : list of (str, str)
         For each student for whom there is one: what a person may want to look at.
     """
@@ -90,15 +99,15 @@ class Cluster(NamedTuple):
     id: str
     assignment: str
     question: str
-    members: list
-    hints: list
+    members: list[Record]
+    hints: list[tuple[str, str]]
 
     @property
-    def mark(self):
+    def mark(self) -> Mark:
         return self.members[0].marks[self.question]
 
     @property
-    def answer(self):
+    def answer(self) -> Answer:
         return self.members[0].answer(self.question)
 
 
@@ -113,7 +122,7 @@ class Class:
         Which part of the answers a grader judges, and how many parts there are.
     """
 
-    def __init__(self, folder, share=(1, 1)):
+    def __init__(self, folder: str | Path, share: tuple[int, int] = (1, 1)) -> None:
         self.store = Store(folder)
         self.ledger = Ledger(self.store.folder)
         self.standing = self.ledger.standing()
@@ -129,7 +138,7 @@ class Class:
         self.aliases = {student: f"student {order}" for order, student in enumerate(self._shuffled(), 1)}
         self._know_names()
         hints = hints_of(self.records, self.store.work)
-        groups = defaultdict(list)
+        groups: defaultdict[tuple[str, ...], list[Record]] = defaultdict(list)
         for record in self.records:
             for question, mark in record.marks.items():
                 judged = mark.judged
@@ -144,37 +153,38 @@ class Class:
                 found = [(one.student, said) for one in members for said in hints.get((one.student, key[1]), ())]
                 self.clusters[name] = Cluster(name, key[0], key[1], members, found)
 
-    def contract(self, cluster):
+    def contract(self, cluster: Cluster) -> Contract | None:
         """The question by which the answers of a cluster were judged: these students' own variant; or nothing."""
         return self.contracts.of(cluster.mark.version)
 
-    def without_names(self, text):
+    def without_names(self, text: str) -> str:
         """A text in which who wrote it, and everybody else in the class, is called by a number."""
         if not text:
             return text
         said = SAYS.sub(lambda found: found[0].replace(found["who"], self._alias(found["who"])), text)
         return self._names.sub(lambda found: self._alias(found[0]), said)
 
-    def _alias(self, name):
+    def _alias(self, name: str) -> str:
         return self._known.get(plain_identity(name), "somebody")
 
-    def _know_names(self):
+    def _know_names(self) -> None:
         """All that students are called, in records and by themselves."""
-        self._known, parts = {}, {}
+        self._known: dict[str, str] = {}
+        parts: dict[str, str] = {}
         for record in self.records:
-            identity = record.identity
-            email = identity.get("email", "")
-            called = [record.student, *(identity.get(kind, "") for kind in ("name", "canvas", "moodle"))]
-            called += [email, email.partition("@")[0], *identity.get("own", ()), *record.says]
-            for name in called:
+            called = record.identity.called
+            email = called.get("email", "")
+            names = [record.student, *(called.get(kind, "") for kind in ("name", "canvas", "moodle"))]
+            names += [email, email.partition("@")[0], *(record.identity.own or ()), *record.says]
+            for name in names:
                 if len(name) >= SHORTEST_NAME:
                     self._known.setdefault(plain_identity(name), self.aliases[record.student])
             # A first name alone, written as a name: `mark` is a word, and Mark is somebody.
-            for part in re.findall(r"\w+", identity.get("name", "")):
+            for part in re.findall(r"\w+", called.get("name", "")):
                 if len(part) >= SHORTEST_NAME and part[0].isupper():
                     parts.setdefault(part, self.aliases[record.student])
 
-        def any_of(names):
+        def any_of(names: Iterable[str]) -> str:
             longest_first = sorted(names, key=len, reverse=True)
             return "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first) or "(?!)"
 
@@ -182,36 +192,36 @@ class Class:
         for part, alias in parts.items():
             self._known.setdefault(plain_identity(part), alias)
 
-    def _shuffled(self):
+    def _shuffled(self) -> list[str]:
         """The students in an order that follows from their names, and does not tell them."""
         students = {record.student for record in self.records}
         return sorted(students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest())
 
-    def read(self):
+    def read(self) -> None:
         """Read what was decided in the meantime."""
         self.ledger.read()
         self.standing = self.ledger.standing()
 
-    def outcome(self, cluster):
+    def outcome(self, cluster: Cluster) -> tuple[str, list[str]]:
         """What counts for a cluster now, and who decided: decided only if all of it is."""
-        decided = [self.standing.decision(record, cluster.question) for record in cluster.members]
-        if all(decided):
+        decided = [one for each in cluster.members if (one := self.standing.decision(each, cluster.question))]
+        if len(decided) == len(cluster.members):
             return "decided", sorted({one.who for one in decided})
         return cluster.mark.judged.outcome, []
 
-    def decision_on(self, cluster, record):
+    def decision_on(self, cluster: Cluster, record: Record) -> Decision | None:
         """What was decided last, be it on this answer or on one that was handed in before it."""
         return self.standing.decisions.get((record.student, cluster.assignment, cluster.question))
 
-    def earlier(self, cluster, record):
+    def earlier(self, cluster: Cluster, record: Record) -> str:
         """What has changed since a person decided: ``"answer"``, ``"question"`` or nothing."""
         return changed_since(self.decision_on(cluster, record), record, self.contracts)
 
-    def appeals(self, cluster, record):
+    def appeals(self, cluster: Cluster, record: Record) -> Sequence[Appealed]:
         """The appeals against a mark, the first one first."""
         return self.standing.appeals.get((record.student, cluster.assignment, cluster.question), ())
 
-    def waits(self, cluster):
+    def waits(self, cluster: Cluster) -> int:
         """How many of a cluster wait for a person: of an open appeal, too."""
         undecided = cluster.mark.judged.outcome == "undecided"
         return sum(
@@ -221,22 +231,21 @@ class Class:
             for record in cluster.members
         )
 
-    def is_shown(self, cluster, what):
+    def is_shown(self, cluster: Cluster, what: str) -> bool:
         if what in ("appeals", "earlier"):
-            about = {"appeals": lambda one: any(each.is_open for each in self.appeals(cluster, one))}.get(
-                what, lambda one: self.earlier(cluster, one)
-            )
-            return any(map(about, cluster.members))
+            if what == "appeals":
+                return any(one.is_open for record in cluster.members for one in self.appeals(cluster, record))
+            return any(self.earlier(cluster, record) for record in cluster.members)
         if what == "waiting":
             return self.waits(cluster) > 0
-        return what in ("all", self.outcome(cluster)[0]) or (what == "hints" and cluster.hints)
+        return what in ("all", self.outcome(cluster)[0]) or (what == "hints" and bool(cluster.hints))
 
-    def lines(self, cluster, record):
+    def lines(self, cluster: Cluster, record: Record) -> list[tuple[str, float | None, float | None, int]]:
         """The lines of the rubric of a question: what each is worth now, what the source says, how many used it."""
         source = record.marks[cluster.question].rubric or {}
         found = dict.fromkeys(self.questions[cluster.question].rubric if cluster.question in self.questions else ())
         found |= dict.fromkeys(source)
-        used = Counter()
+        used: Counter[str] = Counter()
         for one in self.ledger.decisions:
             if one.question == cluster.question:
                 found |= dict.fromkeys(one.rubric)
@@ -249,7 +258,7 @@ class Class:
             for line in found
         ]
 
-    def chosen(self, filters, hide_names=False):
+    def chosen(self, filters: Mapping[str, str], hide_names: bool = False) -> list[Cluster]:
         """The clusters that a grader wants to see, the largest of each question first."""
         text = filters.get("search", "").casefold()
         orders = {name: order for order, name in enumerate(self.questions)}
@@ -264,14 +273,14 @@ class Class:
             found.append(cluster)
         return sorted(found, key=lambda one: (one.assignment, orders.get(one.question, 0), -len(one.members), one.id))
 
-    def searchable(self, cluster, hide_names=False):
+    def searchable(self, cluster: Cluster, hide_names: bool = False) -> str:
         names = self.aliases if hide_names else {}
         students = " ".join(names.get(record.student, record.student) for record in cluster.members)
         said = " ".join(cluster.mark.messages)
         answer = pages.answer_as_text(cluster.answer.plain, 2_000)
         return f"{students} {cluster.question} {cluster.mark.title} {cluster.mark.note} {said} {answer}".casefold()
 
-    def cells(self, cluster, record):
+    def cells(self, cluster: Cluster, record: Record) -> tuple[Sequence[str], list[int], dict[int, tuple[str, ...]]]:
         """The code of one student's notebook, which of its cells come first, and the pictures that it keeps.
 
         First come the cell of the answer and those above it, up to the check of another; of several notebooks the one
@@ -282,7 +291,7 @@ class Class:
         kept = [(digest, cells) for digest, cells in kept if cells]
         kept.sort(key=lambda one: not any(cluster.question in source for source in one[1]))
         for digest, cells in kept:
-            near = []
+            near: list[int] = []
             if isinstance(cell, int) and 0 <= cell < len(cells):
                 above = range(cell - 1, max(-1, cell - MOST_ABOVE - 1), -1)
                 own = itertools.takewhile(lambda order: "check(" not in cells[order], above)
@@ -291,16 +300,16 @@ class Class:
         return [], [], {}
 
 
-def hints_of(records, work):
+def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) -> Hints:
     """What a person may want to look at, by student and question; never a mark.
 
     Equal unusual wrong answers, also among those that were tried on the way, equal code that few share, and what a
     notebook tried that no exercise needs.
     """
-    found = defaultdict(list)
+    found: Hints = defaultdict(list)
     students = len({record.student for record in records})
     few = max(2, int(FEW * students))
-    wrong, code, tried = defaultdict(set), defaultdict(set), defaultdict(set)
+    wrong, code, tried = (defaultdict[tuple[str, str], set[str]](set) for _ in range(3))
     for record in records:
         for question, about in record.remembered.items():
             for one in about.tried:
@@ -316,7 +325,7 @@ def hints_of(records, work):
                     written = "".join(map(_bare, cells[max(0, cell - 1) : cell + 1]))
                     if len(written) >= SHORTEST_CODE:
                         code[question, written].add(record.student)
-    together = Counter()
+    together: Counter[tuple[str, str]] = Counter()
     for same in wrong.values():
         if 2 <= len(same) <= few:
             together.update((one, other) for one in same for other in same if one < other)
@@ -338,9 +347,10 @@ def hints_of(records, work):
     return found
 
 
-def _note_shared_tries(found, tried):
+def _note_shared_tries(found: Hints, tried: Mapping[tuple[str, str], set[str]]) -> None:
     """Note who tried the same wrong answers as one other, if they were several: one may be chance."""
-    together, where = Counter(), defaultdict(set)
+    together: Counter[tuple[str, str]] = Counter()
+    where: defaultdict[tuple[str, str], set[str]] = defaultdict(set)
     for (question, _), same in tried.items():
         for one in same:
             for other in same - {one}:
@@ -354,7 +364,7 @@ def _note_shared_tries(found, tried):
                     found[one, question].append(said)
 
 
-def _bare(source):
+def _bare(source: str) -> str:
     """Code without comments and blanks: what is left of it when somebody changes how it looks."""
     return re.sub(r"\s+", "", re.sub(r"#[^\n]*", "", source))
 
@@ -365,12 +375,12 @@ def _bare(source):
 class _Page(web.RequestHandler):
     """What all pages have in common: who may ask, and what the browser may do."""
 
-    def set_default_headers(self):
+    def set_default_headers(self) -> None:
         for name, value in HEADERS.items():
             self.set_header(name, value)
         self.clear_header("Server")
 
-    def prepare(self):
+    def prepare(self) -> None:
         settings = self.settings
         # A name that somebody else's server leads here, and a form on somebody else's page.
         if self.request.host not in settings["hosts"]:
@@ -383,22 +393,23 @@ class _Page(web.RequestHandler):
                 raise web.HTTPError(403, "another page")
 
     @property
-    def graded(self):
-        return self.settings["class"]
+    def graded(self) -> Class:
+        found: Class = self.settings["graded"]
+        return found
 
-    def write_error(self, status_code, **about):
+    def write_error(self, status_code: int, **about: object) -> None:
         self.finish(f"{status_code}\n")
 
-    def filters(self):
+    def filters(self) -> dict[str, str]:
         found = {name: self.get_argument(name, "")[:200] for name in ("show", "question", "search")}
         found["show"] = found["show"] if found["show"] in SHOWN else "waiting"
         return found
 
-    def show(self, template, **about):
+    def show(self, template: str, **about: object) -> None:
         settings = self.settings
         names = settings["hide_names"]
 
-        def name_of(student):
+        def name_of(student: str) -> str:
             return self.graded.aliases[student] if names else readable(student, 120)
 
         self.finish(
@@ -415,7 +426,7 @@ class _Page(web.RequestHandler):
 
 
 class _Overview(_Page):
-    def get(self, secret):
+    def get(self, secret: str) -> None:
         filters, graded = self.filters(), self.graded
         graded.read()
         found = graded.chosen(filters, self.settings["hide_names"])
@@ -438,13 +449,13 @@ class _Overview(_Page):
 
 
 class _Answer(_Page):
-    def get(self, secret, name):
+    def get(self, secret: str, name: str) -> None:
         cluster = self.graded.clusters.get(name)
         if cluster is None:
             raise web.HTTPError(404)
         self.show_cluster(cluster, self.filters())
 
-    def show_cluster(self, cluster, filters, collision=None):
+    def show_cluster(self, cluster: Cluster, filters: Mapping[str, str], collision: Collision | None = None) -> None:
         """Show an answer; after a collision with everything that was typed."""
         graded, name = self.graded, cluster.id
         graded.read()
@@ -510,7 +521,7 @@ class _Answer(_Page):
             by_rubric=any(worth is not None for _, worth, *_ in lines),
         )
 
-    def post(self, secret, name):
+    def post(self, secret: str, name: str) -> None:
         graded, filters = self.graded, self.filters()
         cluster = graded.clusters.get(name)
         if cluster is None:
@@ -526,10 +537,10 @@ class _Answer(_Page):
                 raise Collision(f"This is longer than {LONGEST_WORDS} signs.")
             stays = deed_of_form[self.get_argument("form", "decision")](cluster, comment, why)
         except (Collision, OSError) as error:
-            full = isinstance(error, OSError)
-            self.set_status(507 if full else 409)
-            shown = Collision(f"It could not be written: {error.strerror or error}.") if full else error
-            self.show_cluster(cluster, filters, collision=shown)
+            self.set_status(507 if isinstance(error, OSError) else 409)
+            if isinstance(error, OSError):
+                error = Collision(f"It could not be written: {error.strerror or error}.")
+            self.show_cluster(cluster, filters, collision=error)
             return
         # On to the one that came next, though the list may be shorter now.
         later = order[order.index(name) + 1 :] if name in order else []
@@ -537,7 +548,7 @@ class _Answer(_Page):
         query = urlencode({key: value for key, value in filters.items() if value})
         self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
 
-    def decide(self, cluster, comment, why):
+    def decide(self, cluster: Cluster, comment: str, why: str) -> bool:
         """Enter a decision on all of a cluster or one of it, or take it back; say whether to stay at it."""
         graded, who, said = self.graded, self.settings["grader"], self.get_argument("credit")
         worth, only = cluster.mark.worth, self.get_argument("only", "")
@@ -550,12 +561,12 @@ class _Answer(_Page):
             return bool(only)
         rubric = list(dict.fromkeys(line.strip() for line in self.get_arguments("rubric") if line.strip()))
         lines = {line: points for line, points, *_ in graded.lines(cluster, cluster.members[0])}
-        made = []
+        made: list[Event] = []
         if new := self.get_argument("new", "").strip():
             rubric.append(new)
             if self.get_argument("new_points", "").strip():
-                lines[new] = self.points_said(self.get_argument("new_points"), worth)
-                change = {new: (lines[new], self.worth_in_force(cluster, new))}
+                now = lines[new] = self.points_said(self.get_argument("new_points"), worth)
+                change = {new: (now, self.worth_in_force(cluster, new))}
                 made += graded.ledger.worths(cluster.question, change, self.source_of(cluster), who)
         points = [lines.get(line) for line in rubric] if said == "rubric" else None
         if points is None:
@@ -582,28 +593,34 @@ class _Answer(_Page):
         graded.ledger.append(made, collisions=True)
         return bool(only)
 
-    def appeal(self, cluster, comment, why):
+    def appeal(self, cluster: Cluster, comment: str, why: str) -> bool:
         """Raise an appeal, take it up, or reject it."""
         number = self.get_argument("only", "")
         if not number.isdecimal() or int(number) >= len(cluster.members):
             raise web.HTTPError(400, "no such student")
         record, state = cluster.members[int(number)], self.get_argument("state")
         of = {one.id: one for one in self.graded.appeals(cluster, record)}.get(self.get_argument("of", ""))
-        words = self.get_argument("words", "")
-        more = {"state": state, "of": of, "after": self.get_argument("step", "")} if of else {}
         if bool(of) != (state in (UNDER_REVIEW, REJECTED)):
             raise web.HTTPError(400, "no such step")
         try:
-            self.graded.ledger.appeal(record, cluster.question, words, who=self.settings["grader"], **more)
+            self.graded.ledger.appeal(
+                record,
+                cluster.question,
+                self.get_argument("words", ""),
+                state=state if of else RAISED,
+                of=of,
+                after=self.get_argument("step", "") if of else "",
+                who=self.settings["grader"],
+            )
         except Collision:
             raise
         except ValueError as error:
             raise Collision(str(error)) from None
         return True
 
-    def change_worths(self, cluster, comment, why):
+    def change_worths(self, cluster: Cluster, comment: str, why: str) -> bool:
         """Say what lines of the rubric are worth; all that used them is scored anew."""
-        changes = {}
+        changes: dict[str, tuple[float, str]] = {}
         now = {line: points for line, points, *_ in self.graded.lines(cluster, cluster.members[0])}
         for line, said, step in zip(*map(self.get_arguments, ("line", "points", "step")), strict=False):
             if line not in now:
@@ -619,7 +636,7 @@ class _Answer(_Page):
             self.graded.ledger.append(made, collisions=True)
         return True
 
-    def points_said(self, said, worth, least=None):
+    def points_said(self, said: str, worth: float, least: float | None = None) -> float:
         try:
             points = float(said.replace(",", "."))
         except ValueError:
@@ -629,18 +646,18 @@ class _Answer(_Page):
             raise web.HTTPError(400, "no such credit")
         return points
 
-    def worth_in_force(self, cluster, line):
+    def worth_in_force(self, cluster: Cluster, line: str) -> str:
         found = self.graded.standing.worths.get((cluster.question, line))
         return found.id if found else ""
 
     @staticmethod
-    def source_of(cluster):
+    def source_of(cluster: Cluster) -> dict[str, float]:
         return {line: points for line, points in (cluster.mark.rubric or {}).items() if points is not None}
 
 
-def _history(events, cluster, students):
+def _history(events: Iterable[Event], cluster: Cluster, students: Collection[str]) -> list[tuple[str, ...]]:
     """What was decided on the answers of a cluster, said of them, and said of its rubric, in words."""
-    said = []
+    said: list[tuple[str, ...]] = []
     for one in events:
         if isinstance(one, Worth):
             if one.question == cluster.question:
@@ -648,7 +665,7 @@ def _history(events, cluster, students):
         elif (one.assignment, one.question) == (cluster.assignment, cluster.question) and one.student in students:
             if isinstance(one, Appeal):
                 said.append((one.when, one.who, one.student, f"appeal {one.state}", one.words))
-            elif isinstance(one, Decision) and one.credit is None:
+            elif one.credit is None:
                 words = "took an own decision back" if one.undoes else "taken back"
                 said.append((one.when, one.who, one.student, words, one.why))
             else:
@@ -664,30 +681,29 @@ TYPED = ("comment", "why", "words", "new", "new_points", "of")
 NONE = "-"
 
 
-def _as_asked(contract):
+def _as_asked(contract: Contract | None) -> str:
     """The text of a question as these students saw it, with their numbers; its author is trusted."""
     if not contract:
         return ""
     return to_page("\n\n".join([contract.text, text_of(contract.variant)]), pages.formula)
 
 
-def _prose(plain):
+def _prose(plain: Plain | None) -> str | None:
     """The words of an answer that is a text; ``None`` if it is something else."""
-    return plain["value"][1] if plain and plain["value"][0] == "text" else None
+    return str(plain["value"][1]) if plain and plain["value"][0] == "text" else None
 
 
 class _Static(_Page):
     FILES = {"review.js": "text/javascript; charset=utf-8", "review.css": "text/css; charset=utf-8"}
 
-    def get(self, secret, name):
+    def get(self, secret: str, name: str) -> None:
         if name not in self.FILES:
             raise web.HTTPError(404)
         self.set_header("Content-Type", self.FILES[name])
-        source, _, _ = ENVIRONMENT.loader.get_source(ENVIRONMENT, name)
-        self.finish(source)
+        self.finish(source_of(name))
 
 
-def application(graded, grader, port, hide_names=False):
+def application(graded: Class, grader: str, port: int, hide_names: bool = False) -> web.Application:
     """The pages, as an application of Tornado."""
     secret = secrets.token_urlsafe(24)
     hosts = (f"{ALONE}:{port}", f"localhost:{port}")
@@ -697,18 +713,24 @@ def application(graded, grader, port, hide_names=False):
             (r"/([^/]+)/answer/([0-9a-f]{16})", _Answer),
             (r"/([^/]+)/(review\.(?:js|css))", _Static),
         ],
-        **{
-            "class": graded,
-            "secret": secret,
-            "grader": grader,
-            "hide_names": hide_names,
-            "hosts": hosts,
-            "origins": tuple(f"http://{host}" for host in hosts),
-        },
+        graded=graded,
+        secret=secret,
+        grader=grader,
+        hide_names=hide_names,
+        hosts=hosts,
+        origins=tuple(f"http://{host}" for host in hosts),
     )
 
 
-def review(folder, grader, *, share=(1, 1), hide_names=False, port=0, say=print):
+def review(
+    folder: str | Path,
+    grader: str,
+    *,
+    share: tuple[int, int] = (1, 1),
+    hide_names: bool = False,
+    port: int = 0,
+    say: Callable[[str], None] = print,
+) -> None:
     """Serve the page until it is stopped; ``say`` hears its address."""
     graded = Class(folder, share)
     if not graded.records:

@@ -12,8 +12,8 @@ import re
 import secrets
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
+from ..checking.fields import Reader, Some, by_name, many, text
 from .locks import lock
 from .record import Record
 
@@ -70,19 +70,19 @@ class Store:
         """Keep the code of a notebook, for people to look at beside its answers."""
         self._keep_beside(f"{digest}.json", sources)
 
-    def keep_pictures(self, digest: str, pictures: Mapping[int, Any]) -> None:
+    def keep_pictures(self, digest: str, pictures: Mapping[str, list[str]]) -> None:
         """Keep the pictures of a notebook, by the numbers of their cells, for people to judge."""
         if pictures:
             self._keep_beside(f"{digest}.pictures.json", pictures)
 
-    def pictures(self, digest: str) -> dict[int, Any]:
+    def pictures(self, digest: str) -> dict[int, tuple[str, ...]]:
         """The pictures of a notebook, by the number of the cell that drew them."""
-        kept = self._kept_beside(f"{digest}.pictures.json")
-        return {int(number): shown for number, shown in kept.items()} if kept else {}
+        kept = self.said(f"work/{digest}.pictures.json", by_name(many(text))) or {}
+        return {int(number): shown for number, shown in kept.items()}
 
-    def work(self, digest: str) -> list[str]:
+    def work(self, digest: str) -> tuple[str, ...]:
         """The code cells of a notebook, or nothing if they were not kept."""
-        return self._kept_beside(f"{digest}.json") or []
+        return self.said(f"work/{digest}.json", many(text)) or ()
 
     def _keep_beside(self, name: str, value: object) -> None:
         """Keep for people what nothing that is graded depends on; what is there already stays."""
@@ -90,13 +90,15 @@ class Store:
         if not place.exists():
             write(place, json.dumps(value, ensure_ascii=False), lasting=False)
 
-    def _kept_beside(self, name: str) -> Any:
-        place = self.folder / "work" / name
-        return self.json_in(place) if place.exists() else None
+    def said(self, name: str, reader: Reader[Some]) -> Some | None:
+        """What a file of the folder holds, or ``None`` if it is not there.
 
-    @staticmethod
-    def json_in(path: Path) -> Any:
-        return json.loads(path.read_text("utf8"))
+        Raises
+        ------
+        Misread
+        """
+        path = self.folder / name
+        return reader(json.loads(path.read_text("utf8")), str(path)) if path.exists() else None
 
     def put_aside(self, student: str, assignment: str) -> Path:
         """Move a record, and the page made of it, to where it counts no more; give its new place."""
@@ -137,9 +139,9 @@ def record_in(path: Path) -> Record:
     return Record.from_json(json.loads(path.read_text("utf8")), str(path))
 
 
-def as_text(value: Any) -> str:
+def as_text(value: Mapping[str, object] | Iterable[object]) -> str:
     """JSON with a line for each entry of the outermost list or object: short, and still to be read."""
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         lines = [
             f"{json.dumps(name, ensure_ascii=False)}: {json.dumps(inner, ensure_ascii=False)}"
             for name, inner in value.items()

@@ -14,8 +14,12 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Collection, Iterable, Iterator
-from multiprocessing.connection import wait
-from typing import Any
+from multiprocessing.connection import Connection, wait
+from types import FrameType
+from typing import Generic, NoReturn, TypeVar
+
+Task = TypeVar("Task")
+Done = TypeVar("Done")
 
 PR_SET_PDEATHSIG = 1
 WAIT_FOR_END = 30  # seconds for a process to end what it started
@@ -32,12 +36,12 @@ class TaskLost(RuntimeError):
 
 
 def side_by_side(
-    tasks: Iterable[Any],
+    tasks: Iterable[Task],
     number: int,
-    prepare: Callable[[contextlib.ExitStack], Callable[[Any], Any]],
+    prepare: Callable[[contextlib.ExitStack], Callable[[Task], Done]],
     errors: Collection[type[Exception]] = (),
-    lost: Callable[[Any], Any] | None = None,
-) -> Iterator[Any]:
+    lost: Callable[[Task], Done] | None = None,
+) -> Iterator[Done]:
     """Do tasks in several processes; give what comes of them as it comes.
 
     Parameters
@@ -66,16 +70,16 @@ def side_by_side(
         There was another error in one of the processes; the message shows it.
     """
     tasks, kinds = iter(tasks), {kind.__name__: kind for kind in (*errors, OSError)}
-    workers = []
+    workers: list[_Worker[Task, Done]] = []
     try:
         for _ in range(number):
             workers.append(_Worker(prepare))
         busy = [worker for worker in workers if worker.take_next(tasks)]
         while busy:
-            for connection in wait([worker.connection for worker in busy]):
-                (worker,) = (one for one in busy if one.connection is connection)
+            for ready in wait([worker.connection for worker in busy]):
+                (worker,) = (one for one in busy if one.connection is ready)
                 try:
-                    said = json.loads(connection.recv_bytes())
+                    said = json.loads(worker.connection.recv_bytes())
                 except (EOFError, OSError):
                     worker.end()
                     again = _Worker(prepare)
@@ -99,12 +103,13 @@ def side_by_side(
             worker.end()
 
 
-class _Worker:
+class _Worker(Generic[Task, Done]):
     """One of the processes, as the one that asks sees it."""
 
-    def __init__(self, prepare):
+    def __init__(self, prepare: Callable[[contextlib.ExitStack], Callable[[Task], Done]]) -> None:
         self.connection, other = multiprocessing.Pipe()
-        self.task, self.attempts = None, 0
+        self.task: Task
+        self.attempts = 0
         asking = os.getpid()
         with warnings.catch_warnings():
             # The copy uses nothing that another thread of this process may hold: it works on its own things only.
@@ -115,25 +120,25 @@ class _Worker:
             self.process.start()
         other.close()
 
-    def take(self, task, attempts=1):
+    def take(self, task: Task, attempts: int = 1) -> None:
         self.task, self.attempts = task, attempts
         with contextlib.suppress(OSError):  # that it has ended is noticed when it does not answer
             self.connection.send_bytes(json.dumps({"task": task}).encode())
 
-    def take_next(self, tasks):
+    def take_next(self, tasks: Iterable[Task]) -> bool:
         """Take the next task; whether there is one."""
         for task in tasks:
             self.take(task)
             return True
         return False
 
-    def let_go(self):
+    def let_go(self) -> None:
         """Have it end by itself, and wait until what it started has ended too."""
         with contextlib.suppress(OSError):
             self.connection.send_bytes(b"{}")
         self.process.join()
 
-    def end(self):
+    def end(self) -> None:
         """End it now, and what it started."""
         self.process.terminate()
         self.process.join(WAIT_FOR_END)
@@ -142,7 +147,9 @@ class _Worker:
         self.connection.close()
 
 
-def _work(connection, prepare, asking):
+def _work(
+    connection: Connection, prepare: Callable[[contextlib.ExitStack], Callable[[Task], Done]], asking: int
+) -> None:
     if sys.platform.startswith("linux"):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != asking:
@@ -151,7 +158,7 @@ def _work(connection, prepare, asking):
     signal.signal(signal.SIGINT, lambda number, frame: None)
     signal.signal(signal.SIGTERM, _leave)
 
-    def say(**said):
+    def say(**said: object) -> None:
         connection.send_bytes(json.dumps(said).encode())
 
     with contextlib.suppress(EOFError, OSError), contextlib.ExitStack() as stack:
@@ -170,5 +177,5 @@ def _work(connection, prepare, asking):
             connection.recv_bytes()  # it is ended from there
 
 
-def _leave(number, frame):
+def _leave(number: int, frame: FrameType | None) -> NoReturn:
     raise SystemExit

@@ -23,12 +23,12 @@ ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
 WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
 WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
-FIELDS = ("kind", "page", "anchor", "number", "title", "about", "weight", "asked")
+FIELDS = ("kind", "page", "anchor", "number", "title", "about", "asked")
 KINDS = ("page", "section", "term", "function", "exercise", "example", "equation", "figure")
 SYNONYMS = Path("synonyms.yml")
 LONGEST_SENTENCE = 76
+LATER = ("equation", "figure")
 LITTLE = 0.5  # what counts no more than this, is found by its title alone
-ASKED = 0.8  # what a place counts at least that readers ask for in words of their own
 #: Sections of every chapter: nobody looks for them by their name.
 EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
 REST = "script, style, svg, pre, .eqno, table, .admonition-title"
@@ -102,8 +102,8 @@ def entries_of_page(page, article):
         for box in section.select("div.math[id]"):
             if box.find_parent("section") is section and box["id"] in numbers:
                 number = numbers[box["id"]]
-                # Its title is its section's: the palette puts the two together.
-                yield {"kind": "equation", "title": "", "number": number, "anchor": box["id"], "tex": tex[box["id"]]}
+                called = {"kind": "equation", "title": f"Equation {number}: {title}", "number": number}
+                yield called | {"anchor": box["id"], "tex": tex[box["id"]]}
     for figure in article.select("figure[id]:has(> figcaption)"):
         caption = figure.find("figcaption", recursive=False)
         number = caption.select_one(".caption-number")
@@ -173,35 +173,32 @@ def index(site):
         used[key] = found
         if not found:
             continue
-        pages.append([page, found[0]["title"], caption.get(page, "")])
-        weight = weight_of(page)
+        pages.append([page, found[0]["title"], caption.get(page, ""), weight_of(page)])
         phrases = asked.pop(page, {})
-        for entry in found:
-            asked_here = phrases.pop(entry["anchor"], "")
-            counts = max(weight, ASKED) if asked_here else weight
-            entries.append(
-                entry | {"page": len(pages) - 1, "asked": asked_here} | ({"weight": counts} if counts != 1 else {})
-            )
+        entries += [
+            entry | {"page": len(pages) - 1, "asked": phrases.pop(entry["anchor"], ""), "weight": weight_of(page)}
+            for entry in found
+        ]
     for old in site.parent.glob("search-entries-*.json"):
         old.unlink()
     memory.write_text(json.dumps(used), "utf8")
-    # Figures are many, and seldom what is looked for: they come with the words.
-    figures = [one for one in entries if one["kind"] == "figure" and one.get("weight", 1) > LITTLE]
-    entries = [one for one in entries if one["kind"] != "figure"]
-    words = [words_of(entry) if entry.get("weight", 1) > LITTLE else "" for entry in entries]
-    for entry in entries:
-        if entry.get("weight", 1) <= LITTLE:
+    # Equations are found by what stands in them, and figures are many and seldom what is looked for: they come later.
+    first = [one for one in entries if one["kind"] not in LATER]
+    last = [one for one in entries if one["kind"] in LATER and one["weight"] > LITTLE]
+    words = [words_of(entry) if entry["weight"] > LITTLE else "" for entry in first]
+    for entry in first:
+        if entry["weight"] <= LITTLE and not entry["asked"]:
             entry["about"] = ""
     later = {
         "words": words,
-        "figures": [row(one) for one in figures],
-        "tex": [[k, one["tex"]] for k, one in enumerate(entries) if "tex" in one],
+        "entries": [row(one) for one in last],
+        "tex": [[k, one["tex"]] for k, one in enumerate(last, len(first)) if "tex" in one],
     }
     found = {
         "pages": pages,
         "fields": FIELDS,
         "kinds": KINDS,
-        "entries": [row(one) for one in entries],
+        "entries": [row(one) for one in first],
         "synonyms": synonyms,
     }
     return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), later

@@ -11,18 +11,23 @@ import json
 import pickle
 import threading
 import uuid
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import CancelledError
+from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
-from distributed import Client, WorkerPlugin, as_completed, get_worker, protocol
+from distributed import Client, Future, WorkerPlugin, as_completed, get_worker, protocol
 from distributed import client as client_of_dask
 from distributed.client import FutureCancelledError
 from distributed.security import Security
 
+from ...checking.fields import Fields, Json, Misread, anything, by_name, text
 from ...checking.plain import NotPlain, read_plain
+from ..record import Result, read_result
 from ..versions import software
 from .cluster_keys import CERTIFICATE, KEY
-from .sandbox import given_up
+from .sandbox import Job, Limits, Sandbox, WeakIsolation, WorkerDied, given_up
 
 CONNECT_WITHIN = "30s"
 
@@ -30,38 +35,37 @@ CONNECT_WITHIN = "30s"
 class Sandboxes(WorkerPlugin):
     """The sandboxes of one worker; they end with the grading."""
 
-    def __init__(self, name, limits, allow_weak_isolation):
+    def __init__(self, name: str, limits: Mapping[str, Any], allow_weak_isolation: bool) -> None:
         self.name = name
         self.limits = limits
         self.allow_weak_isolation = allow_weak_isolation
 
-    def setup(self, worker):
-        self.made = {}
+    def setup(self, worker: object) -> None:
+        self.made: dict[int, Sandbox] = {}
         self.making = threading.Lock()
 
-    def of_this_thread(self):
-        from .sandbox import Limits, Sandbox
-
+    def of_this_thread(self) -> Sandbox:
         thread = threading.get_ident()
         with self.making:
             if thread not in self.made:
                 self.made[thread] = Sandbox(Limits(**self.limits), allow_weak_isolation=self.allow_weak_isolation)
             return self.made[thread]
 
-    def teardown(self, worker):
+    def teardown(self, worker: object) -> None:
         for sandbox in self.made.values():
             sandbox.close()
 
 
-def run_job(job, name):
+def run_job(job: bytes, name: str) -> bytes:
     """Run one job, on a worker; whatever happens, the answer is JSON."""
-    from .sandbox import WeakIsolation, WorkerDied
-
-    job = json.loads(job)
+    about: Job = json.loads(job)
+    found: dict[str, Json]
     try:
-        found = {"result": get_worker().plugins[name].of_this_thread().run(job)}
+        sandboxes = get_worker().plugins[name]
+        assert isinstance(sandboxes, Sandboxes)
+        found = {"result": sandboxes.of_this_thread().run(about)}
     except WorkerDied as error:
-        found = {"result": given_up(job, str(error))}
+        found = {"result": given_up(about, str(error))}
     except WeakIsolation as error:
         found = {"weak": str(error)}
     return json.dumps({**found, "software": software()}).encode()
@@ -70,18 +74,18 @@ def run_job(job, name):
 class _PlainData(pickle.Unpickler):
     """Reads pickles of texts, bytes, numbers, lists and the like, which can do nothing; Dask wraps some in others."""
 
-    def find_class(self, module, name):
+    def find_class(self, module: str, name: str) -> object:
         if module == "builtins" and name in ("bytes", "bytearray", "str", "int", "float", "list", "tuple", "dict"):
             return super().find_class(module, name)  # how the bytes of an error say what they are
         raise TypeError("A pickle was refused: whoever sends one could run code here, beside the right answers.")
 
 
-def plain_data(data, *, buffers=()):
+def plain_data(data: bytes, *, buffers: Iterable[object] = ()) -> object:
     return _PlainData(io.BytesIO(data), buffers=buffers).load()
 
 
 @contextlib.contextmanager
-def no_pickles():
+def no_pickles() -> Iterator[None]:
     """Have this process, as a client of Dask, run nothing by unpickling what a worker or the scheduler sends.
 
     Naming the serializers of the results is not enough: the types of results, errors and warnings come as
@@ -102,7 +106,9 @@ def no_pickles():
             setattr(place, name, value)
 
 
-def run_on_cluster(jobs, address, limits, *, keys=None, allow_weak_isolation=False):
+def run_on_cluster(
+    jobs: Iterable[Job], address: str, limits: Limits, *, keys: Path | None = None, allow_weak_isolation: bool = False
+) -> Iterator[Result]:
     """Run jobs on the cluster at an address; give the results as they come. ``keys`` is the folder of its keys.
 
     Raises
@@ -135,7 +141,7 @@ def run_on_cluster(jobs, address, limits, *, keys=None, allow_weak_isolation=Fal
         except OSError as error:
             raise ValueError(f"The scheduler at {address} was lost ({error}). The same command goes on.") from None
         stack.callback(_leave, client, name)
-        sent = {}
+        sent: dict[str, tuple[Future[bytes], Job]] = {}
         for job in jobs:
             future = client.submit(run_job, json.dumps(job).encode(), name, key=f"{name} {job['id']}", pure=False)
             sent[future.key] = future, job
@@ -157,11 +163,10 @@ def run_on_cluster(jobs, address, limits, *, keys=None, allow_weak_isolation=Fal
                     ) from None
                 yield given_up(job, "worker after worker of the cluster was lost")
                 continue
-            _demand_sound(answer, job, ours)
-            yield answer["result"]
+            yield _demand_sound(answer, job, ours)
 
 
-def _security(keys):
+def _security(keys: Path | None) -> Security | None:
     if keys is None:
         return None
     certificate = str(keys / CERTIFICATE)
@@ -173,26 +178,29 @@ def _security(keys):
     )
 
 
-def _leave(client, name):
+def _leave(client: Client, name: str) -> None:
     """End the sandboxes of the workers. Where the scheduler is gone, its workers end with it: nobody is to be told."""
     if client.status == "running":
         with contextlib.suppress(OSError):  # it may be lost at this very moment
             client.unregister_worker_plugin(name)
 
 
-def _demand_sound(answer, job, ours):
+def _demand_sound(answer: object, job: Job, ours: Mapping[str, str]) -> Result:
     """A worker may have been captured by what it ran: what it sends is looked at like what a notebook sends."""
-    from .sandbox import WeakIsolation
-
-    if "weak" in answer:
-        raise WeakIsolation(str(answer["weak"]))
-    if answer["software"] != ours:
-        raise ValueError(f"The cluster has other versions than this machine: {answer['software']}, and here {ours}.")
     try:
-        if answer["result"]["id"] != job["id"] or set(answer["result"]["answers"]) != set(job["questions"]):
+        about = Fields(answer, "what a worker sent")
+        if weak := about.maybe("weak", text):
+            raise WeakIsolation(weak)
+        theirs = about.get("software", by_name(text))
+        if theirs != ours:
+            raise ValueError(f"The cluster has other versions than this machine: {theirs}, and here {ours}.")
+        result = about.get("result", by_name(anything))
+        _, answers = read_result(result, job["id"])
+        if result.get("id") != job["id"] or set(answers) != set(job["questions"]):
             raise NotPlain
-        for found in answer["result"]["answers"].values():
-            if found["outcome"] == "recorded":
-                read_plain(found["plain"])
-    except (NotPlain, KeyError, TypeError):
+        for one in answers.values():
+            if one.outcome == "recorded":
+                read_plain(one.plain)
+    except (NotPlain, Misread):
         raise ValueError("The cluster sent damaged data.") from None
+    return result

@@ -44,7 +44,9 @@ import struct
 import sys
 import sysconfig
 import threading
+from collections.abc import Collection, Iterable
 from pathlib import Path
+from typing import NotRequired, TypedDict
 
 from coursework.checking.plugins import folders_of, packages
 from coursework.grading.execution import system_calls
@@ -63,6 +65,46 @@ HOW_TO_GET = {
 }
 
 
+class Time(TypedDict):
+    """Seconds that a cell, or the reading of an answer, may take."""
+
+    processor: float
+    wall: float
+
+
+class LimitsOfChild(TypedDict):
+    """What one notebook may use, for the process that runs it."""
+
+    cell: Time
+    answer: Time
+    processor_seconds: int
+    memory_bytes: int
+    file_bytes: int
+    scratch_bytes: int
+    open_files: int
+    threads: int
+
+
+#: What the isolation is tried on.
+Target = TypedDict(
+    "Target",
+    {
+        "tcp": int,
+        "udp": int,
+        "local": str,
+        "limits": LimitsOfChild,
+        "files": NotRequired[list[str]],
+        "threads in use": NotRequired[int],
+    },
+)
+Layer = TypedDict("Layer", {"in force": bool, "why not": str, "made by": NotRequired[str]})
+#: What came of trying it.
+Report = TypedDict(
+    "Report",
+    {"layers": dict[str, Layer], "not stopped": list[str], "landlock version": int, "scratch in memory": bool},
+)
+
+
 class IsolationError(OSError):
     """A layer could not be put in force; the message says which and why."""
 
@@ -71,14 +113,14 @@ _library = ctypes.CDLL(None, use_errno=True)
 _library.mount.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_ulong, ctypes.c_char_p)
 
 
-def _call(what, result):
+def _call(what: str, result: int) -> int:
     if result < 0:
         code = ctypes.get_errno()
         raise IsolationError(code, f"{what}: {os.strerror(code)}")
     return result
 
 
-def _system_call(what, number, *arguments):
+def _system_call(what: str, number: int, *arguments: int | bytes) -> int:
     longs = [ctypes.c_long(a) if isinstance(a, int) else a for a in arguments]
     return _call(what, _library.syscall(ctypes.c_long(number), *longs))
 
@@ -88,7 +130,7 @@ def _system_call(what, number, *arguments):
 DEVICES = ("/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
 
 
-def readable_paths():
+def readable_paths() -> list[str]:
     """The folders and files that Python and the libraries are loaded from, and no others."""
     import site
 
@@ -112,7 +154,7 @@ def readable_paths():
     wanted.append(str(Path(__file__).resolve().parents[2]))
     wanted += folders_of(packages())
     existing = sorted({os.path.abspath(path) for path in wanted if path and os.path.exists(path)})
-    kept = []
+    kept: list[str] = []
     for path in existing:
         if not any(path == outer or path.startswith(outer + "/") for outer in kept):
             kept.append(path)
@@ -132,16 +174,16 @@ OUTSIDER = 65534
 SCRATCH = "/scratch"
 
 
-def _places(readable):
+def _places(readable: Iterable[str]) -> dict[str, str]:
     """Where each readable path must be found: where it is named, and where its links lead."""
-    places = {}
+    places: dict[str, str] = {}
     for path in readable:
         for name in (path, os.path.realpath(path)):
             places.setdefault(name, path)
     return places
 
 
-def bubblewrap_command(bubblewrap, readable):
+def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
     """The command line in front of the warm parent that gives it namespaces by bubblewrap."""
     command = [bubblewrap, "--as-pid-1", "--die-with-parent", "--cap-drop", "ALL"]
     for namespace in ("ipc", "pid", "net", "uts", "cgroup-try"):
@@ -165,7 +207,7 @@ def bubblewrap_command(bubblewrap, readable):
     return [*command, "--remount-ro", "/", "--chdir", "/", "--"]
 
 
-def unshare_all():
+def unshare_all() -> None:
     """Leave the machine's namespaces; the process that is forked next is the first of the new ones."""
     others = CLONE_NEWNS | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWCGROUP
     user, group = os.geteuid(), os.getegid()
@@ -181,12 +223,12 @@ def unshare_all():
         raise IsolationError(error.errno, f"user namespace: {error.strerror}") from None
 
 
-def unshare_processes():
+def unshare_processes() -> None:
     """Have the process that is forked next be the first of a namespace in which only those below it are seen."""
     _call("unshare", _library.unshare(CLONE_NEWPID))
 
 
-def enter_own_root(readable):
+def enter_own_root(readable: Iterable[str]) -> None:
     """Change to a root folder that holds `readable`, a few devices and a scratch folder, and is read only."""
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
     trees = []
@@ -218,16 +260,16 @@ def enter_own_root(readable):
     _set_attributes(AT_FDCWD, b"/", 0, READ_ONLY)
 
 
-def _set_attributes(tree, path, flags, attributes):
+def _set_attributes(tree: int, path: bytes, flags: int, attributes: int) -> None:
     packed = struct.pack("=QQQQ", attributes, 0, 0, 0)
     _system_call("mount_setattr", MOUNT_SETATTR, tree, path, flags, packed, len(packed))
 
 
-def _mount_memory(folder, options):
+def _mount_memory(folder: str, options: str) -> None:
     _call("mount", _library.mount(b"tmpfs", folder.encode(), b"tmpfs", MS_NOSUID | MS_NODEV, options.encode()))
 
 
-def mount_own_scratch(folder, size, user):
+def mount_own_scratch(folder: str, size: int, user: int) -> None:
     """Give this process alone a scratch folder in memory; it vanishes with the process."""
     _call("unshare", _library.unshare(CLONE_NEWNS))
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
@@ -241,12 +283,12 @@ EXECUTE, WRITE_FILE, READ_FILE, READ_FOLDER = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 MAKE_CHARACTER_DEVICE, MAKE_BLOCK_DEVICE, MAKE_SOCKET, IOCTL_DEVICE = 1 << 6, 1 << 11, 1 << 9, 1 << 15
 
 
-def landlock_version():
+def landlock_version() -> int:
     """The version of Landlock's interface; 0 if there is none."""
-    return max(0, _library.syscall(ctypes.c_long(CREATE_RULESET), None, ctypes.c_long(0), ctypes.c_long(1)))
+    return max(0, int(_library.syscall(ctypes.c_long(CREATE_RULESET), None, ctypes.c_long(0), ctypes.c_long(1))))
 
 
-def restrict_files(readable, scratch):
+def restrict_files(readable: Iterable[str], scratch: str) -> None:
     """Let this process read `readable`, do what it likes in `scratch`, and reach no other file."""
     version = landlock_version()
     if version == 0:
@@ -257,7 +299,7 @@ def restrict_files(readable, scratch):
     packed = packed[: 8 if version < 4 else 16 if version < 6 else 24]
     rules = _system_call("landlock", CREATE_RULESET, packed, len(packed), 0)
 
-    def allow(path, access):
+    def allow(path: str, access: int) -> None:
         try:
             handle = os.open(path, os.O_PATH | os.O_CLOEXEC)
         except OSError:
@@ -280,7 +322,7 @@ def restrict_files(readable, scratch):
 # ---- limits and privileges
 
 
-def limit_resources(limits, memory_in_use, threads_in_use):
+def limit_resources(limits: LimitsOfChild, memory_in_use: int, threads_in_use: int) -> None:
     """Lower this process's limits for good.
 
     `limits` has `memory_bytes` and `threads` (beyond those in use at the start), `processor_seconds`,
@@ -304,7 +346,7 @@ def limit_resources(limits, memory_in_use, threads_in_use):
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
 
 
-def drop_privileges(user):
+def drop_privileges(user: int) -> None:
     """Become `user` if this is root and may, and give up every capability for good."""
     if os.geteuid() == 0 and user != 0:
         os.setgroups([])
@@ -318,12 +360,12 @@ def drop_privileges(user):
     _call("dumpable", _library.prctl(4, 0, 0, 0, 0))
 
 
-def forbid_new_privileges():
+def forbid_new_privileges() -> None:
     """No program that this process starts can have more rights than it has; seccomp asks for it."""
     _call("no_new_privs", _library.prctl(38, 1, 0, 0, 0))
 
 
-def user_for_students(preferred, uid_map):
+def user_for_students(preferred: int, uid_map: str) -> int:
     """The user that root runs student code as: one that nobody else is, if this system has it.
 
     Raises
@@ -344,17 +386,27 @@ def user_for_students(preferred, uid_map):
     )
 
 
-def die_with_parent():
+def die_with_parent() -> None:
     """Have the kernel end this process when the one that forked it ends."""
     _call("prctl", _library.prctl(1, signal.SIGKILL, 0, 0, 0))
 
 
-def adopt_orphans():
+def adopt_orphans() -> None:
     """Processes below this one that lose their parent become its own, so that none gets away."""
     _call("prctl", _library.prctl(36, 1, 0, 0, 0))
 
 
-def confine(layers, *, limits, readable, scratch, own_scratch, user, memory_in_use, threads_in_use):
+def confine(
+    layers: Collection[str],
+    *,
+    limits: LimitsOfChild,
+    readable: Iterable[str],
+    scratch: str,
+    own_scratch: bool,
+    user: int,
+    memory_in_use: int,
+    threads_in_use: int,
+) -> None:
     """Put `layers` in force on this process, for good; raise if one cannot be."""
     die_with_parent()
     if NAMESPACES in layers and own_scratch:
@@ -376,14 +428,14 @@ def confine(layers, *, limits, readable, scratch, own_scratch, user, memory_in_u
 # ---- trying
 
 
-def _read(target):
+def _read(target: Target) -> bytes:
     for path in target["files"]:
         with contextlib.suppress(OSError):
             return Path(path).read_bytes()
     raise PermissionError("no file outside can be read")
 
 
-def _write(target):
+def _write(target: Target) -> None:
     for path in target["files"]:
         for flags in (os.O_WRONLY, os.O_RDONLY | os.O_TRUNC):
             with contextlib.suppress(OSError):
@@ -393,78 +445,78 @@ def _write(target):
     raise PermissionError("no file outside can be written")
 
 
-def _change_mode(target):
+def _change_mode(target: Target) -> None:
     for path in target["files"]:
         with contextlib.suppress(OSError):
             return os.chmod(path, 0o666)
     raise PermissionError("no mode outside can be changed")
 
 
-def _socket(target):
+def _socket(target: Target) -> None:
     socket.socket(socket.AF_UNIX, socket.SOCK_STREAM).close()
 
 
-def _tcp(target):
+def _tcp(target: Target) -> None:
     socket.create_connection(("127.0.0.1", target["tcp"]), timeout=1).close()
 
 
-def _udp(target):
+def _udp(target: Target) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
         udp.connect(("127.0.0.1", target["udp"]))
         for _ in range(2):  # the second hears that nobody received the first
             udp.send(b"x")
 
 
-def _local(target):
+def _local(target: Target) -> None:
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as local:
         local.connect("\0" + target["local"])
 
 
-def _signal(target):
+def _signal(target: Target) -> None:
     os.kill(-1, 0)  # whether there is any process that it could end; sends nothing
 
 
-def _process(target):
+def _process(target: Target) -> None:
     if os.fork() == 0:
         os._exit(0)
     os.wait()
 
 
-def _program(target):
+def _program(target: Target) -> None:
     try:
         os.execv("/no/such/program", ["program"])
     except FileNotFoundError:
         return  # it was looked for, so one that exists would have been started
 
 
-def _namespace(target):
+def _namespace(target: Target) -> None:
     _call("unshare", _library.unshare(CLONE_NEWUSER))
 
 
-def _trace(target):
+def _trace(target: Target) -> None:
     _call("ptrace", _library.ptrace(0, 0, None, None))
 
 
-def _privilege(target):
+def _privilege(target: Target) -> None:
     # Only who has privileges may give one up for good; it takes nothing from anybody else.
     _call("prctl", _library.prctl(24, 0, 0, 0, 0))
 
 
-def _dump(target):
+def _dump(target: Target) -> None:
     if _library.prctl(3, 0, 0, 0, 0) == 0:
         raise PermissionError("its memory is not dumped")
 
 
-def _memory(target):
+def _memory(target: Target) -> None:
     mmap.mmap(-1, target["limits"]["memory_bytes"] + (1 << 20)).close()
 
 
-def _file(target):
+def _file(target: Target) -> None:
     with open("long", "wb") as file:
         file.truncate(target["limits"]["file_bytes"] + 1)
 
 
-def _files(target):
+def _files(target: Target) -> None:
     opened = []
     try:
         for _ in range(target["limits"]["open_files"] + 1):
@@ -474,7 +526,7 @@ def _files(target):
             os.close(handle)
 
 
-def _threads(target):
+def _threads(target: Target) -> None:
     done = threading.Event()
     threading.stack_size(64 * 1024)
     started = []
@@ -516,7 +568,7 @@ ATTEMPTS = {
 }
 
 
-def attempt_all(target, names=None):
+def attempt_all(target: Target, names: Iterable[str] | None = None) -> list[str]:
     """Try, in this process, what student code must not do; return the names of what succeeded."""
     succeeded = []
     for name in names or ATTEMPTS:
@@ -529,12 +581,12 @@ def attempt_all(target, names=None):
     return succeeded
 
 
-def must_stop(layer):
+def must_stop(layer: str) -> list[str]:
     """The attempts that `layer` must stop on its own to count as in force."""
     return [name for name, (_, layers) in ATTEMPTS.items() if layer in layers]
 
 
-def lacking(report):
+def lacking(report: Report) -> list[str]:
     """Say, one line for each, what the layers in force do not stop; empty when they are enough."""
     lines = []
     for name in report["not stopped"]:

@@ -4,9 +4,9 @@ What does not have exactly the form of a record is counted and dropped. Nothing 
 """
 
 import json
-from typing import Any, NoReturn
+from typing import NoReturn, TypedDict, TypeGuard
 
-from coursework.checking.plain import NotPlain, read_plain
+from coursework.checking.plain import NotPlain, Plain, read_plain
 
 LONGEST_LINE = 4 << 20
 MOST_BYTES = 16 << 20  # of all records of one run
@@ -14,6 +14,31 @@ MOST_RECORDS = 20_000
 LONGEST_NAME = 200
 LONGEST_TEXT = 1000
 OUTCOMES = ("done", "error", "timeout", "memory")
+
+
+#: What was begun or has ended: ``["cell", number]`` or ``["answer", name]``.
+Step = list[str | int]
+#: Which of these a record has is what :meth:`Records.well_formed` looks at.
+Record = TypedDict(
+    "Record",
+    {
+        "done": bool,
+        "begin": Step,
+        "end": Step,
+        "outcome": str,
+        "error": str,
+        "line": int,
+        "threads": bool,
+        "tried": str,
+        "answer": str,
+        "secret": str,
+        "plain": Plain,
+        "unreadable": str,
+        "from": str,
+        "cell": int | None,
+    },
+    total=False,
+)
 
 
 class Records:
@@ -31,7 +56,7 @@ class Records:
         """Whether more came than any honest notebook sends."""
         return self.received > MOST_BYTES or self.lines > MOST_RECORDS or len(self.unfinished) > LONGEST_LINE
 
-    def feed(self, data: bytes) -> list[dict[str, Any]]:
+    def feed(self, data: bytes) -> list[Record]:
         self.received += len(data)
         self.unfinished += data
         if self.too_many or b"\n" not in data:
@@ -44,7 +69,7 @@ class Records:
         self.damaged += records.count(None)
         return [record for record in records if record is not None]
 
-    def record(self, line: bytes) -> dict[str, Any] | None:
+    def record(self, line: bytes) -> Record | None:
         """One line as a record, or None."""
         try:
             record = json.loads(line.decode("utf-8"), parse_constant=_refuse)
@@ -54,7 +79,7 @@ class Records:
         except (ValueError, RecursionError, NotPlain):
             return None
 
-    def well_formed(self, record: dict[str, Any]) -> bool:
+    def well_formed(self, record: dict[str, object]) -> TypeGuard[Record]:
         keys = set(record)
         if keys == {"done"}:
             return record["done"] is True

@@ -15,10 +15,13 @@ A cell that ends or hangs its process costs only itself: what was recorded befor
 notebook is run again without that cell, a limited number of times.
 """
 
+from __future__ import annotations
+
 import contextlib
 import dataclasses
 import fcntl
 import json
+import math
 import os
 import random
 import secrets
@@ -31,11 +34,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import IO, NotRequired, Self, TypedDict
 
+from coursework.checking.fields import Json, written
 from coursework.grading.execution import isolation, records, scratch, steady
-from coursework.grading.execution.isolation import LAYERS, NAMESPACES
+from coursework.grading.execution.isolation import LAYERS, NAMESPACES, LimitsOfChild, Report, Target
+from coursework.grading.execution.records import Record, Step
 from coursework.grading.execution.warm_parent import NOT_CONFINED
+from coursework.grading.record import MISSING, Answer, Cell, Isolation, Result
+from coursework.grading.submissions.intake import CodeCell
 from coursework.grading.workers import side_by_side
 
 WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
@@ -45,7 +54,26 @@ PAUSE = 0.005  # seconds in which records gather: to be woken for each takes bot
 DEEPEST_STEPS = 10
 MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
 SIZE_OF_CREDENTIALS = struct.calcsize("3i")
+NOT_RUN = Cell("not run")
 ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
+
+
+class Job(TypedDict):
+    """A notebook to be run, as JSON.
+
+    Of each question it says the answer's ``"variable"``, and the ``"calls"`` and ``"secret calls"`` of a function, as
+    :func:`coursework.grading.judging.marking.asked_of_sandbox` does. The ``files`` beside it are in base64.
+    """
+
+    id: str
+    cells: list[CodeCell]
+    questions: Mapping[str, Mapping[str, Json]]
+    seed: NotRequired[int]
+    files: NotRequired[Mapping[str, str]]
+
+
+#: What the warm parent says: that it is ready, or how a notebook's process ended.
+Message = TypedDict("Message", {"ready": Report, "ended": dict[str, int], "scratch full": bool}, total=False)
 
 
 class WeakIsolation(RuntimeError):
@@ -78,7 +106,7 @@ class Limits:
     threads: int = 64
     runs: int = 8  # of one notebook, in each order
 
-    def for_child(self):
+    def for_child(self) -> LimitsOfChild:
         """The limits in the words of the process that they bind."""
         return {
             "cell": {"processor": self.cell_seconds, "wall": self.cell_wall_seconds},
@@ -115,13 +143,13 @@ class Sandbox:
 
     def __init__(
         self,
-        limits=None,
+        limits: Limits | None = None,
         *,
-        allow_weak_isolation=False,
-        without=(),
-        namespaces_by=("bubblewrap", "unshare"),
-        like=None,
-    ):
+        allow_weak_isolation: bool = False,
+        without: Collection[str] = (),
+        namespaces_by: Iterable[str] = ("bubblewrap", "unshare"),
+        like: Sandbox | None = None,
+    ) -> None:
         unknown = set(without) - set(LAYERS)
         if unknown:
             raise ValueError(f"there are no layers {sorted(unknown)}; the layers are {', '.join(LAYERS)}")
@@ -132,35 +160,35 @@ class Sandbox:
         self.without = frozenset(without)
         self.namespaces_by = () if NAMESPACES in self.without else tuple(namespaces_by)
         self.like = like
-        self.process = None
-        self.warm_parent = None  # its number
-        self.control = None
-        self.errors = None
-        self.base = None
-        self.report = None
+        self.process: subprocess.Popen[bytes] | None = None
+        self.warm_parent: int | None = None  # its number
+        self.control: socket.socket | None = None
+        self.errors: IO[bytes] | None = None
+        self.base: str | None = None
+        self.report: Report
         self.start()
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *error):
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     # -- the warm parent
 
-    def start(self):
+    def start(self) -> None:
         """Start the warm parent and try its isolation."""
         try:
             with contextlib.ExitStack() as stack:
                 target = self.target(stack)
                 why_not = "switched off"
                 for made_by in (*self.namespaces_by, None) if not self.copied(target) else ():
-                    bubblewrap = shutil.which("bwrap")
-                    if made_by == "bubblewrap" and bubblewrap is None:
-                        why_not = "bubblewrap is not installed"
-                        continue
-                    command = []
+                    command: list[str] = []
                     if made_by == "bubblewrap":
+                        bubblewrap = shutil.which("bwrap")
+                        if bubblewrap is None:
+                            why_not = "bubblewrap is not installed"
+                            continue
                         command = isolation.bubblewrap_command(bubblewrap, isolation.readable_paths())
                     try:
                         self.report = self.launched(command, made_by, why_not, target)
@@ -173,7 +201,7 @@ class Sandbox:
         except BaseException:
             self.close()
             raise
-        if self.process is None:
+        if self.process is None or self.base is None:
             self.remove_base()  # a copy is tried there and works in memory
         else:
             scratch.remove_folder(os.path.join(self.base, OUTSIDE))
@@ -187,24 +215,24 @@ class Sandbox:
                 "--allow-weak-isolation; every result will record it."
             )
 
-    def copied(self, target):
+    def copied(self, target: Target) -> bool:
         """Have the warm parent of another sandbox copied, and the copy tried; whether it serves."""
         if self.like is None or self.like.control is None or not self.like.report["scratch in memory"]:
             return False
-        self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
+        control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
         # Within the folder of the other: should this process be killed, it goes with that.
-        self.base = tempfile.mkdtemp(dir=self.like.base)
+        self.control, self.base = control, tempfile.mkdtemp(dir=self.like.base)
         os.chmod(self.base, 0o755)
-        about = {"user": new_user(), "target": target | {"files": [self.file_outside()]}}
+        about = {"user": new_user(), "target": target | {"files": [file_outside(self.base)]}}
         try:
             with other:
                 socket.send_fds(self.like.control, [json.dumps({"copy": about}).encode()], [other.fileno()])
             waiting = select.poll()
-            waiting.register(self.control, select.POLLIN)
+            waiting.register(control, select.POLLIN)
             if not waiting.poll(WAIT_FOR_START * 1000):
                 raise WorkerDied("a copy of the warm parent said nothing")
-            data, ancillary, _, _ = self.control.recvmsg(1 << 20, socket.CMSG_SPACE(SIZE_OF_CREDENTIALS))
+            data, ancillary, _, _ = control.recvmsg(1 << 20, socket.CMSG_SPACE(SIZE_OF_CREDENTIALS))
             self.report = json.loads(data)["ready"]
             # The kernel says who speaks, by the number that the process has here.
             (credentials,) = (value for _, kind, value in ancillary if kind == socket.SCM_CREDENTIALS)
@@ -212,10 +240,10 @@ class Sandbox:
         except (OSError, ValueError, WorkerDied):
             self.close()
             return False
-        self.control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 0)
+        control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 0)
         return True
 
-    def target(self, stack):
+    def target(self, stack: contextlib.ExitStack) -> Target:
         """What the isolation is tried on: two ports and a local socket of our own, and later a file."""
         tcp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
         udp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
@@ -233,17 +261,7 @@ class Sandbox:
             "limits": self.limits.for_child(),
         }
 
-    def file_outside(self):
-        """A file that everybody may change, for the isolation to be tried on."""
-        outside = Path(self.base, OUTSIDE)
-        outside.mkdir()
-        file = outside / "file"
-        file.write_text("a file outside")
-        file.chmod(0o666)
-        outside.chmod(0o777)
-        return str(file)
-
-    def launched(self, command, made_by, why_not, target):
+    def launched(self, command: Sequence[str], made_by: str | None, why_not: str, target: Target) -> Report:
         """Start the warm parent behind `command`; give its report."""
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
@@ -297,7 +315,7 @@ class Sandbox:
         start = {
             "without": sorted(self.without),
             # Not before there is somebody to tidy up: a folder that is open to all is not left behind.
-            "target": target | {"files": [self.file_outside()]},
+            "target": target | {"files": [file_outside(self.base)]},
             "base": self.base,
             "namespaces made by": made_by,
             "why no namespaces": why_not,
@@ -313,33 +331,42 @@ class Sandbox:
         self.warm_parent = self.process.pid
         return message["ready"]
 
-    def last_error(self):
+    def last_error(self) -> str:
         """The last line that the warm parent, never a student, wrote on its error stream."""
-        errors = self.errors or self.like.errors
-        errors.seek(0)
-        lines = errors.read().decode(errors="replace").strip().splitlines()
-        return lines[-1][:500] if lines else "the warm parent ended without a word"
+        if errors := self.errors or (self.like and self.like.errors):
+            errors.seek(0)
+            if lines := errors.read().decode(errors="replace").strip().splitlines():
+                return lines[-1][:500]
+        return "the warm parent ended without a word"
 
-    def send(self, message, handles=()):
+    @property
+    def connection(self) -> socket.socket:
+        """The way to the warm parent, which is there."""
+        if self.control is None:
+            raise WorkerDied("the warm parent is gone")
+        return self.control
+
+    def send(self, message: Mapping[str, object], handles: Sequence[int] = ()) -> None:
         try:
-            socket.send_fds(self.control, [json.dumps(message).encode()], handles)
+            socket.send_fds(self.connection, [json.dumps(message).encode()], handles)
         except OSError as error:
             raise WorkerDied(str(error)) from None
 
-    def receive(self, seconds):
+    def receive(self, seconds: float) -> Message:
         waiting = select.poll()
-        waiting.register(self.control, select.POLLIN)
+        waiting.register(self.connection, select.POLLIN)
         if not waiting.poll(seconds * 1000):
             raise WorkerDied(f"the warm parent said nothing for {seconds} seconds")
         try:
-            data = self.control.recv(1 << 20)
+            data = self.connection.recv(1 << 20)
         except OSError as error:
             raise WorkerDied(str(error)) from None
         if not data:
             raise WorkerDied("the warm parent is gone")
-        return json.loads(data)
+        message: Message = json.loads(data)
+        return message
 
-    def close(self):
+    def close(self) -> None:
         """End the warm parent; with it ends all that it started."""
         if self.control is not None:
             self.control.close()
@@ -356,7 +383,7 @@ class Sandbox:
         self.control = self.process = self.warm_parent = self.errors = None
         self.remove_base()
 
-    def remove_base(self):
+    def remove_base(self) -> None:
         if self.base is not None:
             with contextlib.suppress(FileNotFoundError):  # the process that waits for the end removes it too
                 scratch.remove_folder(self.base)
@@ -364,7 +391,7 @@ class Sandbox:
 
     # -- one notebook
 
-    def run(self, job):
+    def run(self, job: Job) -> Result:
         """Run one notebook; give its result. A worker that dies is replaced, and the job tried again."""
         for _ in range(ATTEMPTS_OF_A_JOB):
             try:
@@ -375,21 +402,17 @@ class Sandbox:
                 self.close()
         raise WorkerDied(f"the worker died {ATTEMPTS_OF_A_JOB} times while it ran notebook {job['id']!r}")
 
-    def isolation_in_force(self):
+    def isolation_in_force(self) -> Isolation:
         """The isolation, as every result records it."""
-        layers = self.report["layers"]
-        return {
-            "layers": [layer for layer in LAYERS if layers[layer]["in force"]],
-            "namespaces made by": layers[NAMESPACES]["made by"],
-            "weak": bool(self.report["not stopped"]),
-            "not stopped": self.report["not stopped"],
-        }
+        layers, not_stopped = self.report["layers"], self.report["not stopped"]
+        in_force = tuple(layer for layer in LAYERS if layers[layer]["in force"])
+        return Isolation(in_force, bool(not_stopped), layers[NAMESPACES]["made by"], tuple(not_stopped))
 
 
 class _Run:
     """All runs of one notebook, and what came of them."""
 
-    def __init__(self, sandbox, job):
+    def __init__(self, sandbox: Sandbox, job: Job) -> None:
         self.sandbox = sandbox
         self.limits = sandbox.limits
         self.job = job
@@ -397,17 +420,17 @@ class _Run:
         self.deadline = time.monotonic() + self.limits.notebook_wall_seconds
         self.number_of_runs = 0
         self.damaged = 0
-        self.unknown = {}
-        self.tried = {}
-        self.notes = []
+        self.unknown: dict[str, bool] = {}
+        self.tried: dict[str, bool] = {}
+        self.notes: list[str] = []
         if not isinstance(job["id"], str) or not all(isinstance(cell["source"], str) for cell in job["cells"]):
             raise TypeError("a job has an id and cells with sources, all texts")
 
-    def result(self):
+    def result(self) -> Result:
         number = len(self.job["cells"])
         cells, answers, finished = self.in_order(list(range(number)))
         if any(has_not(answers, question) for question in self.questions) and any(
-            cell.get("error", "").startswith("NameError") for cell in cells.values()
+            (cell.error or "").startswith("NameError") for cell in cells.values()
         ):
             self.try_order_of_execution(answers)
         if self.damaged:
@@ -415,20 +438,21 @@ class _Run:
         return {
             "id": self.job["id"],
             "finished": finished,
-            "cells": [cells.get(index, {"outcome": "not run"}) for index in range(number)],
-            "answers": {question: answers.get(question, {"outcome": "missing"}) for question in self.questions},
-            "unknown questions": list(self.unknown)[:MOST_UNKNOWN],
-            "notes": self.notes,
-            "tried": list(self.tried),
+            "cells": [cells.get(index, NOT_RUN).as_json() for index in range(number)],
+            "answers": {question: answers.get(question, MISSING).as_json() for question in self.questions},
+            "unknown questions": written(list(self.unknown)[:MOST_UNKNOWN]),
+            "notes": [*self.notes],
+            "tried": [*self.tried],
             "runs": self.number_of_runs,
             "seed": self.job.get("seed", 0),
-            "isolation": self.sandbox.isolation_in_force(),
+            "isolation": self.sandbox.isolation_in_force().as_json(),
         }
 
-    def try_order_of_execution(self, answers):
+    def try_order_of_execution(self, answers: dict[str, Answer]) -> None:
         """Fill in the answers that the notebook gives only in the order in which its cells once ran."""
         cells = self.job["cells"]
-        moments, last = [], 0
+        moments: list[int] = []
+        last = 0
         for cell in cells:  # one that was never run goes with the one above it
             count = cell.get("execution_count")
             last = count if type(count) is int and count > 0 else last
@@ -443,9 +467,12 @@ class _Run:
         if gained:
             self.notes.append("works only out of order")
 
-    def in_order(self, order):
+    def in_order(self, order: list[int]) -> tuple[dict[int, Cell], dict[str, Answer], bool]:
         """Run in one order, without the cells that end the process, until it comes through."""
-        cells, answers, skip, finished = {}, {}, [], False
+        cells: dict[int, Cell] = {}
+        answers: dict[str, Answer] = {}
+        skip: list[Step] = []
+        finished = False
         for number in range(self.limits.runs):
             once = _Once(self, order, skip)
             self.number_of_runs += 1
@@ -455,7 +482,7 @@ class _Run:
             self.unknown |= once.unknown
             self.tried |= once.tried
             for question, answer in once.answers.items():
-                if "plain" in answer or answers.get(question, {}).get("outcome") != "recorded":
+                if answer.plain is not None or answers.get(question, MISSING).outcome != "recorded":
                     answers[question] = answer
             if once.finished:
                 finished = True
@@ -466,10 +493,12 @@ class _Run:
                 skip, culprit = [], ["cell", once.left_threads[0]]
             if culprit is None:
                 break
-            if culprit[0] == "cell":
-                cells[culprit[1]] = once.ending
-            elif culprit[1] in self.questions and answers.get(culprit[1], {}).get("outcome") != "recorded":
-                answers[culprit[1]] = once.ending
+            _, which = culprit
+            if isinstance(which, int):
+                cells[which] = Cell(*once.ending)
+            elif which in self.questions and answers.get(which, MISSING).outcome != "recorded":
+                outcome, error = once.ending
+                answers[which] = Answer(outcome, error=error)
             self.deadline += once.kept_waiting
             if time.monotonic() >= self.deadline:
                 break
@@ -477,16 +506,16 @@ class _Run:
         return cells, answers, finished
 
 
-def has_not(answers, question):
+def has_not(answers: Mapping[str, Answer], question: str) -> bool:
     """Whether there is no answer yet to a question: a blank is none."""
-    answer = answers.get(question, {})
-    return answer.get("outcome") != "recorded" or answer["plain"]["value"] == ["blank"]
+    answer = answers.get(question, MISSING)
+    return answer.outcome != "recorded" or answer.is_blank
 
 
 class _Once:
     """One child, from its start to its end."""
 
-    def __init__(self, run, order, skip):
+    def __init__(self, run: _Run, order: list[int], skip: list[Step]) -> None:
         self.sandbox = run.sandbox
         self.limits = run.limits
         self.notebook_deadline = run.deadline
@@ -508,31 +537,31 @@ class _Once:
             q: about["secret calls"] for q, about in job["questions"].items() if about.get("secret calls")
         }
         self.records = records.Records(len(job["cells"]))
-        self.process = None
+        self.process: int | None = None
         self.kept_waiting = 0.0  # seconds in which the machine was busy with others
-        self.steps = []  # begun and not ended, outermost first
-        self.begun = []
-        self.deadlines = []
-        self.cells = {}
+        self.steps: list[Step] = []  # begun and not ended, outermost first
+        self.begun: list[float] = []
+        self.deadlines: list[float] = []
+        self.cells: dict[int, Cell] = {}
         self.questions = job["questions"]
-        self.answers = {}
-        self.unknown = {}
-        self.tried = {}
-        self.left_threads = []
+        self.answers: dict[str, Answer] = {}
+        self.unknown: dict[str, bool] = {}
+        self.tried: dict[str, bool] = {}
+        self.left_threads: list[int] = []
         self.finished = False
-        self.killed_for = None
-        self.blamed = []  # the steps that were under way when it was killed
-        self.ending = None
+        self.done_by = math.inf
+        self.killed_for: str | None = None
+        self.blamed: list[Step] = []  # the steps that were under way when it was killed
+        self.ending = "", ""  # the outcome, and the error
 
-    def watch(self):
+    def watch(self) -> None:
         """Start the child, take its records, keep its time; return when all of it is gone."""
         with contextlib.ExitStack() as stack:
             # What it gets and what it gives; the secret calls are written when it has nothing more to give.
-            job = os.memfd_create("job")
-            ends = [job, *os.pipe(), *os.pipe()]
-            handles = [
-                stack.enter_context(open(end, "rb+" if end == job else mode, 0))
-                for end, mode in zip(ends, ("rb", "rb", "wb", "rb", "wb"), strict=True)
+            ends = [os.memfd_create("job"), *os.pipe(), *os.pipe()]
+            handles: list[IO[bytes]] = [
+                stack.enter_context(open(end, mode, 0))
+                for end, mode in zip(ends, ("rb+", "rb", "wb", "rb", "wb"), strict=True)
             ]
             job, reading, writing, secret, self.secret = handles
             os.set_blocking(secret.fileno(), False)  # to a notebook that reads it too early it is empty
@@ -546,7 +575,7 @@ class _Once:
             ended = self.follow(reading.fileno())
         self.conclude(ended)
 
-    def tell_the_secret(self):
+    def tell_the_secret(self) -> None:
         """Give the secret calls; what does not fit into the pipe at once is not given, and nobody waits."""
         data = json.dumps(self.secret_calls).encode() if self.secret_calls else b""
         with contextlib.suppress(OSError):
@@ -556,11 +585,12 @@ class _Once:
             self.secret.write(data)
         self.secret.close()
 
-    def follow(self, reading):
-        control = self.sandbox.control
+    def follow(self, reading: int) -> Message:
+        control = self.sandbox.connection
         waiting = select.poll()
         waiting.register(control, select.POLLIN)
-        last_moment, look_again = None, 0.0  # None where there is nothing more to be read
+        last_moment = math.inf
+        look_again: float | None = 0.0  # None where there is nothing more to be read
         while True:
             now = time.monotonic()
             if self.killed_for is None:
@@ -589,7 +619,7 @@ class _Once:
                         pass
                     return ended
 
-    def take(self, reading):
+    def take(self, reading: int) -> bool:
         """Take what the child has written; False when there is no more to come."""
         data = os.read(reading, 1 << 18)
         if not self.records.too_many:
@@ -597,7 +627,7 @@ class _Once:
                 self.note(record)
         return bool(data)
 
-    def give_back(self):
+    def give_back(self) -> bool:
         """Put all deadlines off by the time in which the machine was busy with others; whether there was any."""
         if self.process is None:
             self.process = running_below(self.sandbox.warm_parent)
@@ -611,7 +641,7 @@ class _Once:
             self.done_by += waited
         return True
 
-    def next_deadline(self):
+    def next_deadline(self) -> tuple[float, str]:
         if self.finished and self.steps:
             return self.deadlines[-1], "done"
         if self.finished:  # it only has to exit now
@@ -620,14 +650,19 @@ class _Once:
             return self.deadlines[-1], "timeout"
         return self.notebook_deadline, "timeout"
 
-    def note(self, record):
+    def note(self, record: Record) -> None:
         now = time.monotonic()
         if self.finished:
             self.done_by = now + self.limits.grace_seconds
             if "secret" in record and record["secret"] in self.secret_calls:
-                answer = self.answers.get(record["secret"], {})
-                if "plain" in answer:
-                    answer["secret"] = {name: record[name] for name in ("plain", "unreadable") if name in record}
+                answer = self.answers.get(record["secret"], MISSING)
+                if answer.plain is not None:
+                    said = (
+                        {"plain": written(record["plain"])}
+                        if "plain" in record
+                        else {"unreadable": record["unreadable"]}
+                    )
+                    self.answers[record["secret"]] = dataclasses.replace(answer, secret=said)
             if not ("begin" in record or "end" in record) or (record.get("begin") or record["end"])[0] != "answer":
                 return  # it knows the secret calls now: nothing that it says of anything else is heard
         if "tried" in record:
@@ -647,23 +682,24 @@ class _Once:
                 begun = self.begun.pop()
                 if self.deadlines:  # the reading of an answer is not the cell's time
                     self.deadlines[-1] += now - begun
-            if record["end"][0] == "cell":
-                index = record["end"][1]
-                self.cells[index] = {name: record[name] for name in ("outcome", "error", "line") if name in record}
+            _, which = record["end"]
+            if isinstance(which, int):
+                self.cells[which] = Cell(record["outcome"], record.get("error"), record.get("line"))
                 if "threads" in record:
-                    self.left_threads.append(index)
+                    self.left_threads.append(which)
         elif "answer" in record:
             question = record["answer"]
             if question not in self.questions:
                 if len(self.unknown) < MOST_UNKNOWN:
                     self.unknown[question] = True
                 return
-            answer = (
-                {"outcome": "recorded", "plain": record["plain"]}
-                if "plain" in record
-                else {"outcome": "unreadable", "why": record["unreadable"]}
+            answer = Answer(
+                "recorded" if "plain" in record else "unreadable",
+                record.get("plain"),
+                record.get("unreadable"),
+                source=record["from"],
+                cell=record["cell"],
             )
-            answer |= {"from": record["from"], "cell": record["cell"]}
             if not has_not({question: answer}, question) or has_not(self.answers, question):
                 self.answers[question] = answer
         elif "done" in record and not self.finished:
@@ -672,7 +708,7 @@ class _Once:
             self.steps, self.begun, self.deadlines = [], [], []
             self.tell_the_secret()
 
-    def conclude(self, ended):
+    def conclude(self, ended: Message) -> None:
         """Name how the child ended."""
         how = ended["ended"]
         if how.get("code") == NOT_CONFINED and not self.records.received:
@@ -690,25 +726,36 @@ class _Once:
             outcome, error = "timeout", "It took longer than it may."
         elif "signal" in how:
             outcome, error = "killed", f"The process was ended by {signal.Signals(how['signal']).name}."
-        self.ending = {"outcome": outcome, "error": error}
+        self.ending = outcome, error
 
 
-def given_up(job, why):
+def file_outside(base: str) -> str:
+    """A file that everybody may change, for the isolation to be tried on."""
+    outside = Path(base, OUTSIDE)
+    outside.mkdir()
+    file = outside / "file"
+    file.write_text("a file outside")
+    file.chmod(0o666)
+    outside.chmod(0o777)
+    return str(file)
+
+
+def given_up(job: Job, why: str) -> Result:
     """The result of a notebook that could not be run: a person must look."""
     return {
         "id": job["id"],
         "finished": False,
-        "cells": [{"outcome": "not run"}] * len(job["cells"]),
-        "answers": {name: {"outcome": "missing"} for name in job["questions"]},
+        "cells": [NOT_RUN.as_json() for _ in job["cells"]],
+        "answers": {name: MISSING.as_json() for name in job["questions"]},
         "unknown questions": [],
         "notes": ["could not be run"],
         "runs": 0,
-        "seed": job["seed"],
-        "isolation": {"layers": [], "weak": False, "given up": why},
+        "seed": job.get("seed", 0),
+        "isolation": Isolation(given_up=why).as_json(),
     }
 
 
-def copies_are_apart():
+def copies_are_apart() -> bool:
     """Whether copies of a warm parent are as much apart as warm parents that are started one by one.
 
     They share its user namespace. There the threads of an ordinary user are counted together, and one notebook could
@@ -717,12 +764,12 @@ def copies_are_apart():
     return os.geteuid() == 0
 
 
-def new_user():
+def new_user() -> int:
     """A user that nobody else is: root gives the code to it, and its limit of threads counts only these."""
     return 1_900_000_000 + random.SystemRandom().randrange(10**8)
 
 
-def end_copy(process):
+def end_copy(process: int) -> None:
     """Wait until the copy of a warm parent has ended, of which the other end of its control is closed."""
     with contextlib.suppress(OSError):  # it has ended
         handle = os.pidfd_open(process)
@@ -731,7 +778,7 @@ def end_copy(process):
                 signal.pidfd_send_signal(handle, signal.SIGKILL)
 
 
-def running_below(process):
+def running_below(process: int | None) -> int | None:
     """The number of the last process below another: a notebook's, which has none below itself; ``None`` if hidden."""
     with contextlib.suppress(OSError, ValueError, IndexError):
         while children := Path(f"/proc/{process}/task/{process}/children").read_text().split():
@@ -740,7 +787,7 @@ def running_below(process):
     return None
 
 
-def kept_waiting(process):
+def kept_waiting(process: int | None) -> float:
     """The seconds for which a process could have run and others did; 0 where the system does not tell."""
     try:
         return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) / 1e9
@@ -748,7 +795,7 @@ def kept_waiting(process):
         return 0.0
 
 
-def threads_of(user):
+def threads_of(user: int) -> int:
     """How many threads `user` has on this machine: they count against a limit of threads."""
     total = 0
     for status in Path("/proc").glob("[0-9]*/status"):
@@ -759,7 +806,14 @@ def threads_of(user):
     return total
 
 
-def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, without=()):
+def run_notebooks(
+    jobs: Iterable[Job],
+    workers: int = 2,
+    limits: Limits | None = None,
+    *,
+    allow_weak_isolation: bool = False,
+    without: Collection[str] = (),
+) -> Iterator[Result]:
     """Run notebooks on several workers, each a process of its own; give the results as they come.
 
     Parameters
@@ -791,11 +845,13 @@ def run_notebooks(jobs, workers=2, limits=None, *, allow_weak_isolation=False, w
         Before any student code is run.
     """
 
-    options = {"allow_weak_isolation": allow_weak_isolation, "without": without}
-    with contextlib.ExitStack() as outer:
-        first = outer.enter_context(Sandbox(limits, **options)) if copies_are_apart() else None
+    def sandbox(like: Sandbox | None = None) -> Sandbox:
+        return Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without, like=like)
 
-        def prepare(stack):
-            return stack.enter_context(Sandbox(limits, **options, like=first)).run
+    with contextlib.ExitStack() as outer:
+        first = outer.enter_context(sandbox()) if copies_are_apart() else None
+
+        def prepare(stack: contextlib.ExitStack) -> Callable[[Job], Result]:
+            return stack.enter_context(sandbox(first)).run
 
         yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))

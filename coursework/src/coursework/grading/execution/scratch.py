@@ -15,7 +15,7 @@ import sys
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
-def remove_folder(path):
+def remove_folder(path: str) -> None:
     """Remove a folder and all in it."""
     top = os.open(path, _FOLDER)
     try:
@@ -38,12 +38,12 @@ def remove_folder(path):
     os.rmdir(path)
 
 
-def _opened(name, folder):
+def _opened(name: str, folder: int) -> int:
     os.chmod(name, 0o700, dir_fd=folder)
     return os.open(name, _FOLDER, dir_fd=folder)
 
 
-def _unlinked(name, folder):
+def _unlinked(name: str, folder: int) -> bool:
     try:
         os.unlink(name, dir_fd=folder)
     except IsADirectoryError:
@@ -51,7 +51,7 @@ def _unlinked(name, folder):
     return True
 
 
-def used_bytes(path, most):
+def used_bytes(path: str, most: int) -> int:
     """The space that the files under `path` take; counting stops when it is more than `most`."""
     total, folders = 0, [path]
     while folders and total <= most:
@@ -67,7 +67,7 @@ def used_bytes(path, most):
     return total
 
 
-def main(folder, *command):
+def main(folder: str, *command: str) -> int:
     """Run a command, and remove a folder when it has ended; give what the command ended with."""
     child = os.fork()
     if child == 0:

@@ -15,7 +15,7 @@ CAPABILITIES_VERSION = 0x20080522
 DROP_FROM_BOUNDING_SET = 24
 
 
-def main(*command):
+def main(*command: str) -> None:
     library = ctypes.CDLL(None)
     data = ctypes.create_string_buffer(24)
     library.capget(struct.pack("=Ii", CAPABILITIES_VERSION, 0), data)

@@ -14,6 +14,7 @@ import errno
 import os
 import platform
 import struct
+from collections.abc import Sequence
 
 # name: (number on x86-64, number on ARM64)
 ALLOWED = {
@@ -167,24 +168,24 @@ class FilterProgram(ctypes.Structure):
     _fields_ = [("length", ctypes.c_ushort), ("filter", ctypes.c_void_p)]
 
 
-def program(own_number, machine=None):
+def program(own_number: int, machine: str | None = None) -> bytes:
     """The filter for the process `own_number`, as the kernel's bytes (8 for each instruction)."""
     machine = machine or platform.machine()
     if machine not in MACHINES:
         raise OSError(errno.ENOSYS, f"the filter of system calls is not written for {machine}")
     architecture, column = MACHINES[machine]
-    code = []
+    code: list[bytes] = []
 
-    def add(operation, value, if_true=0, if_false=0):
+    def add(operation: int, value: int, if_true: int = 0, if_false: int = 0) -> None:
         code.append(struct.pack("=HBBI", operation, if_true, if_false, value))
 
-    def for_call(number, steps):
+    def for_call(number: int | None, steps: Sequence[tuple[int, ...]]) -> None:
         if number is not None:
             add(JUMP_EQUAL, number, 0, len(steps))
             for step in steps:
                 add(*step)
 
-    def load(argument, high=False):
+    def load(argument: int, high: bool = False) -> tuple[int, ...]:
         return (LOAD, ARGUMENTS + 8 * argument + 4 * high)
 
     add(LOAD, ARCHITECTURE)
@@ -233,7 +234,7 @@ def program(own_number, machine=None):
     return b"".join(code)
 
 
-def install():
+def install() -> None:
     """Put the filter on this process, for good. `no_new_privs` must be set."""
     library = ctypes.CDLL(None, use_errno=True)
     code = program(os.getpid())
@@ -243,5 +244,5 @@ def install():
     # Mode 1: a filter. Flag 4: without a slower processor mode, meant for code that shares a
     # process with secrets; there are none in this one.
     if library.syscall(number, 1, 4, ctypes.byref(description)) != 0:
-        code = ctypes.get_errno()
-        raise OSError(code, f"seccomp: {os.strerror(code)}")
+        error = ctypes.get_errno()
+        raise OSError(error, f"seccomp: {os.strerror(error)}")

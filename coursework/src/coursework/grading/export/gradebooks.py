@@ -12,13 +12,17 @@ import os
 import re
 import secrets
 import zipfile
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from ...checking.fields import by_name, many, text
 from ...checking.reply import plain_text
 from ..judging.ledger import Ledger, appeals_open, with_decisions
-from ..judging.term import EXCUSED, results_of, say_what_marked_costs
-from ..store import REFUSED, as_text, file_name, write
+from ..judging.term import EXCUSED, Result, Rules, results_of, say_what_marked_costs
+from ..record import Identity, Record
+from ..store import REFUSED, Store, as_text, file_name, write
+from ..submissions.intake import Refused
 from ..submissions.languages import LANGUAGES, in_english
 from ..submissions.roster import local_parts
 from ..tables import in_a_line, number, readable, table
@@ -62,10 +66,17 @@ class Marks:
         The records of each student.
     """
 
-    def __init__(self, store, assignment=None, rules=None, as_of=None):
+    def __init__(
+        self,
+        store: Store,
+        assignment: str | None = None,
+        rules: Rules | None = None,
+        as_of: datetime.datetime | None = None,
+    ) -> None:
         self.store, self.rules = store, rules
         standing = Ledger(store.folder).standing(as_of)
-        self.behind, self.records = 0, []
+        self.behind = 0
+        self.records: list[Record] = []
         for record in store.all():
             if assignment in (None, record.assignment):
                 decided = with_decisions(record, standing)
@@ -75,36 +86,39 @@ class Marks:
             named = f" of {assignment!r}" if assignment else ""
             raise CannotExport(f"There are no records{named} in {store.folder}.")
         self.assignments = sorted({record.assignment for record in self.records})
-        self.students = {}
+        self.students: dict[str, list[Record]] = {}
         for record in self.records:
             self.students.setdefault(record.student, []).append(record)
         worth = {record.assignment: record.worth for record in self.records}
         self.worth = sum(worth.values())
-        self.results = self._results(worth, as_of or datetime.datetime.now(datetime.UTC)) if rules else {}
+        self.results = self._results(rules, worth, as_of or datetime.datetime.now(datetime.UTC)) if rules else {}
 
-    def _results(self, worth, now):
+    def _results(
+        self, rules: Rules, worth: Mapping[str, float], now: datetime.datetime
+    ) -> dict[tuple[str, str], Result]:
         """What the rules make of each record, by student and assignment."""
-        unknown = [name for name in self.assignments if name not in self.rules.assignments]
+        unknown = [name for name in self.assignments if name not in rules.assignments]
         if unknown:
             raise CannotExport(f"The rules say nothing of {', '.join(unknown)}.")
-        found, marked = {}, []
+        found: dict[tuple[str, str], Result] = {}
+        marked: list[str] = []
         for student, records in self.students.items():
             own = {record.assignment: record for record in records}
-            for result in results_of(student, own, self.rules, worth, now)[0]:
+            for result in results_of(student, own, rules, worth, now)[0]:
                 if result.assignment in own:
                     found[student, result.assignment] = result
                     if result.late and result.handed_in is None:
                         marked.append(result.assignment)
-        if marked and self.rules.marked is None and self.rules.late_costs:
+        if marked and rules.marked is None and rules.late_costs:
             raise CannotExport(say_what_marked_costs(marked))
         return found
 
-    def penalty(self, record):
+    def penalty(self, record: Record) -> float:
         """The share of the points of a record that its lateness costs."""
         found = self.results.get((record.student, record.assignment))
         return found.penalty if found else 0.0
 
-    def excused(self, student):
+    def excused(self, student: str) -> bool:
         """Whether the rules excuse a student from what is handed on here, or from a part of it."""
         return any(
             self.results[student, record.assignment].state == EXCUSED
@@ -112,17 +126,17 @@ class Marks:
             if self.results
         )
 
-    def points(self, student):
+    def points(self, student: str) -> float:
         return sum(record.points * (1 - self.penalty(record)) for record in self.students[student])
 
-    def undecided(self, student):
+    def undecided(self, student: str) -> int:
         return sum(record.undecided for record in self.students[student])
 
-    def appeals(self, student):
+    def appeals(self, student: str) -> list[str]:
         """The questions of a student against whose marks an appeal is open."""
         return [name for record in self.students[student] for name in appeals_open(record)]
 
-    def identity(self, student):
+    def identity(self, student: str) -> Identity:
         return self.students[student][0].identity
 
 
@@ -139,7 +153,7 @@ class Field(NamedTuple):
 class Gradebook:
     """A table of a learning management system, of which cells can be changed one at a time."""
 
-    def __init__(self, data, names=None):
+    def __init__(self, data: bytes, names: Mapping[str, str] | None = None) -> None:
         self.encoding, self.mark = _encoding(data)
         text = data[len(self.mark) :].decode(self.encoding)
         self.delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
@@ -154,26 +168,26 @@ class Gradebook:
         if unknown:
             raise CannotExport(f"There is no column {unknown[0]!r}; there are {', '.join(map(repr, self.header))}.")
 
-    def column(self, *names):
+    def column(self, *names: str) -> int | None:
         """The number of the first column that has one of these names; ``None`` if there is none."""
         lower = [self.ours.get(name.casefold(), name.lower()) for name in self.header]
         return next((lower.index(name) for name in names if name in lower), None)
 
-    def says(self, line, column):
+    def says(self, line: int, column: int | None) -> str:
         fields = self.lines[line][0]
         return fields[column].says.strip() if column is not None and column < len(fields) else ""
 
-    def put(self, line, column, text):
+    def put(self, line: int, column: int, text: str) -> None:
         fields = self.lines[line][0]
         quoted = fields[column].written.startswith('"') or self.delimiter in text
         fields[column] = Field(text, f'"{text}"' if quoted else text)
 
-    def __bytes__(self):
+    def __bytes__(self) -> bytes:
         text = "".join(self.delimiter.join(field.written for field in fields) + end for fields, end in self.lines)
         return self.mark + text.encode(self.encoding)
 
 
-def _encoding(data):
+def _encoding(data: bytes) -> tuple[str, bytes]:
     for mark, encoding in ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
         if data.startswith(mark):
             return encoding, mark
@@ -184,12 +198,13 @@ def _encoding(data):
         return "latin-1", b""  # gives every byte back as it was
 
 
-def _split(text, delimiter):
+def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
     """Lines of fields, and what ends each line."""
     pattern = re.compile(r'("(?:[^"]|"")*"[^%s\r\n]*|[^%s\r\n]*)(%s|\r\n|\n|\r|$)' % ((re.escape(delimiter),) * 3))
-    lines, fields, place = [], [], 0
-    while place < len(text):
-        found = pattern.match(text, place)
+    lines: list[tuple[list[Field], str]] = []
+    fields: list[Field] = []
+    place = 0
+    while found := pattern.match(text, place) if place < len(text) else None:
         written, end = found.groups()
         says = (
             written[1 : written.rindex('"')].replace('""', '"')
@@ -215,7 +230,15 @@ def _split(text, delimiter):
 WRITTEN = "exported.json"
 
 
-def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_run=False):
+def fill(
+    path: str | Path,
+    marks: Marks,
+    column: str | None = None,
+    filled: str | Path | None = None,
+    names: Mapping[str, str] | None = None,
+    overwrite: Collection[str] = (),
+    dry_run: bool = False,
+) -> list[str]:
     """Fill the gradebook of Canvas, Moodle or Brightspace.
 
     Parameters
@@ -256,13 +279,14 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_ru
     said = [f"{system}: column {book.header[place]!r}."]
     if scale != 1:
         said.append(
-            f"The column is out of {number(out_of)} and the questions are worth {number(marks.worth)}: "
+            f"The column is out of {number(out_of or 0)} and the questions are worth {number(marks.worth)}: "
             "points are scaled."
         )
     header = book.header[place]
-    known = marks.store.json_in(written_before) if (written_before := marks.store.folder / WRITTEN).exists() else {}
+    known = marks.store.said(WRITTEN, by_name(by_name(many(text)))) or {}
     ours = known.setdefault(header, {})
-    filled_in, waiting, closed, kept, excused, replaced, changes = 0, [], [], [], [], [], []
+    waiting, closed, kept, excused, replaced, changes = (list[str]() for _ in range(6))
+    filled_in = 0
     strangers = sorted(set(overwrite) - set(found.values()))
     if strangers:
         raise CannotExport(f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook.")
@@ -274,19 +298,19 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_ru
         elif system == "Moodle" and book.says(line, book.column("grade can be changed")).casefold() == book.no:
             closed.append(student)
         else:
-            text = number(round(marks.points(student) * scale, 2))
+            points = number(round(marks.points(student) * scale, 2))
             there = book.says(line, place)
-            before = ours.setdefault(student, [])
-            if there not in ("", "-") and not any(_is_same(there, one) for one in (text, *before)):
+            before = ours.setdefault(student, ())
+            if there not in ("", "-") and not any(_is_same(there, one) for one in (points, *before)):
                 if student not in overwrite or not _is_number(there):
-                    kept.append(f"{student}: {there}, and graded {text}")
+                    kept.append(f"{student}: {there}, and graded {points}")
                     continue
-                replaced.append(f"{student}: {there} -> {text}")
-            elif there not in ("", "-") and not _is_same(there, text):
-                changes.append(f"{student}: {there} -> {text}")
-            if text not in before:
-                before.append(text)
-            book.put(line, place, text.replace(".", ",") if comma else text)
+                replaced.append(f"{student}: {there} -> {points}")
+            elif there not in ("", "-") and not _is_same(there, points):
+                changes.append(f"{student}: {there} -> {points}")
+            if points not in before:
+                ours[student] = (*before, points)
+            book.put(line, place, points.replace(".", ",") if comma else points)
             filled_in += 1
     if changes:
         said.append(f"Changed since it was written from here last ({len(changes)}):")
@@ -296,7 +320,7 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_ru
         said.append(f"{filled_in} would be filled in: nothing was written.")
     else:
         # First what is ours: of a crash in between, the next run knows more than it wrote, and nothing is overlooked.
-        write(written_before, as_text(known))
+        write(marks.store.folder / WRITTEN, as_text(known))
         write(target, bytes(book))
         said.append(f"{filled_in} filled in: {target}")
     without = [
@@ -306,8 +330,10 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_ru
     ]
     unmatched = [student for student in marks.students if student not in found.values() and student not in several]
     damaged, without = _with_damaged(marks.store, without)
-    appealing = [f"{student}: {', '.join(names)}" for student in marks.students if (names := marks.appeals(student))]
-    for heading, names in (
+    appealing = [
+        f"{student}: {', '.join(open_ones)}" for student in marks.students if (open_ones := marks.appeals(student))
+    ]
+    for heading, those in (
         ("In the gradebook, and nothing was handed in", without),
         ("In the gradebook, and what they handed in cannot be graded", damaged),
         ("Handed in, and not in the gradebook", unmatched),
@@ -319,41 +345,41 @@ def fill(path, marks, column=None, filled=None, names=None, overwrite=(), dry_ru
         ("A mark by hand, written over as you said", replaced),
         ("Not filled in, because something else stands there than was written from here", kept),
     ):
-        if names:
-            said.append(f"{heading} ({len(names)}):")
-            said += [f"  {in_a_line(name, 200)}" for name in names]
+        if those:
+            said.append(f"{heading} ({len(those)}):")
+            said += [f"  {in_a_line(name, 200)}" for name in those]
     return said
 
 
-def _is_same(there, text):
+def _is_same(there: str, text: str) -> bool:
     return _is_number(there) and float(there.replace(",", ".")) == float(text)
 
 
-def _is_number(there):
+def _is_number(there: str) -> bool:
     try:
         return math.isfinite(float(there.replace(",", ".")))
     except ValueError:
         return False
 
 
-def _with_damaged(store, names):
+def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
     """Of those without a record: who handed in only what was refused, and who nothing."""
-    refused = store.json_in(store.folder / REFUSED) if (store.folder / REFUSED).exists() else []
-    known = {_signs(student) for _, student, _ in refused if student}
+    refused = store.said(REFUSED, many(Refused.from_json)) or ()
+    known = {_signs(one.student) for one in refused if one.student}
     damaged = [name for name in names if _signs(name) in known or _signs(_turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
 
 
-def _signs(name):
+def _signs(name: str) -> str:
     return "".join(sign for sign in name.casefold() if sign.isalnum())
 
 
-def _turned(name):
+def _turned(name: str) -> str:
     last, _, first = name.partition(",")
     return f"{first} {last}"
 
 
-def _system(book):
+def _system(book: Gradebook) -> str:
     if book.column("identifier") is not None and book.column("grade") is not None:
         return "Moodle"
     if book.column("orgdefinedid") is not None or book.column("end-of-line indicator") is not None:
@@ -369,13 +395,13 @@ def _system(book):
     )
 
 
-def _column(book, system, column):
+def _column(book: Gradebook, system: str, column: str | None) -> int:
     if column:
         places = [place for place, name in enumerate(book.header) if name == column] or [
             place for place, name in enumerate(book.header) if name.lower().startswith(column.lower())
         ]
     elif system == "Moodle":
-        places = [book.column("grade")]
+        places = [place for place in (book.column("grade"),) if place is not None]
     elif system == "Brightspace":
         places = [
             place
@@ -391,7 +417,7 @@ def _column(book, system, column):
     return places[0]
 
 
-def _scale(book, system, place):
+def _scale(book: Gradebook, system: str, place: int) -> tuple[float | None, int, bool]:
     """What the column is out of, the first line of a student, and whether numbers have a comma."""
     first, said = 1, ""
     if system == "Canvas":
@@ -413,7 +439,7 @@ def _scale(book, system, place):
         return None, first, comma
 
 
-def _shown(book, system):
+def _shown(book: Gradebook, system: str) -> int | None:
     return {
         "Canvas": 0,
         "Moodle": book.column("full name", "identifier"),
@@ -421,19 +447,21 @@ def _shown(book, system):
     }[system]
 
 
-def _match(book, system, marks, first):
+def _match(book: Gradebook, system: str, marks: Marks, first: int) -> tuple[dict[int, str], list[str]]:
     """The student of each line; and students whom several lines could mean."""
-    lines, addresses = {}, {}
+    lines: dict[tuple[str, str], set[int]] = {}
+    addresses: dict[int, str] = {}
     for line in range(first, len(book.lines)):
         for key in _keys_of_line(book, system, line):
             lines.setdefault(key, set()).add(line)
         addresses[line] = book.says(line, book.column("email address")).lower()
     for line, own in local_parts(addresses).items():
         lines.setdefault(("own", own), set()).add(line)
-    wanting, several = {}, []
+    wanting: dict[int, list[str]] = {}
+    several: list[str] = []
     for student in marks.students:
         for key in _keys_of_student(system, student, marks.identity(student)):
-            candidates = lines.get(key, ())
+            candidates = lines.get(key, set())
             if len(candidates) == 1:
                 wanting.setdefault(next(iter(candidates)), []).append(student)
                 break
@@ -445,8 +473,8 @@ def _match(book, system, marks, first):
     return {line: students[0] for line, students in wanting.items() if len(students) == 1}, several
 
 
-def _keys_of_line(book, system, line):
-    def of(*names):
+def _keys_of_line(book: Gradebook, system: str, line: int) -> set[tuple[str, str]]:
+    def of(*names: str) -> str:
         return book.says(line, book.column(*names)).lower()
 
     if system == "Canvas":
@@ -474,21 +502,22 @@ def _keys_of_line(book, system, line):
     return {key for key in given if key[1]}
 
 
-def _keys_of_student(system, student, identity):
-    if system.lower() in identity and system != "Brightspace":
-        yield "id", identity[system.lower()]
+def _keys_of_student(system: str, student: str, identity: Identity) -> Iterator[tuple[str, str]]:
+    called = identity.called
+    if system.lower() in called and system != "Brightspace":
+        yield "id", called[system.lower()]
         return
-    for own in identity.get("own", ()):
+    for own in identity.own or ():
         yield "own", own.lower()
-    if "email" in identity:
-        yield "own", identity["email"].lower()
-    if not identity:
+    if "email" in called:
+        yield "own", called["email"].lower()
+    if identity == Identity():
         yield "own", student.lower()  # the folder's name is all that is known
-    if "name" in identity:
-        yield "name", identity["name"].lower()
+    if "name" in called:
+        yield "name", called["name"].lower()
 
 
-def write_feedback(path, marks, store):
+def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
     """Write an archive of the pages of feedback, named so that the system which handed the work out takes them back.
 
     A name begins with what the system wrote of the name of the work. Canvas reads the first two numbers between
@@ -505,7 +534,7 @@ def write_feedback(path, marks, store):
         raise CannotExport(
             f"Decisions on {marks.behind} records are not in the pages yet: coursework regrade {store.folder}."
         )
-    pages = {}
+    pages: dict[str, Path] = {}
     for record in marks.records:
         page = store.folder / "feedback" / file_name(record.student) / f"{file_name(record.assignment)}.html"
         if not page.exists() or record.reply is None:
@@ -527,7 +556,7 @@ def write_feedback(path, marks, store):
     return len(pages)
 
 
-def write_nbgrader(path, marks):
+def write_nbgrader(path: str | Path, marks: Marks) -> None:
     """Write nbgrader's table of grades."""
     rows = []
     for record in marks.records:
@@ -552,7 +581,7 @@ def write_nbgrader(path, marks):
 STATUS = {"correct": "passed", "decided": "passed"}
 
 
-def write_gradescope(path, marks, student=None):
+def write_gradescope(path: str | Path, marks: Marks, student: str | None = None) -> None:
     """Write what Gradescope reads of an autograder: the results of one student."""
     if student is None and len(marks.students) != 1:
         raise CannotExport(
@@ -561,7 +590,7 @@ def write_gradescope(path, marks, student=None):
     student = student or next(iter(marks.students))
     if student not in marks.students:
         raise CannotExport(f"There are no records of {student!r}.")
-    tests = []
+    tests: list[dict[str, str | float]] = []
     for record in marks.students[student]:
         for mark in record.marks.values():
             tests.append(

@@ -13,11 +13,13 @@ import sys
 import tempfile
 import zipfile
 from collections import deque
+from collections.abc import Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 
 from ...authoring.course import find_course
 from ...authoring.source import MEASURED
+from ...checking.fields import Fields, many, text, truth
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
 from ..versions import folders
@@ -49,7 +51,13 @@ exec /autograder/venv/bin/python -m coursework.grading.export.gradescope
 # --- the zip ------------------------------------------------------------------------------------
 
 
-def write_autograder(path, assignments, *, solutions=None, roster=None):
+def write_autograder(
+    path: str | Path,
+    assignments: Mapping[str, Sequence[str]],
+    *,
+    solutions: str | Path | None = None,
+    roster: str | Path | None = None,
+) -> Sequence[str]:
     """Write the zip that Gradescope takes, for one assignment; give the names of the notebooks that make it up.
 
     Parameters
@@ -90,22 +98,23 @@ def write_autograder(path, assignments, *, solutions=None, roster=None):
     files["packages/course-1.dist-info/entry_points.txt"] = f"[coursework.plugins]\n{entries}".encode()
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file, content in sorted(files.items()):
-            entry = zipfile.ZipInfo(file)  # with a fixed date: the same autograder is the same bytes
+        for place, content in sorted(files.items()):
+            entry = zipfile.ZipInfo(place)  # with a fixed date: the same autograder is the same bytes
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (0o755 if file in ("setup.sh", "run_autograder") else 0o644) << 16
+            entry.external_attr = (0o755 if place in ("setup.sh", "run_autograder") else 0o644) << 16
             archive.writestr(entry, content)
     Path(path).write_bytes(data.getvalue())
     return stems
 
 
-def requirements():
+def requirements() -> list[str]:
     """All that grading needs beside these packages, in the versions that are installed here: marks follow from them."""
     from packaging.requirements import Requirement
 
     of_packages = metadata.packages_distributions()
     ours = {name for package in folders() for name in of_packages.get(package.name, ())}
-    found, waiting = {}, deque((name, frozenset({"", "tools"})) for name in ours)
+    found: dict[str, str] = {}
+    waiting = deque((name, frozenset({"", "tools"})) for name in ours)
     seen = set(waiting)
     while waiting:
         name, extras = waiting.popleft()
@@ -126,27 +135,31 @@ def requirements():
 # --- what runs there ----------------------------------------------------------------------------
 
 
-def run(home=HOME):
+def run(home: Path = HOME) -> None:
     """Grade the submission of one student, or of a group, and write its results.
 
     Where students' code cannot be kept apart well enough, there are no results: Gradescope says that the autograder
     failed, and nobody has lost a point.
     """
     from ..grade import NothingToGrade, grade
-    from ..store import Store
+    from ..store import REFUSED, Store
+    from ..submissions.intake import Refused
     from ..submissions.roster import Roster
     from .gradebooks import Marks, write_gradescope
 
     source = home / "source"
-    about = json.loads((source / CONFIGURATION).read_text("utf8"))
-    user = json.loads((home / "submission_metadata.json").read_text("utf8"))["users"][0]
-    roster = source / "roster.csv" if about["roster"] else None
+    assignments, with_roster = _configuration(source)
+    (assignment,) = assignments
+    about = home / "submission_metadata.json"
+    user, *_ = Fields(json.loads(about.read_text("utf8")), str(about)).get("users", many(_user))
+    roster = source / "roster.csv" if with_roster else None
     student = user["email"]
     results = home / "results" / "results.json"
     if roster:
-        student, why = Roster(roster).find((("email", user["email"]), ("own", user["email"]), ("name", user["name"])))
-        if student is None:
+        found, why = Roster(roster).find((("email", user["email"]), ("own", user["email"]), ("name", user["name"])))
+        if found is None:
             return _say(results, f"You are not in the list of this course ({why}) Ask your instructor.")
+        student = found
     with tempfile.TemporaryDirectory() as out:
         Path(out, "questions").symlink_to(home / "questions")
         try:
@@ -154,33 +167,45 @@ def run(home=HOME):
                 home / "submission",
                 out,
                 solutions=source / "solutions",
-                assignments={about["assignment"]: about["notebooks"]},
+                assignments=assignments,
                 roster=roster,
                 student=student,
             )
         except NothingToGrade as error:
             return _say(results, str(error))
         store = Store(out)
-        if store.read(student, about["assignment"]) is None:
-            refused = [f"{Path(file).name}: {why}" for file, _, why in store.json_in(store.folder / "refused.json")]
+        if store.read(student, assignment) is None:
+            refused = [
+                f"{Path(one.file).name}: {one.why}" for one in store.said(REFUSED, many(Refused.from_json)) or ()
+            ]
             return _say(results, "\n".join(["There was no notebook that could be graded.", *refused]))
         write_gradescope(results, Marks(store), student)
 
 
-def _say(results, said):
+def _configuration(source: Path) -> tuple[dict[str, tuple[str, ...]], bool]:
+    """The notebooks of the assignment, by its name, and whether there is a roster."""
+    about = Fields(json.loads((source / CONFIGURATION).read_text("utf8")), CONFIGURATION)
+    return {about.get("assignment", text): about.get("notebooks", many(text))}, about.get("roster", truth)
+
+
+def _user(found: object, where: str) -> dict[str, str]:
+    about = Fields(found, where)
+    return {name: about.get(name, text) for name in ("email", "name")}
+
+
+def _say(results: Path, said: str) -> None:
     """Results without questions: for nothing there are no points, and the student is told why."""
     from ..tables import readable
 
     results.write_text(json.dumps({"score": 0, "output": readable(said), "output_format": "text"}), "utf8")
 
 
-def prepare(home=HOME):
+def prepare(home: Path = HOME) -> None:
     """Work the questions out, once for all submissions."""
     from ..grade import Course
 
-    about = json.loads((home / "source" / CONFIGURATION).read_text("utf8"))
-    course = Course(home / "source" / "solutions", {about["assignment"]: about["notebooks"]})
-    course.questions([about["assignment"]], home / "questions")
+    assignments, _ = _configuration(home / "source")
+    Course(home / "source" / "solutions", assignments).questions(assignments, home / "questions")
 
 
 if __name__ == "__main__":

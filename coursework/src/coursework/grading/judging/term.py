@@ -35,14 +35,18 @@ import datetime
 import json
 import math
 import tomllib
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
-from ..store import write
+from ...checking.fields import text
+from ..record import Record
+from ..store import Store, write
 from ..submissions.intake import as_time
 from ..submissions.roster import Roster
 
+Some = TypeVar("Some")
 EXCUSED = "excused"
 #: What tables of systems call the time at which something was handed in.
 TIMES = ("last modified (submission)", "timestamp", "handed in", "submitted at", "submission date", "submission time")
@@ -53,12 +57,19 @@ class BadRules(ValueError):
     """The rules of a course cannot be understood; the message says which."""
 
 
+class Times(NamedTuple):
+    """Who handed in when, as a system's table says."""
+
+    roster: Roster
+    times: Mapping[str, datetime.datetime]
+
+
 class Assignment(NamedTuple):
-    """What the rules say of an assignment: ``due`` may be ``None``, and ``times`` are of students."""
+    """What the rules say of an assignment."""
 
     due: datetime.datetime | None
     weight: float
-    times: dict
+    times: Times | None
 
 
 class Rules(NamedTuple):
@@ -85,17 +96,17 @@ class Rules(NamedTuple):
     a_day: float
     most: float
     nothing_after: datetime.timedelta | None
-    assignments: dict
-    drop: list
-    extensions: dict
+    assignments: Mapping[str, Assignment]
+    drop: Sequence[tuple[int, Sequence[str]]]
+    extensions: Mapping[tuple[str, str], datetime.datetime | str]
     marked: float | None = None
 
     @property
-    def late_costs(self):
+    def late_costs(self) -> bool:
         """Whether lateness costs anything."""
         return bool(self.a_day) or self.nothing_after is not None
 
-    def penalty(self, late):
+    def penalty(self, late: datetime.timedelta) -> float:
         """The share of the earned points that a delay costs.
 
         >>> import datetime
@@ -110,7 +121,7 @@ class Rules(NamedTuple):
         return min(self.most, self.a_day * math.ceil(late / DAY))
 
 
-def read_rules(path):
+def read_rules(path: str | Path) -> Rules:
     """Read the rules of a course.
 
     Raises
@@ -120,15 +131,15 @@ def read_rules(path):
     """
     path = Path(path)
     try:
-        said = tomllib.loads(path.read_text("utf8"))
+        said: dict[str, object] = tomllib.loads(path.read_text("utf8"))
     except (OSError, ValueError) as error:
         raise BadRules(f"{path}: {error}") from None
     _demand(path, "", said, {"name", "time-zone", "late", "assignments", "drop", "extensions"})
     if "time-zone" not in said:
         raise BadRules(f"{path}: time-zone is missing, such as time-zone = 'Europe/Amsterdam'.")
     try:
-        zone = ZoneInfo(said["time-zone"])
-    except (ZoneInfoNotFoundError, ValueError, TypeError):
+        zone = ZoneInfo(str(said["time-zone"]))
+    except (ZoneInfoNotFoundError, ValueError):
         raise BadRules(f"{path}: there is no time zone {said['time-zone']!r}.") from None
     late = _table(path, "late", said.get("late", {}))
     _demand(path, "late", late, {"grace-minutes", "a-day", "most", "nothing-after-days", "marked"})
@@ -137,31 +148,33 @@ def read_rules(path):
     assignments = {}
     for name, about in _table(path, "assignments", said.get("assignments", {})).items():
         where = f"assignments.{name}"
-        _demand(path, where, _table(path, where, about), {"due", "weight", "times"})
-        due = _moment(path, f"{where}.due", about["due"], zone) if "due" in about else None
-        weight = _number(path, f"{where}.weight", about.get("weight", 1))
-        times = _times(path.parent / about["times"], zone) if "times" in about else {}
-        assignments[name] = Assignment(due, weight, times)
+        rules = _table(path, where, about)
+        _demand(path, where, rules, {"due", "weight", "times"})
+        due = _moment(path, f"{where}.due", rules["due"], zone) if "due" in rules else None
+        weight = _number(path, f"{where}.weight", rules.get("weight", 1))
+        file = _of(str, "the name of a table", path, f"{where}.times", rules["times"]) if "times" in rules else ""
+        assignments[name] = Assignment(due, weight, _times(path.parent / file, zone) if file else None)
     if not assignments:
         raise BadRules(f"{path}: it names no assignment, such as [assignments.unit-quaternions].")
     drop = []
-    for rule in said.get("drop", []):
-        _demand(path, "drop", _table(path, "drop", rule), {"lowest", "of"})
-        of = rule.get("of", list(assignments))
+    for rule in _of(list, "a list of tables", path, "drop", said.get("drop", [])):
+        about_drop = _table(path, "drop", rule)
+        _demand(path, "drop", about_drop, {"lowest", "of"})
+        of = _of(list, "a list of assignments", path, "drop.of", about_drop.get("of", list(assignments)))
         _known(path, "drop.of", of, assignments)
-        lowest = rule.get("lowest", 1)
+        lowest = about_drop.get("lowest", 1)
         if type(lowest) is not int or not 0 <= lowest < len(of):
             raise BadRules(f"{path}: drop.lowest is a whole number below {len(of)}, and this is {lowest!r}.")
         drop.append((lowest, of))
     if len({name for _, of in drop for name in of}) < sum(len(of) for _, of in drop):
         raise BadRules(f"{path}: an assignment is in two rules of what is dropped.")
-    extensions = {}
+    extensions: dict[tuple[str, str], datetime.datetime | str] = {}
     for student, until in _table(path, "extensions", said.get("extensions", {})).items():
         where = f"extensions.{student}"
-        _known(path, where, _table(path, where, until), assignments)
-        for name, when in until.items():
-            own = when if when == EXCUSED else _moment(path, f"{where}.{name}", when, zone)
-            extensions[student, name] = own
+        own = _table(path, where, until)
+        _known(path, where, own, assignments)
+        for name, when in own.items():
+            extensions[student, name] = EXCUSED if when == EXCUSED else _moment(path, f"{where}.{name}", when, zone)
     return Rules(
         str(said.get("name", path.stem)),
         zone,
@@ -183,43 +196,47 @@ LATE = {"a-day": 0, "most": 1}
 KEPT = "rules.json"
 
 
-def keep_rules(store, path):
+def keep_rules(store: Store, path: str | Path) -> None:
     """Keep where the rules of the term are: marks are not handed on without them unsaid."""
     write(store.folder / KEPT, json.dumps(str(path)))
 
 
-def rules_of(store):
+def rules_of(store: Store) -> str | None:
     """The file with the rules by which the term was put together last; ``None`` if it was not."""
-    return store.json_in(store.folder / KEPT) if (store.folder / KEPT).exists() else None
+    return store.said(KEPT, text)
 
 
-def _table(path, where, value):
-    if not isinstance(value, dict):
-        raise BadRules(f"{path}: {where} is a table, and this is {value!r}.")
+def _of(kind: type[Some], what: str, path: Path, where: str, value: object) -> Some:
+    if not isinstance(value, kind):
+        raise BadRules(f"{path}: {where} is {what}, and this is {value!r}.")
     return value
 
 
-def _demand(path, where, table, names):
+def _table(path: Path, where: str, value: object) -> dict[str, object]:
+    return _of(dict, "a table", path, where, value)
+
+
+def _demand(path: Path, where: str, table: Mapping[str, object], names: Collection[str]) -> None:
     for name in table:
         if name not in names:
             there = f" in {where}" if where else ""
             raise BadRules(f"{path}: what is {name!r}{there}? There are {', '.join(sorted(names))}.")
 
 
-def _known(path, where, names, assignments):
+def _known(path: Path, where: str, names: Iterable[str], assignments: Mapping[str, Assignment]) -> None:
     for name in names:
         if name not in assignments:
             raise BadRules(f"{path}: {where}: there is no assignment {name!r}; there are {', '.join(assignments)}.")
 
 
-def _number(path, where, value, most=math.inf):
+def _number(path: Path, where: str, value: object, most: float = math.inf) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value <= most:
         upper = f" to {most}" if most < math.inf else " upwards"
         raise BadRules(f"{path}: {where} is a number from 0{upper}, and this is {value!r}.")
     return value
 
 
-def _moment(path, where, value, zone):
+def _moment(path: Path, where: str, value: object, zone: ZoneInfo) -> datetime.datetime:
     if not isinstance(value, datetime.datetime):
         raise BadRules(
             f"{path}: {where} is a date with a time, such as 2026-10-05T23:59:00, and this is "
@@ -228,7 +245,7 @@ def _moment(path, where, value, zone):
     return in_zone(value, zone)
 
 
-def in_zone(moment, zone, later=True):
+def in_zone(moment: datetime.datetime, zone: ZoneInfo, later: bool = True) -> datetime.datetime:
     """A moment with its time zone; of an hour that a clock shows twice, or leaves out, the later or the earlier one."""
     if moment.tzinfo:
         return moment
@@ -236,7 +253,7 @@ def in_zone(moment, zone, later=True):
     return (max if later else min)(both, key=lambda one: one.astimezone(datetime.UTC))
 
 
-def delay(handed_in, due, zone):
+def delay(handed_in: datetime.datetime, due: datetime.datetime, zone: ZoneInfo) -> datetime.timedelta:
     """How late something was handed in.
 
     By the time that went by, and by the clocks of the course where these show less: in a night in which they are
@@ -252,9 +269,10 @@ def delay(handed_in, due, zone):
     return min(by_time, by_clock)
 
 
-def _times(path, zone):
-    """Who handed in when, by a system's table: a function of what is known of a student, or ``None``."""
-    roster, found = Roster(path), {}
+def _times(path: Path, zone: ZoneInfo) -> Times:
+    """Read a system's table."""
+    found: dict[str, datetime.datetime] = {}
+    roster = Roster(path)
     for student, person in roster.people.items():
         row = person.row
         column = next((name for name in TIMES if name in row), None)
@@ -269,7 +287,7 @@ def _times(path, zone):
                 "download the table with your system in English."
             )
         found[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
-    return {"roster": roster, "times": found}
+    return Times(roster, found)
 
 
 # --- what it comes to ---------------------------------------------------------------------------
@@ -305,16 +323,18 @@ class Result(NamedTuple):
     undecided: int
 
     @property
-    def counts(self):
+    def counts(self) -> float:
         """The points that count."""
         return self.points * (1 - self.penalty)
 
     @property
-    def share(self):
+    def share(self) -> float:
         return self.counts / self.worth if self.worth else 0.0
 
 
-def results_of(student, records, rules, worth, now):
+def results_of(
+    student: str, records: Mapping[str, Record], rules: Rules, worth: Mapping[str, float], now: datetime.datetime
+) -> tuple[list[Result], float | None]:
     """What each assignment of the rules comes to for a student, and the share of everything that counts.
 
     Parameters
@@ -340,7 +360,9 @@ def results_of(student, records, rules, worth, now):
     return results, _mean([one for one in results if one.state in ("counted", "missing")], rules)
 
 
-def _result(student, name, record, rules, worth, now):
+def _result(
+    student: str, name: str, record: Record | None, rules: Rules, worth: Mapping[str, float], now: datetime.datetime
+) -> Result:
     about = rules.assignments[name]
     extension = rules.extensions.get((student, name))
     due = extension if isinstance(extension, datetime.datetime) else about.due
@@ -361,7 +383,7 @@ def _result(student, name, record, rules, worth, now):
     return Result(name, state, points, full, due, when, late, penalty, record.undecided if record else 0)
 
 
-def say_what_marked_costs(assignments):
+def say_what_marked_costs(assignments: Sequence[str]) -> str:
     """What is to be decided where a system marked work as late, and rules do not say what that costs."""
     names = ", ".join(sorted(set(assignments)))
     return (
@@ -370,28 +392,26 @@ def say_what_marked_costs(assignments):
     )
 
 
-def _handed_in(student, record, about, zone):
+def _handed_in(student: str, record: Record, about: Assignment, zone: ZoneInfo) -> datetime.datetime | None:
     """The latest time that a system says of the notebooks that count."""
     if about.times:
-        identity = record.identity
-        keys = [
-            (kind, identity[kind]) for kind in ("canvas", "moodle", "brightspace", "email", "name") if kind in identity
-        ]
-        keys += [("own", own) for own in (*identity.get("own", ()), student)]
-        found, _ = about.times["roster"].find(keys)
-        if found in about.times["times"]:
-            return about.times["times"][found]
+        called = record.identity.called
+        keys = [(kind, called[kind]) for kind in ("canvas", "moodle", "brightspace", "email", "name") if kind in called]
+        keys += [("own", own) for own in (*(record.identity.own or ()), student)]
+        found, _ = about.times.roster.find(keys)
+        if found is not None and found in about.times.times:
+            return about.times.times[found]
     said = [notebook.handed_in for notebook in record.notebooks]
     moments = (in_zone(datetime.datetime.fromisoformat(one), zone, later=False) for one in said if one)
     return max(moments, key=lambda moment: moment.astimezone(datetime.UTC), default=None)
 
 
-def _mean(results, rules):
+def _mean(results: Iterable[Result], rules: Rules) -> float | None:
     weight = sum(rules.assignments[one.assignment].weight for one in results)
     return sum(rules.assignments[one.assignment].weight * one.share for one in results) / weight if weight else None
 
 
-def _dropped(results, rules):
+def _dropped(results: Iterable[Result], rules: Rules) -> set[str]:
     """The assignments whose absence is best for the student.
 
     With weights these need not be those of the lowest shares: against the mean m that is reached, an assignment
@@ -399,19 +419,19 @@ def _dropped(results, rules):
     """
     counted = {one.assignment: one for one in results if one.state in ("counted", "missing")}
 
-    def mean_without(names):
+    def mean_without(names: Collection[str]) -> float | None:
         return _mean([one for name, one in counted.items() if name not in names], rules)
 
-    left_out, mean = None, mean_without(())
+    left_out: set[str] | None = None
+    mean = mean_without(())
     while mean is not None:
-        worst = set()
+        worst: set[str] = set()
         for lowest, of in rules.drop:
             mine = sorted(
-                (name for name in of if name in counted),
-                key=lambda name: (rules.assignments[name].weight * (counted[name].share - mean), name),
+                (rules.assignments[name].weight * (counted[name].share - mean), name) for name in of if name in counted
             )
             # Of few that count so far, one is always kept.
-            worst.update(mine[: min(lowest, max(0, len(mine) - 1))])
+            worst.update(name for _, name in mine[: min(lowest, max(0, len(mine) - 1))])
         again = mean_without(worst)
         if left_out is not None and (again is None or again <= mean + 1e-12):
             break

@@ -4,6 +4,7 @@ import datetime
 import json
 from pathlib import Path
 
+from ...checking.fields import many, text
 from ..judging import term
 from ..judging.ledger import Ledger, with_decisions
 from ..store import as_text, file_name, write
@@ -63,9 +64,7 @@ def write_course(store, rules, *, earlier=(), now=None, folder=None):
         statistics.add(with_decisions(record, standing))
         worth[record.assignment] = record.worth
         students.add(record.student)
-    roster = store.folder / ROSTER
-    if roster.exists():
-        students.update(store.json_in(roster))
+    students.update(store.said(ROSTER, many(text)) or ())
     said = _misspelt(rules, students, worth)
     folder, rows, unknown, marked = folder or store.folder / FOLDER, [], [], []
     for student in sorted(students):

@@ -6,6 +6,7 @@ answer is not written here, but shown as text.
 
 import re
 
+from ...checking.plain import Plain
 from .pages import formula
 
 LONGEST = 4_000  # of the TeX of one answer
@@ -26,7 +27,7 @@ class NoMathematics(ValueError):
     """An answer is not of a kind that is shown as mathematics, or too long."""
 
 
-def answer_as_mathematics(plain):
+def answer_as_mathematics(plain: Plain | None) -> str:
     """The MathML of a plain answer, or an empty text where it is shown as text only."""
     if not plain:
         return ""

@@ -6,6 +6,7 @@ import hashlib
 import html
 from xml.etree import ElementTree
 
+from ...checking.plain import Plain
 from ...checking.reply import to_html
 from ..tables import readable
 
@@ -103,18 +104,18 @@ ATTRIBUTES = {
 }
 
 
-def text(value, most=400):
+def text(value: object, most: int = 400) -> str:
     """Text for a page: whatever it holds is shown and never obeyed."""
     return html.escape(readable(str(value), most))
 
 
-def message(said):
+def message(said: str) -> str:
     """A message, with ``code``, *emphasis* and $mathematics$ marked as in Markdown, as HTML."""
     return to_html(readable(said, 4_000), formula)
 
 
 @functools.lru_cache(2_000)
-def formula(source, longest=300):
+def formula(source: str, longest: int = 300) -> str:
     """TeX as MathML, or as it is where it cannot be turned into that."""
     from latex2mathml.converter import convert
 
@@ -138,7 +139,7 @@ OPERATORS = {"Add": (" + ", 1), "Mul": ("*", 2), "Pow": ("**", 3)}
 NAMES = {"Pi": "pi", "Exp1": "E", "ImaginaryUnit": "I", "Abs": "abs"}
 
 
-def answer_as_text(plain, most=300):
+def answer_as_text(plain: Plain | None, most: int = 300) -> str:
     """A plain answer as one line like the code that makes it, cut short where it is long."""
     return _Printer(plain["nodes"], most).value(plain["value"]) if plain else ""
 

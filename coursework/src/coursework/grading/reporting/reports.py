@@ -4,15 +4,17 @@ Everything here can be made again from the records at any time, and comes out th
 """
 
 import functools
-import json
 from collections import Counter
 from statistics import mean, median
 from urllib.parse import quote
 
+from ...checking.fields import by_name, many, text
 from ...checking.plugins import plugins
 from ...checking.reply import OUTCOMES
 from ..judging.ledger import stable_id
-from ..store import file_name, write
+from ..record import Mark
+from ..store import REFUSED, Store, file_name, write
+from ..submissions.intake import Refused
 from ..tables import lines, table
 from . import pages
 from .templates_of_pages import page
@@ -105,7 +107,7 @@ class _Assignment:
                 found[1].append(record.student)
         for notebook in record.notebooks:
             isolation = notebook.isolation
-            self.ways[("WEAK: " if isolation["weak"] else "") + (", ".join(isolation["layers"]) or "none")] += 1
+            self.ways[("WEAK: " if isolation.weak else "") + (", ".join(isolation.layers) or "none")] += 1
         self.versions[", ".join(f"{name} {version}" for name, version in record.software.items())] += 1
 
     @property
@@ -114,15 +116,15 @@ class _Assignment:
         return {name: order for order, name in enumerate(self.titles, 1)}
 
 
-def write_all(store):
+def write_all(store: Store) -> None:
     """Make the tables and the pages of all records; no more than one record is held at a time."""
-    classes, names, links = {}, {}, _read(store.folder / LINKS, {})
+    classes, names, links = {}, {}, store.said(LINKS, by_name(text)) or {}
     for record in store.all():
         place = store.folder / "feedback" / file_name(record.student) / f"{file_name(record.assignment)}.html"
         _write_if_new(place, feedback(record, links))
         classes.setdefault(record.assignment, _Assignment()).add(record)
         names.update(dict.fromkeys(record.marks))
-    refused = [tuple(entry) for entry in _read(store.folder / "refused.json", [])]
+    refused = store.said(REFUSED, many(Refused.from_json)) or ()
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
     write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
@@ -147,10 +149,6 @@ def _undecided_of(records):
                     " ".join(mark.messages),
                     pages.answer_as_text(record.answer(name).plain),
                 )
-
-
-def _read(path, otherwise):
-    return json.loads(path.read_text("utf8")) if path.exists() else otherwise
 
 
 def _write_if_new(path, content):
@@ -232,7 +230,7 @@ def feedback_of(student, assignment):
     return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
 
 
-def deed(mark):
+def deed(mark: Mark) -> str:
     """What was done, in words that follow "31 % of the class"."""
     if mark.note == "authored":
         return f"were told: “{mark.messages[0]}”"

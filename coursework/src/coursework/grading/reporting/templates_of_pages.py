@@ -7,8 +7,9 @@ from ..tables import number, readable
 from . import pages
 from .mathematics import answer_as_mathematics
 
+LOADER = PackageLoader("coursework.grading.reporting", "templates")
 ENVIRONMENT = Environment(
-    loader=PackageLoader("coursework.grading.reporting", "templates"),
+    loader=LOADER,
     autoescape=True,
     undefined=StrictUndefined,
     trim_blocks=True,
@@ -23,6 +24,11 @@ ENVIRONMENT.filters |= {
     "count": lambda how_many, one, more: f"{how_many} {one if how_many == 1 else more}",
     "percent": lambda share: f"{100 * share:.0f} %",
 }
+
+
+def source_of(name: str) -> str:
+    """A file that lies beside the templates, as it is."""
+    return LOADER.get_source(ENVIRONMENT, name)[0]
 
 
 def page(template: str, **about: object) -> str:

@@ -23,12 +23,27 @@ import stat
 import struct
 import zipfile
 from collections import Counter
-from collections.abc import Callable
-from pathlib import PurePosixPath
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
+from ...checking.fields import a_list, text
+from ..record import Identity, Remembered
 from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
 from .pictures import JPEG, PNG, is_picture
+from .roster import Roster
+
+if TYPE_CHECKING:
+    from _typeshed import WriteableBuffer
+
+#: Gives the bytes of a file.
+Read = Callable[[], bytes]
+#: The time of a file: the greater, the newer.
+When = int | tuple[int, ...]
+#: A file that was found: its name, its time, and what reads it.
+Found = tuple[str, When, Read]
+#: The files that are no notebooks, each with its name, by the source that they claim to be of.
+Others = dict[str | None, list[tuple[Claim | None, str, Read]]]
 
 MOST_BYTES = 20 << 20  # of one notebook
 MOST_CELLS = 1_000
@@ -65,6 +80,13 @@ CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 SAYS = re.compile(r"""^[^#\n]*?\b(?:me|student)\(\s*(?P<mark>['"])(?P<who>[^'"\n]{1,200})(?P=mark)\s*,?\s*\)""", re.M)
 
 
+class CodeCell(TypedDict):
+    """A cell of code, as it was handed in."""
+
+    source: str
+    execution_count: int | None
+
+
 class Refused(NamedTuple):
     """A file that was handed in and is not graded, and why."""
 
@@ -72,13 +94,17 @@ class Refused(NamedTuple):
     student: str
     why: str
 
+    @classmethod
+    def from_json(cls, found: object, where: str) -> "Refused":
+        return cls(*(text(part, where) for part in a_list(found, where)))
+
 
 class Beside(NamedTuple):
     """A file that was handed in beside a notebook, for its code to read."""
 
     name: str
     digest: str
-    read: Callable
+    read: Read
 
 
 class Notebook(NamedTuple):
@@ -90,7 +116,7 @@ class Notebook(NamedTuple):
         Its path in the submissions, as it was named.
     student : str
         Who handed it in: by the roster, or as far as the file's name or folder says.
-    identity : dict
+    identity : Identity
         The numbers and names under which a learning management system knows the student.
     matched : str
         How it is known whose it is.
@@ -115,22 +141,22 @@ class Notebook(NamedTuple):
 
     file: str
     student: str
-    identity: dict
+    identity: Identity
     matched: str
     digest: str
-    named: list
+    named: list[str]
     folder: str
-    order: tuple
+    order: tuple[tuple[int, ...], When]
     late: bool
     claim: Claim
-    read: Callable
-    beside: tuple = ()
+    read: Read
+    beside: tuple[Beside, ...] = ()
     handed_in: str = ""
     says: str = ""
 
     @property
-    def cells(self):
-        """``source`` and ``execution_count`` of each code cell.
+    def cells(self) -> list[CodeCell]:
+        """The code cells.
 
         Raises
         ------
@@ -140,22 +166,22 @@ class Notebook(NamedTuple):
         return read_notebook(_unchanged(self))[0]
 
     @property
-    def remembered(self):
+    def remembered(self) -> dict[str, Remembered]:
         """What its outputs remember of the way to an answer: see :func:`remembered_in`."""
         return remembered_in(_unchanged(self))
 
     @property
-    def pictures(self):
+    def pictures(self) -> dict[str, list[str]]:
         """What its cells drew, as it keeps that: see :func:`pictures_in`."""
         return pictures_in(_unchanged(self))
 
     @property
-    def files(self):
+    def files(self) -> dict[str, bytes]:
         """The bytes of the files beside it, by name."""
         return {one.name: _unchanged(one) for one in self.beside}
 
 
-def _unchanged(one):
+def _unchanged(one: Beside | Notebook) -> bytes:
     data = one.read()
     if hashlib.sha256(data).hexdigest() != one.digest:
         raise Unfit("It was changed while the class was graded.")
@@ -166,7 +192,13 @@ class Unfit(ValueError):
     """A file cannot be graded; the message says why."""
 
 
-def take_in(path, assignments=(), roster=None, student=None, out=None):
+def take_in(
+    path: str | os.PathLike[str],
+    assignments: Iterable[str] = (),
+    roster: Roster | None = None,
+    student: str | None = None,
+    out: str | Path | None = None,
+) -> tuple[list[Notebook], list[Refused]]:
     """Read all that was handed in.
 
     Parameters
@@ -187,7 +219,10 @@ def take_in(path, assignments=(), roster=None, student=None, out=None):
     notebooks : list of Notebook
     refused : list of Refused
     """
-    found, refused, files, repositories = [], [], [], set()
+    found: list[Notebook] = []
+    refused: list[Refused] = []
+    files: list[Found] = []
+    repositories: set[str] = set()
     for name, when, read in _files(os.fspath(path), refused, repositories, out):
         if len(files) >= MOST_FILES:
             refused.append(Refused(name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."))
@@ -195,7 +230,7 @@ def take_in(path, assignments=(), roster=None, student=None, out=None):
         files.append((name, when, read))
     contents = {name: read for name, _, read in files}
     layout = Layout(list(contents), assignments, repositories, roster, lambda name: contents[name](), student)
-    others = {}
+    others: Others = {}
     for name, when, read in files:
         if name.lower().endswith(".zip"):
             for inner, data in _inside_archive(name, read, refused):
@@ -203,27 +238,30 @@ def take_in(path, assignments=(), roster=None, student=None, out=None):
         else:
             _take(found, others, refused, layout, name, when, read, name)
     have = {one.claim.source for one in found}
-    for number, one in enumerate(found):  # each in its place: of a large class a second list is felt
-        one = _with_student(one, roster, student, refused)
-        found[number] = one and one._replace(beside=_beside(one, others), handed_in=_when(one, others, layout))
-    notebooks = _without_conflicts([one for one in found if one], roster, refused)
-    for source, beside in others.items():
-        for claim, name, _ in beside:
+    found.reverse()
+    notebooks: list[Notebook] = []
+    while found:  # one by one: of a large class a second list is felt
+        if one := _with_student(found.pop(), roster, student, refused):
+            beside, handed_in = _beside(one, others), _when(one, others, layout)
+            notebooks.append(one._replace(beside=beside, handed_in=handed_in))
+    notebooks = _without_conflicts(notebooks, roster, refused)
+    for source, files_of_source in others.items():
+        for claim, name, _ in files_of_source:
             if PurePosixPath(name).name in INDEXES or layout.is_beside_submissions(name):
                 continue
             # Blackboard writes a text about each attempt, which nobody handed in.
             of_system = claim and claim.given_by_system and not claim.file
             if not (of_system or _is_by_the_way(name)) or (claim and source not in have):
                 whose = claim.student if claim else ""
-                read = " The notebook beside it can read it." if source in have else ""
-                refused.append(Refused(name, whose, f"This is no notebook: its name does not end in .ipynb.{read}"))
+                can = " The notebook beside it can read it." if source in have else ""
+                refused.append(Refused(name, whose, f"This is no notebook: its name does not end in .ipynb.{can}"))
     return notebooks, [_of_whom(one, layout, roster) for one in refused]
 
 
-def _of_whom(refused, layout, roster):
+def _of_whom(refused: Refused, layout: Layout, roster: Roster | None) -> Refused:
     """A file that was refused, with whose it is where a roster says so: its student did not hand in nothing."""
-    claim = layout.claim(refused.file) if roster else None
-    known = roster.find(claim.keys, claim.place)[0] if claim else None
+    claim = layout.claim(refused.file)
+    known = roster.find(claim.keys, claim.place)[0] if roster and claim else None
     return refused if known is None else refused._replace(student=known)
 
 
@@ -231,7 +269,7 @@ def _of_whom(refused, layout, roster):
 TIMESTAMP = "timestamp.txt"
 
 
-def _when(one, others, layout):
+def _when(one: Notebook, others: Others, layout: Layout) -> str:
     """When a notebook was handed in, as the system says and never a student's file; empty if it says nothing."""
     if one.claim.handed_in or not layout.is_nbgraders:
         return one.claim.handed_in
@@ -252,7 +290,7 @@ FORMATS = (
 )
 
 
-def as_time(text):
+def as_time(text: str) -> str | None:
     """A time as a system writes it, in ISO 8601; ``None`` if it is none.
 
     >>> as_time("2026-11-21 20:01:00.5 UTC"), as_time("Saturday, 21 November 2026, 8:01 PM")
@@ -268,11 +306,20 @@ def as_time(text):
     return None
 
 
-def _in_format(form):
+def _in_format(form: str) -> Callable[[str], datetime.datetime]:
     return lambda text: datetime.datetime.strptime(text, form)
 
 
-def _take(found, others, refused, layout, name, when, read, outer):
+def _take(
+    found: list[Notebook],
+    others: Others,
+    refused: list[Refused],
+    layout: Layout,
+    name: str,
+    when: When,
+    read: Read,
+    outer: str,
+) -> None:
     """Look at one file; `outer` is its name, or that of the archive it was packed in, which says whose it is."""
     claim = layout.claim(outer)
     if name != outer and claim:
@@ -296,7 +343,7 @@ def _take(found, others, refused, layout, name, when, read, outer):
         Notebook(
             name,
             claim.student,
-            {},
+            Identity(),
             "",
             hashlib.sha256(data).hexdigest(),
             _shared_names(tuple(named)),
@@ -310,40 +357,44 @@ def _take(found, others, refused, layout, name, when, read, outer):
     )
 
 
-def _says(cells):
+def _says(cells: Iterable[CodeCell]) -> str:
     """Whose a notebook says that it is: the last time that it says so."""
     said = [found["who"] for cell in cells for found in SAYS.finditer(cell["source"]) if found["who"].strip()]
     return said[-1] if said else ""
 
 
 @functools.lru_cache(1_000)
-def _shared_names(names):
+def _shared_names(names: tuple[str, ...]) -> list[str]:
     """The same list for all that name the same questions: of a hundred thousand notebooks nearly all do."""
     return list(names)
 
 
-def _with_student(one, roster, student, refused):
+def _with_student(one: Notebook, roster: Roster | None, student: str | None, refused: list[Refused]) -> Notebook | None:
     """The notebook with its student, or ``None`` if nobody knows whose it is."""
     known = {kind: value for kind, value in one.claim.keys if kind in ("canvas", "moodle", "brightspace", "name")}
     if "letters" in dict(one.claim.keys):
         known["name"] = dict(one.claim.keys)["letters"]
     if student is not None:
-        return one._replace(student=student, matched="as you said", identity=roster.identity(student) if roster else {})
+        identity = roster.identity(student) if roster else Identity()
+        return one._replace(student=student, matched="as you said", identity=identity)
     if roster is None:
-        return one._replace(matched="as its name or folder says", identity=known if one.claim.given_by_system else {})
+        identity = Identity(known if one.claim.given_by_system else {})
+        return one._replace(matched="as its name or folder says", identity=identity)
     found, how = roster.find(one.claim.keys, one.claim.place)
     if found is None:
         refused.append(Refused(one.file, one.claim.student, f"{how} Whose is it? {NOT_MATCHED}"))
         return None
-    return one._replace(student=found, matched=how, identity={**known, **roster.identity(found)})
+    identity = roster.identity(found)
+    return one._replace(student=found, matched=how, identity=Identity({**known, **identity.called}, identity.own))
 
 
 NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of the roster."
 
 
-def _without_conflicts(notebooks, roster, refused):
+def _without_conflicts(notebooks: Sequence[Notebook], roster: Roster | None, refused: list[Refused]) -> list[Notebook]:
     """Leave out what two submissions claim to be: one of them may be a classmate's."""
-    first, several = {}, {}
+    first: dict[str | tuple[str, str], str] = {}
+    several: dict[str | tuple[str, str], tuple[set[str], set[str]]] = {}
     for one in notebooks:
         for identity in _identities(one, roster):
             if first.setdefault(identity, one.claim.source) != one.claim.source:
@@ -354,24 +405,19 @@ def _without_conflicts(notebooks, roster, refused):
             sources, students = several[identity]
             sources.add(one.claim.source)
             students.add(one.student)
-    unsure = {}
+    unsure: dict[str, set[str]] = {}
     for sources, students in several.values():
         for student in students:
             unsure.setdefault(student, set()).update(sources)
     for one in notebooks:
         if one.student in unsure:
-            sources = ", ".join(sorted(unsure[one.student]))
-            refused.append(
-                Refused(
-                    one.file,
-                    one.student,
-                    f"Two submissions claim to be this student's: {sources}. Neither was graded: whose are they?",
-                )
-            )
+            those = ", ".join(sorted(unsure[one.student]))
+            why = f"Two submissions claim to be this student's: {those}. Neither was graded: whose are they?"
+            refused.append(Refused(one.file, one.student, why))
     return [one for one in notebooks if one.student not in unsure]
 
 
-def _identities(one, roster):
+def _identities(one: Notebook, roster: Roster | None) -> tuple[str | tuple[str, str], ...]:
     """Who a notebook claims to be of, unless the person who grades has said so."""
     if one.matched == "as you said":
         return ()
@@ -380,16 +426,17 @@ def _identities(one, roster):
     return looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)
 
 
-def _numbers(claim):
+def _numbers(claim: Claim) -> list[tuple[str, str]]:
     """The number by which the system knows a student: it writes none beside two names."""
     return [key for key in claim.keys if claim.given_by_system and key[0] in ("canvas", "moodle", "brightspace")]
 
 
-def _beside(one, others):
+def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
     """The files that lie where the notebook lies, or below, by the names that its code would use."""
-    folder, found, total = PurePosixPath(one.claim.file).parent, [], 0
+    found: list[Beside] = []
+    folder, total = PurePosixPath(one.claim.file).parent, 0
     for claim, _, read in others.get(one.claim.source, ()):
-        name = PurePosixPath(claim.file)
+        name = PurePosixPath(claim.file if claim else "")
         if not name.is_relative_to(folder) or name == folder:
             continue
         try:
@@ -405,9 +452,10 @@ def _beside(one, others):
     return tuple(sorted(found))
 
 
-def _as_named_before(found):
+def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
     """What Canvas numbered because it was handed in again, also by the name that the notebook's code uses."""
-    numbered, names = {}, {one.name for one in found}
+    numbered: dict[str, list[tuple[int, Beside]]] = {}
+    names = {one.name for one in found}
     for one in found:
         path = PurePosixPath(one.name)
         again = RESUBMITTED.fullmatch(path.stem)
@@ -422,14 +470,14 @@ def _as_named_before(found):
 class _Folder:
     """A folder that is held open for as long as somebody may read from it."""
 
-    def __init__(self, path):
+    def __init__(self, path: str) -> None:
         self.handle = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
 
-    def __del__(self):
+    def __del__(self) -> None:
         os.close(self.handle)
 
 
-def _files(path, refused, repositories, out=None):
+def _files(path: str, refused: list[Refused], repositories: set[str], out: str | Path | None = None) -> Iterator[Found]:
     """Give the name of each file, its time, and a function that reads it: in a fixed order.
 
     The names of folders that are repositories of Git are added to ``repositories``.
@@ -448,7 +496,9 @@ def _files(path, refused, repositories, out=None):
         raise Unfit(f"There is nothing at {path}.")
 
 
-def _files_of_folder(root, refused, repositories, out=None):
+def _files_of_folder(
+    root: str, refused: list[Refused], repositories: set[str], out: str | Path | None = None
+) -> Iterator[Found]:
     results = os.stat(out) if out and os.path.isdir(out) else None
     if results and os.path.samestat(results, os.stat(root)):
         raise Unfit(f"{root} holds what was handed in, and cannot hold the results, too: name another folder.")
@@ -471,7 +521,7 @@ def _files_of_folder(root, refused, repositories, out=None):
             if stat.S_ISLNK(about.st_mode):
                 refused.append(Refused(_text(full), "", "This is a link to another place. It was not followed."))
             elif stat.S_ISREG(about.st_mode):
-                yield _text(full), about.st_mtime_ns, lambda full=full: _read_below(top.handle, full)
+                yield _text(full), about.st_mtime_ns, functools.partial(_read_below, top, full)
             elif results and os.path.samestat(results, about):
                 folders.remove(name)
             elif not stat.S_ISDIR(about.st_mode):
@@ -482,19 +532,19 @@ def _files_of_folder(root, refused, repositories, out=None):
             folders.clear()
 
 
-def _text(name):
+def _text(name: str) -> str:
     """A file's name as text that can be written: bytes that are no UTF-8 are shown as such."""
     return os.fsencode(name).decode("utf8", "backslashreplace")
 
 
-def _is_litter(name):
+def _is_litter(name: str) -> bool:
     return any(part in LITTER or part.startswith(("._", ".~")) for part in name.split("/"))
 
 
-def _read_below(top, name):
+def _read_below(top: _Folder, name: str) -> bytes:
     """Read a file through its folders one by one, following no link."""
     with contextlib.ExitStack() as stack:
-        handle = top
+        handle = top.handle
         *folders, last = name.split("/")
         for folder in folders:
             try:
@@ -505,7 +555,7 @@ def _read_below(top, name):
         return _read_file(last, handle)
 
 
-def _read_file(name, folder):
+def _read_file(name: str, folder: int) -> bytes:
     try:
         # Not waiting, for what has become a channel in which nobody writes.
         handle = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, dir_fd=folder)
@@ -517,7 +567,7 @@ def _read_file(name, folder):
         return _no_more_than(file.read(MOST_BYTES + 1))
 
 
-def _no_more_than(data):
+def _no_more_than(data: bytes) -> bytes:
     if len(data) > MOST_BYTES:
         raise Unfit(f"It is larger than {MOST_BYTES >> 20} MB.")
     return data
@@ -526,33 +576,32 @@ def _no_more_than(data):
 class _OwnPlace(io.RawIOBase):
     """A file that is read from a place of its own: a copy of this process reads it too, and does not move this one."""
 
-    def __init__(self, path):
+    def __init__(self, path: str) -> None:
         self.handle, self.place = os.open(path, os.O_RDONLY | os.O_CLOEXEC), 0
 
-    def readable(self):
+    def readable(self) -> bool:
         return True
 
-    def seekable(self):
+    def seekable(self) -> bool:
         return True
 
-    def seek(self, offset, whence=os.SEEK_SET):
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         start = {os.SEEK_SET: 0, os.SEEK_CUR: self.place, os.SEEK_END: os.fstat(self.handle).st_size}[whence]
         self.place = start + offset
         return self.place
 
-    def readinto(self, buffer):
-        data = os.pread(self.handle, len(buffer), self.place)
-        buffer[: len(data)] = data
-        self.place += len(data)
-        return len(data)
+    def readinto(self, buffer: "WriteableBuffer") -> int:
+        number = os.preadv(self.handle, [buffer], self.place)
+        self.place += number
+        return number
 
-    def close(self):
+    def close(self) -> None:
         if not self.closed:
             os.close(self.handle)
         super().close()
 
 
-def _files_of_archive(path, refused, repositories):
+def _files_of_archive(path: str, refused: list[Refused], repositories: set[str]) -> Iterator[Found]:
     try:
         archive = zipfile.ZipFile(_OwnPlace(path))
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
@@ -587,25 +636,24 @@ class _Entry:
     """A function that reads an entry of an archive: no more is kept of it than where it lies."""
 
     __slots__ = ("archive", "name", "place")
-    FIELDS = ("header_offset", "compress_size", "file_size", "CRC", "compress_type", "flag_bits")
+    # By the last of these newer Pythons notice entries that overlap.
+    FIELDS = ("header_offset", "compress_size", "file_size", "CRC", "compress_type", "flag_bits", "_end_offset")
     LAYOUT = struct.Struct("<QQQLHHq")
 
-    def __init__(self, archive, entry):
+    def __init__(self, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> None:
         self.archive, self.name = archive, entry.orig_filename
-        end = getattr(entry, "_end_offset", None)  # by which newer Pythons notice entries that overlap
-        self.place = self.LAYOUT.pack(*(getattr(entry, field) for field in self.FIELDS), -1 if end is None else end)
+        values = (getattr(entry, field, None) for field in self.FIELDS)
+        self.place = self.LAYOUT.pack(*(-1 if value is None else value for value in values))
 
-    def __call__(self):
+    def __call__(self) -> bytes:
         entry = zipfile.ZipInfo(self.name)
-        *values, end = self.LAYOUT.unpack(self.place)
-        for field, value in zip(self.FIELDS, values, strict=True):
-            setattr(entry, field, value)
-        if end >= 0:
-            entry._end_offset = end
+        for field, value in zip(self.FIELDS, self.LAYOUT.unpack(self.place), strict=True):
+            if value >= 0:
+                setattr(entry, field, value)
         return _read_entry(self.archive, entry)
 
 
-def _why_not_unpacked(entry, name):
+def _why_not_unpacked(entry: zipfile.ZipInfo, name: str) -> str:
     parts = name.replace("\\", "/").split("/")
     if name.startswith(("/", "\\")) or ".." in parts or re.match(r"[A-Za-z]:", name) or "\\" in name:
         return "Its name leads out of the archive."
@@ -618,7 +666,7 @@ def _why_not_unpacked(entry, name):
     return ""
 
 
-def _read_entry(archive, entry):
+def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     try:
         with archive.open(entry) as file:
             # The size that is declared may be a lie.
@@ -631,7 +679,7 @@ def _read_entry(archive, entry):
         raise
 
 
-def _inside_archive(name, read, refused):
+def _inside_archive(name: str, read: Read, refused: list[Refused]) -> Iterator[tuple[str, Read]]:
     """The files of an archive that a student packed: their names, and functions that read them."""
     try:
         data = read()
@@ -654,15 +702,15 @@ def _inside_archive(name, read, refused):
         if why:
             refused.append(Refused(inner, "", why))
         else:
-            yield inner, lambda entry=entry: _read_packed(read, entry)
+            yield inner, functools.partial(_read_packed, read, entry)
 
 
-def _read_packed(read, entry):
+def _read_packed(read: Read, entry: zipfile.ZipInfo) -> bytes:
     with zipfile.ZipFile(io.BytesIO(read())) as archive:
         return _read_entry(archive, entry)
 
 
-def _is_by_the_way(name):
+def _is_by_the_way(name: str) -> bool:
     """Whether a file is none that a student handed in for marks: an index, a picture beside a notebook."""
     path = PurePosixPath(name)
     return (
@@ -693,7 +741,7 @@ def _is_by_the_way(name):
 # --- reading a notebook -------------------------------------------------------------------------
 
 
-def read_notebook(data):
+def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
     """Give the code cells of a notebook, and nbgrader's names in its metadata.
 
     Raises
@@ -702,8 +750,6 @@ def read_notebook(data):
         These bytes are no notebook; the message says what is the matter.
     """
     notebook = _json(data)
-    if not isinstance(notebook, dict) or not ("cells" in notebook or "worksheets" in notebook):
-        raise Unfit("This is no notebook: it has no cells.")
     version = notebook.get("nbformat", 4)
     if version not in (3, 4):
         raise Unfit(f"It is a notebook of version {str(version)[:20]}; versions 3 and 4 can be read.")
@@ -718,7 +764,8 @@ def read_notebook(data):
         cells = _list(notebook.get("cells"))
     if len(cells) > MOST_CELLS:
         raise Unfit(f"It has {len(cells)} cells; at most {MOST_CELLS} are read.")
-    code, grade_ids = [], []
+    code: list[CodeCell] = []
+    grade_ids: list[str] = []
     for cell in cells:
         if not isinstance(cell, dict):
             raise Unfit("This is no notebook: one of its cells is none.")
@@ -739,14 +786,12 @@ def read_notebook(data):
     return code, grade_ids
 
 
-def remembered_in(data):
+def remembered_in(data: bytes) -> dict[str, Remembered]:
     """What the replies that a notebook shows remember, by question.
-
-    The number of ``tries``, a few digits of each wrong answer that was ``tried``, and the ``help`` that was had.
 
     It is the student's to change: who deletes it is not found out.
     """
-    found = {}
+    found: dict[str, Remembered] = {}
     if b"coursework-reply" not in data:
         return found
     text = data.decode("utf8", "replace").replace('\\"', '"')  # as it stands in the texts of JSON
@@ -754,21 +799,23 @@ def remembered_in(data):
         about = dict(ABOUT_REPLY.findall(reply))
         if not {"question", "tries"} <= set(about) or not about["tries"].isdecimal() or len(found) >= MOST_CELLS:
             continue
-        one = found.setdefault(about["question"], {"tries": 0, "tried": [], "help": ""})
-        one["tried"] = list(dict.fromkeys((*one["tried"], *TRIED.findall(about.get("tried", "")))))[:MOST_TRIED]
-        one["tries"] = max(one["tries"], int(about["tries"][:6]))
-        one["help"] = about.get("help", one["help"])
+        one = found.get(about["question"], Remembered())
+        found[about["question"]] = Remembered(
+            max(one.tries, int(about["tries"][:6])),
+            tuple(dict.fromkeys((*one.tried, *TRIED.findall(about.get("tried", "")))))[:MOST_TRIED],
+            about.get("help", one.help),
+        )
     return found
 
 
-def pictures_in(data):
+def pictures_in(data: bytes) -> dict[str, list[str]]:
     """The pictures under each code cell of a notebook, as it was handed in: texts in base64, by the cell's number.
 
     They are the student's to change, and are for people to look at; what is no picture from end to end is left out.
     """
-    found, left = {}, MOST_BYTES_OF_PICTURES
-    notebook = _json(data)
-    code = [cell for cell in _list(notebook.get("cells", [])) if isinstance(cell, dict)]
+    found: dict[str, list[str]] = {}
+    left = MOST_BYTES_OF_PICTURES
+    code = [cell for cell in _list(_json(data).get("cells", [])) if isinstance(cell, dict)]
     code = [cell for cell in code if cell.get("cell_type") == "code"]
     for number, cell in enumerate(code):
         outputs = cell.get("outputs")
@@ -786,13 +833,13 @@ def pictures_in(data):
     return found
 
 
-def _list(value):
+def _list(value: object) -> list[object]:
     if not isinstance(value, list):
         raise Unfit("This is no notebook: its cells are no list.")
     return value
 
 
-def _source(source):
+def _source(source: object) -> str:
     if isinstance(source, list) and all(isinstance(line, str) for line in source):
         source = "".join(source)
     if not isinstance(source, str):
@@ -804,7 +851,7 @@ def _source(source):
     return source
 
 
-def _json(data):
+def _json(data: bytes) -> dict[str, object]:
     if not data.strip():
         raise Unfit("The file is empty.")
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
@@ -815,7 +862,7 @@ def _json(data):
         if sum(map(without_texts.count, (b",", b"[", b"{"))) > MOST_VALUES:
             raise Unfit(f"It is made of more than {MOST_VALUES} parts; no notebook is.")
     try:
-        return json.loads(data.decode("utf-8-sig"), object_pairs_hook=_no_key_twice)
+        notebook = json.loads(data.decode("utf-8-sig"), object_pairs_hook=_no_key_twice)
     except Unfit:
         raise
     except UnicodeDecodeError:
@@ -825,9 +872,12 @@ def _json(data):
     except ValueError as error:
         where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
         raise Unfit(f"This is no notebook: it is not well-formed JSON{where}.") from None
+    if not isinstance(notebook, dict) or not ("cells" in notebook or "worksheets" in notebook):
+        raise Unfit("This is no notebook: it has no cells.")
+    return notebook
 
 
-def _no_key_twice(pairs):
+def _no_key_twice(pairs: list[tuple[str, object]]) -> dict[str, object]:
     found = dict(pairs)
     if len(found) < len(pairs):
         raise Unfit("One of its entries has the same name twice, so it can be read in two ways.")

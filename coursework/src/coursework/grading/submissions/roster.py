@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
+from ..record import Identity
 from .languages import in_english
 
 Key = TypeVar("Key")
@@ -142,15 +143,12 @@ class Roster:
                 return None, "The roster has no column `github`, and that name anybody may choose."
         return None, "Nobody in the roster fits."
 
-    def identity(self, student: str) -> dict[str, str | list[str]]:
+    def identity(self, student: str) -> Identity:
         """What is known of a student, as a record holds it."""
         person = self.people[student]
-        found: dict[str, str | list[str]] = {
-            kind: person.called[kind][0]
-            for kind in ("canvas", "moodle", "brightspace", "name", "email")
-            if person.called.get(kind)
-        }
-        return found | {"own": [*person.called.get("own", ()), *([person.local_part] if person.local_part else [])]}
+        kinds = ("canvas", "moodle", "brightspace", "name", "email")
+        called = {kind: person.called[kind][0] for kind in kinds if person.called.get(kind)}
+        return Identity(called, (*person.called.get("own", ()), *((person.local_part,) if person.local_part else ())))
 
 
 def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:

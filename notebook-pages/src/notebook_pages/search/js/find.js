@@ -1,16 +1,18 @@
 // Finds places of the book by what a reader types: words, with slips and synonyms, or signs of a formula.
 //
 // A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare it
-// is; a phrase is as good as the share of the question that it answers, and of itself that was asked for.
-import MiniSearch from "minisearch";
-import { isWeak, plain, read, stem, words } from "./words.js";
+// is, and most if it is one of the subject's; a phrase is as good as the share of the question that it answers, and of
+// itself that was asked for. The shares below were fitted to questions of forums (``tests/pages/queries``), not by feeling.
+import { isLeftOut, isWeak, plain, read, stem, words } from "./words.js";
 
 // The signs of a formula, as TeX has them or as they are typed: what only shapes them is left out.
 export function signs(text) {
-  return plain(text.replace(/\{\}\^\{?[A-Z]\}?(\\left\(|\()?(\\mathbf\{C\}|C)\^\{?[A-Z]\}?/g, "$1 C ").replace(/\\(?:math\w+|boldsymbol|hat|bar|left|right|[dt]?frac|quad|qquad|lvert|rvert|begin|end|text\w*)(?![a-z])|\\[,;:! ]/gi, " ")
-    .replace(/\b(?:aligned|bmatrix|cases)\b/g, " ")).match(/[a-z]{3,}|[a-z0-9]|[=+-]/g) ?? [];
+  return plain(text.replace(/\{\}\^\{?[A-Z]\}?(\\left\(|\()?(\\mathbf\{C\}|C)\^\{?[A-Z]\}?/g, "$1 C ")
+    .replace(/\\(?:math\w+|boldsymbol|hat|bar|left|right|[dt]?frac|quad|qquad|lvert|rvert|begin|end|text\w*)(?![a-z])/gi, " ")
+    .replace(/\\[,;:! ]|\b(?:aligned|bmatrix|cases)\b/g, " ")).match(/[a-z]{3,}|[a-z0-9]|[=+-]/g) ?? [];
 }
-const isFormula = (query) => /[=^\\√·×]|[a-z0-9]\(|\d\/|\/\d|[a-z]_[a-z0-9]\b/i.test(query) && !/[a-z]{2}_[a-z]{2}/i.test(query);
+const FORMULA = /[=^\\√·×]|\b(?:[a-z]|sin|cos|tan|exp|log|det)\(|\d\/|\/\d|[a-z]_[a-z0-9]\b/i;
+const isFormula = (query) => FORMULA.test(query) && !/[a-z]{2}_[a-z]{2}/i.test(query);
 const pairs = (list) => [...list, ...list.slice(1).map((sign, k) => `${list[k]} ${sign}`)];
 
 function overlap(one, other) {
@@ -37,167 +39,207 @@ function slips(one, other) {
 
 // What a reader looks for is rather one than another of these, where both answer as well.
 const KINDS = { page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8 };
+const IN_LONG = { term: 0.95 }; // a question of more than two words asks for more than a term
 const READ = { page: true, section: true }; // those of the chapters have numbers
-const CHAPTER = 0.45, ABOUT = 0.45, TEXT = 0.3; // what a word counts that stands not in a phrase, but there
-const SAME = 1.12; // for the very words
-const SYNONYM = 0.9, OF_WEAK = 0.3;
+const NO_CHAPTER = 0.93;
+const ASKED = 0.95; // what a place counts at least that readers ask for in words of their own
+const WITHIN = { chapter: 0.45, about: 0.45, text: 0.4 }; // what a word counts that stands not in a phrase, but there
+const PHRASE = 0.98, SYNONYM = 0.9, SAME = 1.12; // for a phrase, a synonym, the very words
+const OF_WEAK = 0.4, OF_OTHERS = 0.6, OF_GUESSED = 0.7; // for words that say little, are not the subject's, may be slips
+const APART = 0.7; // for a word of a name of several words, without the others
+const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
 const OTHER_WAY = 0.7, NO_WAY = 0.88; // where a conversion is asked for: the one back, or none
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 
-// ``more`` holds the words of each entry's text, its TeX, and the figures, once they are there.
-export function finder({ pages, fields, kinds: kindsOfPlaces, entries: rows, synonyms = {} }, more = {}) {
-  const entries = [...rows, ...more.figures ?? []].map((row) => Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined])));
-  for (const entry of entries) entry.kind = kindsOfPlaces[entry.kind ?? 0];
-  const kinds = (synonyms.conversions ?? []).map((group) => group.map(words));
-  const groups = (synonyms.words ?? []).map((group) => group.map(words).filter((phrase) => phrase.join("").length > 1));
+// A word of a name of several words: "rotate vectors" is no rotation vector, but "rotation vectors" are.
+const single = (word) => (word.length < 4 || word.endsWith("ss") ? word
+  : word.replace(/(?<=[sxz]|ch|sh)es$|s$/, "").replace(/([iy])z(?=e|ed|ing|ation)/, "$1s"));
+const BETWEEN = new Set(["and", "the"]);
+const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles", "values", "of", "in", "python"]);
+const isWay = (sign) => sign.term.includes(">");
+
+// ``more`` holds the words of each entry's text, the TeX of the equations, these and the figures, once they are there.
+export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, more = {}) {
+  const entries = [...rows, ...more.entries ?? []].map((row) => (
+    Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined]))));
+  for (const entry of entries) entry.kind = kinds[entry.kind ?? 0], entry.page ??= 0;
+
+  // Concepts have several names, of one word or more; so have the things that can be converted into one another.
+  const heads = new Map(); // the names that begin with a word
+  for (const [of, groups] of Object.entries(synonyms)) for (const [number, group] of groups.entries()) {
+    for (const name of group) {
+      const list = read(name).all.filter((word) => !BETWEEN.has(word)).map(single);
+      if (list.join("").length < 2) continue;
+      if (list.length === 1) list[0] = stem(list[0]);
+      const head = `${list.length > 1} ${list[0]}`;
+      heads.set(head, [...heads.get(head) ?? [], { of, number, list }]);
+    }
+  }
 
   // A text as words, and the concepts and conversions that stand in it, each with the words that it covers.
-  const heads = new Map(); // the concepts that begin with a word
-  for (const [number, group] of groups.entries()) for (const phrase of group) heads.set(phrase[0], [...heads.get(phrase[0]) ?? [], [number, phrase]]);
   function understood(text) {
-    const { list, conversions } = read(text, kinds);
-    const signs = conversions.map(({ way, start, end }) => ({ term: `§${way[0]}>${way[1]}`, back: `§${way[1]}>${way[0]}`, start, end }));
-    for (const [k, word] of list.entries()) for (const [number, phrase] of heads.get(word) ?? []) {
-      if (phrase.every((one, j) => list[k + j] === one)) signs.push({ term: `§${number}`, start: k, end: k + phrase.length });
+    const { all, list, at } = read(text);
+    const kept = all.flatMap((word, k) => (BETWEEN.has(word) ? [] : [k]));
+    const signs = [], spans = [];
+    for (const [k, first] of kept.entries()) {
+      const some = [...heads.get(`true ${single(all[first])}`) ?? [], ...heads.get(`false ${stem(all[first])}`) ?? []];
+      for (const { of, number, list: name } of some) {
+        if (name.length > 1 && !name.every((one, j) => one === single(all[kept[k + j]] ?? ""))) continue;
+        const last = kept[k + name.length - 1];
+        const start = at.findIndex((place) => place >= first), end = at.filter((place) => place <= last).length;
+        if (start < 0 || end <= start) continue;
+        if (of === "words") signs.push({ term: `§${number}`, start, end });
+        else spans.push({ number, start, end, first, last });
+      }
     }
-    return { list, signs };
+    // Which name of several words each word belongs to: the longest.
+    const names = list.map((_, k) => signs.filter(({ start, end }) => end - start > 1 && start <= k && k < end)
+      .reduce((best, sign) => (best && best.end - best.start >= sign.end - sign.start ? best : sign), null)?.term);
+    spans.sort((one, other) => one.first - other.first || other.last - one.last);
+    for (let k = 0; k < spans.length; k += 1) while (spans[k + 1]?.first <= spans[k].last) spans.splice(k + 1, 1);
+    for (const [k, other] of spans.entries()) if (k) {
+      const one = spans[k - 1];
+      const amid = all.slice(one.last + 1, other.first).filter((word) => !AMID.has(word) && !isWeak(stem(word)));
+      if (one.number === other.number || amid.length !== 1) continue;
+      const there = `§${one.number}>${other.number}`, back = `§${other.number}>${one.number}`;
+      const [term, its] = /^(?:to|into|2|as|->|=>|→)$/.test(amid[0]) ? [there, back] : amid[0] === "from" ? [back, there] : [];
+      if (term) signs.push({ term, back: its, start: one.start, end: other.end });
+    }
+    return { all, list, signs, names };
   }
 
   // Each title and each phrase is a document, and so is each text.
-  const documents = [];
-  for (const [id, entry] of entries.entries()) {
-    entry.page ??= 0;
-    const add = (text, share = 1) => documents.push({ entry: id, share, ...understood(text) });
-    entry.title ??= `Equation ${entry.number}: ${entries[id - 1].kind === "equation" ? entries[id - 1].of : entries[id - 1].title}`;
-    if (entry.kind === "equation") entry.of = entry.title.slice(entry.title.indexOf(": ") + 2);
-    add(entry.title);
-    if (entry.number) documents.push({ entry: id, share: 1, alone: true, ...understood(/^[A-Z]/.test(entry.number) ? entry.number : `${entry.kind === "page" ? "chapter" : entry.kind} ${entry.number}`) });
-    for (const phrase of entry.asked ?? []) add(phrase, 0.98);
-    if (entry.about) documents.push({ entry: id, within: ABOUT, ...understood(entry.about) });
-    if (entry.anchor && pages[entry.page][2]) documents.push({ entry: id, within: CHAPTER, ...understood(pages[entry.page][1]) });
-    if (more.words?.[id]) documents.push({ entry: id, within: TEXT, list: words(more.words[id]), signs: [] });
-  }
-  const spread = new Map(), known = new Set(); // in how many entries each word or concept stands
-  for (const [id, { entry, list, signs, within }] of documents.entries()) {
-    documents[id].id = id;
-    for (const word of list) known.add(word);
-    if (within === CHAPTER) continue;
-    for (const word of [...list, ...signs.map(({ term }) => term)]) {
-      if (!spread.has(word)) spread.set(word, new Set());
-      spread.get(word).add(entry);
+  const documents = [], having = new Map(), spread = new Map(), forms = new Set();
+  const add = (entry, text, { within, ...more }) => {
+    const one = { entry, share: 1, within, ...more, ...within === "text" ? { list: words(text), signs: [] } : understood(text) };
+    for (const word of one.all ?? []) forms.add(word);
+    for (const term of new Set([...one.list, ...one.signs.map((sign) => sign.term)])) {
+      if (!having.has(term)) having.set(term, []), spread.set(term, new Set());
+      having.get(term).push(one);
+      if (within !== "chapter") spread.get(term).add(entry);
     }
-  }
-  const rarity = (term) => Math.log(1 + entries.length / (1 + (spread.get(term)?.size ?? 0)));
-  const worth = (word, signs = [], k = -1) => {
-    const concepts = signs.filter(({ term, start, end }) => !term.includes(">") && start === k && end === k + 1).map(({ term }) => rarity(term));
-    return Math.min(rarity(word), ...concepts) * (isWeak(word) ? OF_WEAK : 1);
+    documents.push(one);
   };
-  const index = new MiniSearch({ fields: ["words"], tokenize: (text) => text.split(" ").filter(Boolean), processTerm: (term) => term });
-  index.addAll(documents.map(({ id, list, signs }) => ({ id, words: [...list, ...signs.map(({ term }) => term)].join(" ") })));
-  for (const one of documents) {
-    one.worths = one.list.map((word, k) => worth(word, one.signs, k));
-    one.worth = one.worths.reduce((sum, one) => sum + one, 0);
+  for (const [id, { kind, page, anchor, number, title, about, asked = [] }] of entries.entries()) {
+    add(id, title, {});
+    if (number) add(id, /^[A-Z]/.test(number) ? number : `${kind === "page" ? "chapter" : kind} ${number}`, { alone: true });
+    for (const phrase of asked) add(id, phrase, { share: PHRASE });
+    if (about) add(id, about, { within: "about" });
+    if (anchor && pages[page][2]) add(id, pages[page][1], { within: "chapter" });
+    if (more.words?.[id]) add(id, more.words[id], { within: "text" });
   }
+  const ofSubject = new Set(["words", "conversions"].flatMap((of) => (synonyms[of] ?? []).flat().flatMap(words)));
+  for (const { kind, title } of entries) if (kind === "term" || kind === "function") words(title).forEach((word) => ofSubject.add(word));
+  const size = (term) => spread.get(term)?.size ?? 0; // in how many entries it stands
+  const rarity = (term) => Math.log(1 + entries.length / (1 + size(term)));
+  const worths = ({ list, signs }) => list.map((word, k) => {
+    const same = signs.filter((sign) => !isWay(sign) && sign.start === k && sign.end === k + 1);
+    return Math.min(rarity(word), ...same.map((sign) => rarity(sign.term)))
+      * (isWeak(word) ? OF_WEAK : ofSubject.has(word) || /\d/.test(word) ? 1 : OF_OTHERS);
+  });
+  const sum = (list) => list.reduce((all, one) => all + one, 0);
+  for (const one of documents) if (!one.within) one.worths = worths(one), one.worth = sum(one.worths);
   const formulas = (more.tex ?? []).map(([id, tex]) => ({ id, signs: pairs(signs(tex)) }));
 
-  // Words that were written together, or apart, as the book has them.
-  function joined(list) {
-    const found = [];
-    for (let k = 0; k < list.length; k += 1) {
-      const [one, other] = [list[k], list[k + 1]];
-      if (other && !(known.has(one) && known.has(other)) && known.has(stem(one + other))) {
-        found.push(one + other), k += 1;
-        continue;
-      }
-      let cut = null;
-      if (!known.has(one)) for (let j = 3; j <= one.length - 3 && !cut; j += 1) {
-        const parts = [stem(one.slice(0, j)), stem(one.slice(j))];
-        if (parts.every((part) => known.has(part) && (spread.get(part)?.size ?? 0) > 1)) cut = parts;
-      }
-      found.push(...cut ?? [one]);
+  // A question in the words of the book: written together or apart as there, and without slips. ``guessed`` are words
+  // that may have been slips, or others that the book does not have.
+  function mended(text, goesOn) {
+    const given = read(text.replace(/([a-z])(?=[A-Z][a-z])/g, "$1 ")).all, found = [], guessed = new Set();
+    const isKnown = (word) => forms.has(word) || size(stem(word)) > 2;
+    const widest = (list) => list.reduce((best, word) => (size(stem(word)) > size(stem(best)) ? word : best));
+    for (let k = 0; k < given.length; k += 1) {
+      const [one, next] = [given[k], given[k + 1]];
+      const put = () => {
+        if (next && ![one, next].some(isLeftOut) && ![one, next].every(isKnown) && isKnown(one + next)) return k += 1, [one + next];
+        const longer = one.length > 2 ? [...forms].filter((form) => form.startsWith(one)) : [];
+        if (goesOn && !next && longer.length) { // as it makes a name with what stands before, or else the most frequent
+          return [longer.find((form) => understood([...found, form].join(" ")).names.at(-1)) ?? (forms.has(one) ? one : widest(longer))];
+        }
+        if (isKnown(one) || one.length < 4 || isLeftOut(one) || longer.length) return [one];
+        const letters = /^([a-z]{3,})\d\w*$/.exec(one)?.[1]; // Vector3
+        if (letters) return [letters];
+        const cut = [...one].map((_, j) => [one.slice(0, j), one.slice(j)])
+          .find((parts) => parts.every((part) => part.length > 2 && forms.has(part)));
+        if (cut) return cut;
+        for (let most = 1; most <= (one.length > 6 ? 2 : 1); most += 1) {
+          const like = [...forms].filter((form) => Math.abs(form.length - one.length) <= most && slips(one, form) <= most);
+          if (like.length) return guessed.add(stem(widest(like))), [widest(like)];
+        }
+        return [one];
+      };
+      found.push(...put());
     }
+    return { text: found.join(" "), last: given.at(-1), guessed };
+  }
+
+  // The terms of the book that a word of a question stands for, and how like it they are: what was ``typed`` may go on.
+  function meant(word, typed, goesOn) {
+    const found = new Map(), whole = having.has(typed) || having.has(stem(typed));
+    if (typed.length > 2 && (goesOn || !whole)) {
+      for (const term of having.keys()) if (term.startsWith(typed)) found.set(term, whole ? 0.6 : 0.92 - 0.02 * (term.length - typed.length));
+    }
+    if (having.has(word)) found.set(word, typed === word || stem(typed) === word ? 1 : 0.95);
     return found;
   }
 
-  // The documents that have a word, or one like it: [document, which of its words, how like].
-  function having(word, isLast) {
-    const exact = known.has(word);
-    const found = index.search(word, {
-      prefix: word.length > 2 && (isLast || !exact) && word[0] !== "§",
-      fuzzy: exact || word.length < 4 || /\d/.test(word) ? false : word.length > 6 ? 2 : 1,
-    });
-    return found.map(({ id, terms }) => {
-      let like = 0, its = null;
-      for (const term of terms) {
-        const now = term === word ? 1 : term[0] === "§" ? 0 : term.startsWith(word) ? (exact ? 0.6 : 0.92 - 0.02 * (term.length - word.length)) : 0.95 - 0.15 * slips(word, term) - (term[0] === word[0] ? 0 : 0.1);
-        if (now > like) [like, its] = [now, term];
-      }
-      return [documents[id], its, like];
-    });
-  }
-
-  function byWords(text, ending) {
-    let { list, signs } = understood(text);
-    const put = joined(list);
-    if (put.length !== list.length || put.some((word, k) => word !== list[k])) ({ list, signs } = understood(put.join(" ")));
-    if (!list.length) return [];
-    const worths = list.map((word, k) => worth(word, signs, k));
-    const whole = worths.reduce((sum, one) => sum + one, 0);
+  function byWords(text, goesOn) {
+    const put = mended(text, goesOn), asked = understood(put.text), { list, signs } = asked;
+    const weights = worths(asked).map((worth, k) => (put.guessed.has(list[k]) ? OF_GUESSED : 1) * worth), whole = sum(weights);
+    const answered = (likes) => (sum(likes.map((like, k) => weights[k] * like)) / whole) ** POWER;
     const states = new Map();
     const state = (one) => {
-      if (!states.has(one)) states.set(one, { asked: new Float64Array(list.length), own: new Float64Array(one.list.length), back: false });
+      if (!states.has(one)) states.set(one, { likes: list.map(() => 0), own: one.list.map(() => 0), back: false });
       return states.get(one);
     };
-    for (const [k, word] of list.entries()) for (const [one, its, like] of having(word, ending && k === list.length - 1)) {
-      const { asked, own } = state(one);
-      asked[k] = Math.max(asked[k], like);
-      for (const [j, term] of one.list.entries()) if (term === its) own[j] = Math.max(own[j], like);
-    }
-    for (const { term, back, start, end } of signs) {
-      const like = term.includes(">") ? 1 : SYNONYM;
-      for (const [one] of having(term)) {
-        const { asked, own } = state(one);
-        for (let k = start; k < end; k += 1) asked[k] = Math.max(asked[k], like);
-        for (const sign of one.signs) if (sign.term === term) for (let j = sign.start; j < sign.end; j += 1) own[j] = Math.max(own[j], like);
+    const raise = (likes, k, like) => { likes[k] = Math.max(likes[k], like); };
+    for (const [k, word] of list.entries()) {
+      const isLast = goesOn && k === list.length - 1;
+      for (const [term, like] of meant(word, isLast ? put.last : word, isLast)) for (const one of having.get(term)) {
+        const { likes, own } = state(one);
+        if (one.within) raise(likes, k, like);
+        else for (const [j, mine] of one.list.entries()) if (mine === term) {
+          const now = like * (one.names[j] === asked.names[k] || isLast ? 1 : APART);
+          raise(likes, k, now), raise(own, j, now);
+        }
       }
-      if (back) for (const [one] of having(back)) state(one).back = !one.signs.some((sign) => sign.term === term);
     }
-    const within = new Map(); // what the text of an entry adds
-    for (const [one, { asked }] of states) if (one.within) {
-      if (!within.has(one.entry)) within.set(one.entry, new Float64Array(list.length));
-      const sum = within.get(one.entry);
-      for (const [k, like] of asked.entries()) sum[k] = Math.max(sum[k], like * one.within);
-    }
-    const best = new Map(), all = new Map(), there = list.join(" ");
-    const ways = new Set(signs.map(({ term }) => term).filter((term) => term.includes(">"))), asksWay = ways.size > 0;
-    for (const [one, { asked, own, back }] of states) {
-      if (one.within) continue;
-      const beside = one.alone ? null : within.get(one.entry);
-      let answered = 0, used = 0;
-      for (const [k, like] of asked.entries()) answered += worths[k] * Math.max(like, beside?.[k] ?? 0);
-      for (const [j, like] of own.entries()) used += one.worths[j] * like;
-      if (!one.alone) {
-        if (!all.has(one.entry)) all.set(one.entry, { asked: new Float64Array(list.length), used: 0 });
-        const its = all.get(one.entry);
-        for (const [k, like] of asked.entries()) its.asked[k] = Math.max(its.asked[k], like * one.share, beside?.[k] ?? 0);
-        its.used = Math.max(its.used, used / one.worth * answered / whole);
+    for (const sign of signs) {
+      const like = isWay(sign) ? 1 : SYNONYM;
+      for (const one of having.get(sign.term) ?? []) {
+        const { likes, own } = state(one);
+        for (let k = sign.start; k < sign.end; k += 1) raise(likes, k, like);
+        for (const its of one.signs) if (its.term === sign.term) for (let j = its.start; j < its.end; j += 1) raise(own, j, like);
       }
-      const score = (answered / whole) ** 1.5 * (0.5 + 0.5 * used / one.worth) * one.share * (one.list.join(" ") === there ? SAME : 1)
-        * (!asksWay ? 1 : back ? OTHER_WAY : one.signs.some(({ term }) => ways.has(term)) ? 1 : NO_WAY);
-      best.set(one.entry, Math.max(best.get(one.entry) ?? 0, score));
+      if (sign.back) for (const one of having.get(sign.back) ?? []) state(one).back = !one.signs.some(({ term }) => term === sign.term);
     }
-    for (const [id, { asked, used }] of all) { // what no one phrase of a place answers, all of them may
-      const answered = asked.reduce((sum, like, k) => sum + worths[k] * like, 0);
-      best.set(id, Math.max(best.get(id) ?? 0, (answered / whole) ** 1.5 * (0.5 + 0.5 * used)));
+    const beside = new Map(); // what the text of an entry adds
+    for (const [one, { likes }] of states) if (one.within) {
+      if (!beside.has(one.entry)) beside.set(one.entry, list.map(() => 0));
+      for (const [k, like] of likes.entries()) raise(beside.get(one.entry), k, like * WITHIN[one.within]);
     }
-    for (const [id, sum] of within) {
-      const answered = sum.reduce((all, like, k) => all + worths[k] * like, 0);
-      best.set(id, Math.max(best.get(id) ?? 0, (answered / whole) ** 1.5 * 0.5));
+    const best = new Map(), all = new Map(), ways = new Set(signs.filter(isWay).map(({ term }) => term));
+    const take = (id, score) => best.set(id, Math.max(best.get(id) ?? 0, score));
+    for (const [one, { likes, own, back }] of states) if (!one.within) {
+      const used = sum(own.map((like, j) => one.worths[j] * like)) / one.worth;
+      const with_ = one.alone ? likes : likes.map((like, k) => Math.max(like, beside.get(one.entry)?.[k] ?? 0));
+      const way = !ways.size || one.signs.some(({ term }) => ways.has(term)) ? 1 : NO_WAY;
+      const same = one.list.join(" ") === list.join(" ") ? SAME : 1;
+      take(one.entry, answered(with_) * (1 - OWN + OWN * used) * one.share * same * (back ? OTHER_WAY : way));
+      if (one.alone) continue;
+      if (!all.has(one.entry)) all.set(one.entry, { likes: list.map(() => 0), used: 0, way: NO_WAY });
+      const its = all.get(one.entry);
+      for (const [k, like] of with_.entries()) raise(its.likes, k, Math.max(likes[k] * one.share, beside.get(one.entry)?.[k] ?? 0));
+      its.used = Math.max(its.used, used * sum(with_.map((like, k) => weights[k] * like)) / whole);
+      its.way = Math.max(its.way, way);
     }
+    // What no one phrase of a place answers, all of them may; and its text, where none does.
+    for (const [id, { likes, used, way }] of all) take(id, answered(likes) * (1 - OWN + OWN * used) * way);
+    for (const [id, likes] of beside) take(id, answered(likes) * (1 - OWN));
     return [...best].map(([id, score]) => {
-      const { kind, number, weight = 1 } = entries[id];
-      return [id, score * (KINDS[kind] ?? 1) * weight * (number || !READ[kind] ? 1 : 0.93)];
+      const { kind, number, page, asked: phrases } = entries[id], weight = pages[page][3];
+      return [id, score * KINDS[kind] * (list.length > 2 ? IN_LONG[kind] ?? 1 : 1)
+        * (phrases ? Math.max(weight, ASKED) : weight) * (number || !READ[kind] ? 1 : NO_CHAPTER)];
     });
   }
 

@@ -1,20 +1,39 @@
 // The words of a text as the search compares them: without accents, capitals, endings and what says nothing.
 
 // Without these a question is the same; "to" and "from" are read before they go, for they tell which way to convert.
-const LEFT_OUT = new Set(("a an and are as at be been being both but by can could did do does doing for from gives give get gets getting had has have"
-  + " how i if in into is it its let like lets make makes me my need of off on one or our please s shall should so some such t than that"
-  + " the their them then there these they this those to too try trying up us use used uses using via vs versus want was we what whats when where which"
-  + " while who why will with would you your am any about again between just does don not no isn only").split(" "));
-// These say what is wanted, and little about where it stands.
-const WEAK = new Set();
-const WEAK_WORDS = "actual actually algorithm approach best better book calculate calculation chapter code compare compute computing convert conversion converting correct correctly define"
-  + " definition derive describe description difference different example explain explained explanation express find finding formula formulas function good got"
-  + " help implement implementation intuition intuitive know library meaning method obtain perform possible problem program programming proof prove python question"
-  + " represent representation result right section show simple simply solve theorem tutorial understand value way well without work wrong write equation given not doesn many several new operator"
-  + " many two three several new first second"
-  // What titles of questions in forums have besides.
-  + " add allow always behave bug case cause change clarify consider create detect determine doc documentation enhancement ensure error exist expect extract fail feature generate give handle happen improve inconsistent incorrect incorrectly interpret invalid issue make may might multiple note obtain offer only output please produce proper properly provide question reach read report request return say seem suggest suggestion support suspicion take tell thing understand unexpected version weird";
-const IRREGULAR = { matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre", ninety: "90" };
+const LEFT_OUT = new Set(("a about again am an and any are as at be been being between both but by can correctly could did do does"
+  + " doing don for from get gets getting give gives had has have how i if in into is isn it its just let lets"
+  + " like make makes me my need no not of off on one only or our please properly s shall should so some such t"
+  + " than that the their them then there these they this those to too try trying up us use used uses using versus"
+  + " via vs want was we what whats when where which while who why will with would you your").split(" "));
+export const isLeftOut = (word) => LEFT_OUT.has(word);
+// These say what is wanted, and little about where it stands: words of questions and of complaints.
+const WEAK_WORDS = "3d able access accurate action actual actually add additional against algorithm allow always appear"
+  + " application apply approach around ask assume available away back bad basic basics behave behavior behaviour"
+  + " best better book broken bug build calculate calculation call case cause certain change chapter clarify clear"
+  + " clearly code com come common compare completely compute computing concept confused confusing confusion"
+  + " consider consistent construct constructing conversion convert converting correct create custom data deal"
+  + " default define definition derive describe description desired detect determine difference different directly"
+  + " discussion display doc documentation doesn easiest easily easy effect efficient element enhancement enough"
+  + " ensure equation error especially etc exactly example exist expect explain explained explanation express"
+  + " extract face fail far fast feature find finding fine first follow format formula formulas forum function"
+  + " general generate given good got hand handle happen hello help hi hope idea implement implementation"
+  + " implementing important improve include including inconsistent incorrect incorrectly input instead"
+  + " instruction interested interpret intuition intuitive invalid involve issue job keep kind know known language"
+  + " large latest library line link list logic lot main major many math matter may meaning method might minimal"
+  + " missing model modify module move multiple necessary new next nice note nothing object obtain obviously offer"
+  + " ok old operator option original other others output overview own part particular people perfect perfectly"
+  + " perform plain poorly possible precise previous private problem process produce program programming proof"
+  + " proper prove provide purpose python question quick reach read really reason recommend recommended refer"
+  + " reference regarding relate related relationship rely report represent representation request require result"
+  + " return right same save say script second section seem sense set setup several show similar simple simplest"
+  + " simply simulate simulation simultaneous situation small software solution solve somehow someone something"
+  + " sometimes somewhere specific specify standard still stop strange structure stuff stupid suggest suggestion"
+  + " support sure suspicion take task tell terms test thank thanks theorem thing though thought three time tip"
+  + " tool topic tried trouble tutorial two type unable unclear understand unexpected unexplainable unknown"
+  + " unusual update useful user usual usually value various version visual way weird well whether whole without"
+  + " wonder word work working worse write wrong yet";
+const IRREGULAR = new Map(Object.entries({ matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre", ninety: "90" }));
 const ENDINGS = /(?:ati(?:ons?|ves?|ng|onal)|at(?:es?|ed|ors?)|i(?:ng|ngs|es|ed)|ed|es|ly|s|e|y)$/;
 const GREEK = { α: "alpha", β: "beta", γ: "gamma", δ: "delta", θ: "theta", λ: "lambda", π: "pi", σ: "sigma", φ: "phi", ϕ: "phi", ψ: "psi", ω: "omega", Ω: "omega" };
 // What words are told apart by: names of the software whole, numbers of sections whole, arrows.
@@ -24,46 +43,26 @@ export const plain = (text) => text.replace(/°/g, " degrees ").replace(/[α-ω�
 
 // The stem of a word, about: endings of English, as long as three letters stay.
 export function stem(word) {
-  if (IRREGULAR[word]) return IRREGULAR[word];
+  if (IRREGULAR.has(word)) return IRREGULAR.get(word);
   if (/\d/.test(word)) return word;
   const end = ENDINGS.exec(word);
   const cut = end?.index >= 3 && !word.endsWith("ss") ? word.slice(0, end.index) : word;
   return cut.replace(/([^aeiou])\1$/, "$1").replace(/iz$/, "is").replace(/i$/, "");
 }
-for (const word of WEAK_WORDS.split(" ")) WEAK.add(stem(word));
+const WEAK = new Set(WEAK_WORDS.split(" ").map(stem));
 export const isWeak = (word) => word.length < 2 || WEAK.has(word);
 
 // All words in their order; of a name such as dcm_from_quaternion or dcmFromQuaternion those that it is made of.
 function told(text) {
   const apart = text.replace(/\b(what|does|do)\b(.*)\bmean\b/i, "$1$2").replace(/\bmeans?\s*\??$/i, "").replace(/([a-z]{2})([A-Z][a-z]{2,})/g, "$1 $2").replace(/\b([a-z]{3,})2([a-z]{3,})\b/gi, "$1 to $2")
     .replace(/\b([xyz])-([xyz])-([xyz])\b/gi, "$1$2$3").replace(/\b([123])-([123])-([123])\b/g, "$1$2$3");
-  return (plain(apart).replace(/[’'](?:s|t|re|m)\b/g, "").match(TOKEN) ?? []).flatMap((word) => (word.includes("_") ? word.split("_") : [word]));
+  return (plain(apart).replace(/(?:n[’']t|[’'](?:s|re|m|ve|d|ll))\b/g, "").match(TOKEN) ?? []).flatMap((word) => (word.includes("_") ? word.split("_") : [word]));
 }
 
-// The words that count, stemmed.
-export const words = (text) => told(text).filter((word) => !LEFT_OUT.has(word) && !/^[-=→]/.test(word)).map(stem);
-
-// The words that count, and the conversion that is asked for: pairs of numbers of ``kinds``, the lists of what can be converted.
-export function read(text, kinds = []) {
-  const all = told(text);
-  const found = all.map((word) => (LEFT_OUT.has(word) || /^[-=→]/.test(word) ? null : stem(word)));
-  const places = found.flatMap((word, k) => (word === null ? [] : [k]));
-  const list = places.map((k) => found[k]);
-  const spans = [];
-  for (let k = 0; k < list.length; k += 1) {
-    let best = null;
-    for (const [kind, phrases] of kinds.entries()) for (const phrase of phrases) {
-      if (phrase.length > (best?.length ?? 0) && phrase.every((word, j) => list[k + j] === word)) best = { kind, start: k, length: phrase.length };
-    }
-    if (best) spans.push(best), k += best.length - 1;
-  }
-  const conversions = [];
-  for (let k = 0; k + 1 < spans.length; k += 1) {
-    const [one, other] = [spans[k], spans[k + 1]];
-    const amid = all.slice(places[one.start + one.length - 1] + 1, places[other.start]).filter((word) => !["a", "an", "the", "into", "given", "my", "and"].includes(word) || word === "into");
-    if (one.kind === other.kind || amid.length !== 1) continue;
-    const way = /^(?:to|into|2|as|->|=>|→)$/.test(amid[0]) ? [one.kind, other.kind] : amid[0] === "from" ? [other.kind, one.kind] : null;
-    if (way) conversions.push({ way, start: one.start, end: other.start + other.length });
-  }
-  return { list, conversions };
+// All words, and of those that count the stems and where they stand among all.
+export function read(text) {
+  const all = told(text), list = [], at = [];
+  for (const [k, word] of all.entries()) if (!LEFT_OUT.has(word) && !/^[-=→]/.test(word)) list.push(stem(word)), at.push(k);
+  return { all, list, at };
 }
+export const words = (text) => read(text).list;
