@@ -1,7 +1,10 @@
 """What the tests of pages share, where they are run by themselves: a small book to be in, and a browser."""
 
 import os
+import shutil
 from pathlib import Path
+
+import pytest
 
 PROJECT = Path(__file__).resolve().parents[1]
 
@@ -17,3 +20,21 @@ def pytest_collection(session):
     # Programs for pages are in the folder of a book.
     if session.config.rootpath == PROJECT:
         os.chdir(PROJECT / "tests" / "small-book")
+
+
+@pytest.fixture(scope="session")
+def take_compiled_wheels():
+    """``take_compiled_wheels(folder)``: a book there finds the wheels that the book around it has byte-compiled.
+
+    That takes some twenty seconds for each book, and gives the same bytes. By themselves, these tests compile them.
+    """
+
+    def take(folder):
+        from notebook_pages import paths
+
+        for wheel in (paths.FETCHED / "_build" / "runtime").glob("*/*.whl"):
+            place = folder / "_build" / "runtime" / wheel.parent.name
+            place.mkdir(parents=True)
+            shutil.copy(wheel, place)
+
+    return take

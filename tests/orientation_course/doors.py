@@ -69,8 +69,8 @@ judge = checking.judge
 builtins.tell = lambda name, value: told.update({name: to_plain(value)})
 
 
-def judge_and_tell(name, question, plain):
-    reply = judge(name, question, plain)
+def judge_and_tell(name, *asked):
+    reply = judge(name, *asked)
     told[name] = [reply.outcome, reply.note]
     return reply
 

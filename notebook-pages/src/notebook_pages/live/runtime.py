@@ -97,13 +97,21 @@ def one_at_a_time():
         yield
 
 
+def our_packages_in(wheel):
+    """Those whose sources stay: of a wheel without them, any book's compiled form is the same."""
+    with zipfile.ZipFile(wheel) as file:
+        held = {name.partition("/")[0] for name in file.namelist()}
+    return [package for package in PACKAGES if package in held]
+
+
 @one_at_a_time()
 def compile_wheels(wheels):
     """Return the compiled form of each of ``wheels``, made now or kept from before."""
-    ours = "\n".join(PACKAGES)
-    program = ours.encode() + b"".join(path.read_bytes() for path in COMPILER)
-    program += (PYODIDE / "package.json").read_bytes()
-    compiled = {wheel: COMPILED / sha256(program + wheel.read_bytes())[:12] / wheel.name for wheel in wheels}
+    program = b"".join(path.read_bytes() for path in (*COMPILER, PYODIDE / "package.json"))
+    compiled = {}
+    for wheel in wheels:
+        digest = sha256(program + "\n".join(our_packages_in(wheel)).encode() + wheel.read_bytes())
+        compiled[wheel] = COMPILED / digest[:12] / wheel.name
     missing = {wheel: target for wheel, target in compiled.items() if not target.exists()}
     if missing:
         with tempfile.TemporaryDirectory() as folder:
@@ -111,7 +119,7 @@ def compile_wheels(wheels):
                 Path(folder, name).mkdir()
             for wheel in missing:
                 shutil.copy(wheel, Path(folder, "in"))
-            Path(folder, "ours.txt").write_text(ours, "utf8")
+            Path(folder, "ours.txt").write_text("\n".join(PACKAGES), "utf8")
             command = [NODE, COMPILER[0], PYODIDE / "pyodide.mjs", COMPILER[1], folder]
             subprocess.run(command, check=True)
             for wheel, target in missing.items():

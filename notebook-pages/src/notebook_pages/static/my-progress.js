@@ -5,7 +5,9 @@
   const fill = () => {
     for (const row of table.tBodies[0].rows) {
       const { read, done, checked, answers } = record(row.dataset.page);
-      const all = { read, done, checked: [...checked, ...record(row.dataset.companion).checked], predictions: Object.keys(answers), recap: Object.keys(answers) };
+      // What was right with other numbers than the reader's is not counted; it stays known.
+      const mine = [...checked, ...record(row.dataset.companion).checked].filter((name) => bookStore.standing(name)?.whose === undefined);
+      const all = { read, done, checked: mine, predictions: Object.keys(answers), recap: Object.keys(answers) };
       for (const cell of row.querySelectorAll("td")) {
         const names = cell.dataset.names.split(" ").filter(Boolean);
         const reached = names.filter((name) => all[cell.dataset.kind].includes(name));
