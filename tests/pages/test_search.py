@@ -1,7 +1,7 @@
 """The search: what readers type leads to the place that answers, from the third letter on and by the keyboard.
 
 The queries in ``queries`` were written down, with the places that answer, before the search was first run on them;
-those in the files called held-out were never looked at while it was tuned.
+those in the files called held-out were never looked at while it was tuned, and asked-held-out was gathered after that.
 """
 
 import json
@@ -20,12 +20,13 @@ from notebook_pages.search import SCRIPT, WORDS
 QUERIES = Path(__file__).with_name("queries")
 #: What was reached: the share of right places at the first rank, and among the first three.
 REACHED = {
-    "to-tune-by": (0.96, 0.99),
-    "forums-to-tune-by": (0.9, 0.98),
-    "asked-to-tune-by": (0.86, 0.94),
+    "to-tune-by": (0.94, 0.97),
+    "forums-to-tune-by": (0.9, 0.97),
+    "asked-to-tune-by": (0.85, 0.95),
     "held-out": (0.8, 0.96),
     "held-out-too": (0.9, 0.98),
     "forums-held-out": (0.7, 0.8),
+    "asked-held-out": (0.65, 0.85),
 }
 FIRST_ANSWER = 150_000  # bytes before it
 CHAPTER = "chapters/gimbal-lock.html"

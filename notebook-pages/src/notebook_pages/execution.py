@@ -14,7 +14,7 @@ from jupyter_cache import get_cache
 from jupyter_cache.executors.basic import ExecutionWorkerLocalMProc, JupyterExecutorLocalMproc
 from jupyter_cache.executors.utils import single_nb_execution
 
-from .paths import FETCHED, WEBSITE, fingerprint
+from .paths import WEBSITE, fingerprint
 from .used import fingerprint_of_used
 from .warm_kernels import WarmAsyncKernelManager
 
@@ -27,7 +27,7 @@ NOTES = "made-with.json"
 def name_cache(app, config):
     config.nb_execution_cache_path = str(Path(app.outdir).parent / "jupyter_cache")
     # Pages are read again when the code that makes them changes.
-    config.website_fingerprint = fingerprint(WEBSITE, FETCHED / "package-lock.json")
+    config.website_fingerprint = fingerprint(WEBSITE)
 
 
 def throw_away_old_runs(paths, folder):

@@ -39,16 +39,16 @@ function slips(one, other) {
 
 // What a reader looks for is rather one than another of these, where both answer as well.
 const KINDS = { page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8 };
-const IN_LONG = { term: 0.95 }; // a question of more than two words asks for more than a term
+const IN_LONG = { term: 0.85 }; // a question of more than two words asks for more than a term
 const READ = { page: true, section: true }; // those of the chapters have numbers
 const NO_CHAPTER = 0.93;
 const ASKED = 0.95; // what a place counts at least that readers ask for in words of their own
-const WITHIN = { chapter: 0.45, about: 0.45, text: 0.4 }; // what a word counts that stands not in a phrase, but there
-const PHRASE = 0.98, SYNONYM = 0.9, SAME = 1.12; // for a phrase, a synonym, the very words
+const WITHIN = { chapter: 0.45, about: 0.45, text: 0.25 }; // what a word counts that stands not in a phrase, but there
+const PHRASE = 0.98, SYNONYM = 0.8, SAME = 1.12; // for a phrase, a synonym, the very words
 const OF_WEAK = 0.4, OF_OTHERS = 0.6, OF_GUESSED = 0.7; // for words that say little, are not the subject's, may be slips
 const APART = 0.7; // for a word of a name of several words, without the others
 const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
-const OTHER_WAY = 0.7, NO_WAY = 0.88; // where a conversion is asked for: the one back, or none
+const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 
@@ -56,7 +56,8 @@ const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 const single = (word) => (word.length < 4 || word.endsWith("ss") ? word
   : word.replace(/(?<=[sxz]|ch|sh)es$|s$/, "").replace(/([iy])z(?=e|ed|ing|ation)/, "$1s"));
 const BETWEEN = new Set(["and", "the"]);
-const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles", "values", "of", "in", "python"]);
+const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles", "values", "of", "in", "rotation",
+  "rotations", "orientation"]);
 const isWay = (sign) => sign.term.includes(">");
 
 // ``more`` holds the words of each entry's text, the TeX of the equations, these and the figures, once they are there.
@@ -71,8 +72,9 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     for (const name of group) {
       const list = read(name).all.filter((word) => !BETWEEN.has(word)).map(single);
       if (list.join("").length < 2) continue;
-      if (list.length === 1) list[0] = stem(list[0]);
-      const head = `${list.length > 1} ${list[0]}`;
+      const exact = list.length > 1 || of === "conversions"; // "rotation" is no "rot"
+      if (!exact) list[0] = stem(list[0]);
+      const head = `${exact} ${list[0]}`;
       heads.set(head, [...heads.get(head) ?? [], { of, number, list }]);
     }
   }
