@@ -146,7 +146,7 @@ def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, si
         page.keyboard.type("er")
         page.locator(FOUND).first.wait_for()
         assert page.locator(FOUND).first.bounding_box()["width"] <= size["width"]
-        assert violations(page) == []
+        assert violations(page, "'dialog'") == []  # nothing else can be reached
         page.keyboard.press("ArrowDown")
         page.keyboard.press("ArrowDown")
         second = page.locator(FOUND).nth(1).get_attribute("href")
