@@ -372,6 +372,7 @@ def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):
     assert "rounded too far" in notes and notes <= {"rounded too far", ""}, notes
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_every_mistake_of_the_catalogue_is_named_in_all_twelve_sequences(sequence):
     one = make(
@@ -660,6 +661,7 @@ def test_no_page_can_be_tried_without_the_slow_hash(one):
                     sealing.unseal(page, key)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
     sealed = one.sealed()
@@ -754,7 +756,7 @@ def test_products_of_quaternions_in_the_other_order_are_named():
 
 
 @pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
-@pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.parametrize("count", [3, pytest.param(2, marks=pytest.mark.long), pytest.param(4, marks=pytest.mark.long)])
 def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
     """And not as the transpose with all the other signs, which is the same and which nobody has done."""
     turns = [("z", theta), ("x", alpha), ("y", phi), ("z", theta / 3)][:count]
