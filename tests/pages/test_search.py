@@ -131,6 +131,13 @@ def test_names_slips_and_words_of_programs_are_understood():
         assert place is None or place in places[:3], typed
 
 
+def test_first_sentences_are_those_of_the_text():
+    """No line that only leads elsewhere; degrees as readers know them."""
+    index = json.loads((HTML / SCRIPT).read_text("utf8").partition("=")[2].partition(";\n")[0])
+    about = [row[index["fields"].index("about")] for row in index["entries"] if len(row) > 5]
+    assert not [words for words in about if words.startswith("On the gimbal:") or "∘" in words or "\u2061" in words]
+
+
 def test_little_is_fetched_before_the_first_answer():
     assert (HTML / SCRIPT).stat().st_size <= FIRST_ANSWER
     assert WORDS.name in (HTML / SCRIPT).read_text("utf8")
@@ -146,6 +153,7 @@ def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, si
         page.keyboard.type("er")
         page.locator(FOUND).first.wait_for()
         assert page.locator(FOUND).first.bounding_box()["width"] <= size["width"]
+        assert page.get_by_role("dialog", name="Search").is_visible()
         assert violations(page, "'dialog'") == []  # nothing else can be reached
         page.keyboard.press("ArrowDown")
         page.keyboard.press("ArrowDown")
@@ -153,6 +161,20 @@ def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, si
         assert page.evaluate("document.activeElement.href") == second
         page.keyboard.press("Enter")
         page.wait_for_url(second)
+        assert visit.faults == []
+
+
+def test_pasted_numbers_lead_to_the_workbench_alone(browser, site):
+    with Visit(browser, site, CHAPTER, "light", WIDE) as visit:
+        visit.page.keyboard.press("/")
+        visit.page.locator("dialog input").fill("0.7071 0 0 0.7071")
+        visit.page.locator(FOUND).first.wait_for()
+        assert visit.page.locator(FOUND).count() == 1
+        visit.page.keyboard.press("Enter")
+        visit.page.wait_for_url("**/workbench.html#workbench=*")
+        visit.page.wait_for_function(
+            "[...document.querySelectorAll('textarea')].some((one) => one.value === '0.7071 0 0 0.7071')"
+        )
         assert visit.faults == []
 
 
