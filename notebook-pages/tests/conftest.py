@@ -12,7 +12,13 @@ PROJECT = Path(__file__).resolve().parents[1]
 def pytest_configure(config):
     # Where these are tests of a larger project, that has a book, and a browser for all.
     if config.rootpath == PROJECT:
-        os.environ.setdefault("NOTEBOOK_PAGES_FETCHED", str(PROJECT.parent))
+        places = [Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", PROJECT)), PROJECT.parent]
+        fetched = next((place for place in places if (place / "node_modules" / "katex").is_dir()), None)
+        if fetched is None:
+            raise pytest.UsageError(
+                f"What pages are made with is not in {places[0]}: run `python -m notebook_pages.set_up` in this folder."
+            )
+        os.environ["NOTEBOOK_PAGES_FETCHED"] = str(fetched)
         config.pluginmanager.import_plugin("own_browser")
 
 

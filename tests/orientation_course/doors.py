@@ -119,6 +119,8 @@ def run_in_the_page(cells):
 
 if door == "page":
     sys.path.insert(0, folder)
+elif door == "laptop":
+    import numpy  # once, for all that are forked
 checking.judge = judge_and_tell
 answers = []
 for cells in given:

@@ -1,6 +1,6 @@
 """The runtime folder of the site: Pyodide from npm, wheels from PyPI and our own, and their lock file.
 
-Whatever is fetched is fetched by `make setup`, pinned and hash-checked; here it is byte-compiled and
+Whatever is fetched is fetched by ``notebook_pages.set_up``, pinned and hash-checked; here it is byte-compiled and
 put in place. A wheel is compiled once: the result is kept under its contents' hash.
 """
 
@@ -23,7 +23,7 @@ from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY, fingerprint
 from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
-FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt
+FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"  # where the set-up puts the wheels of wheels.txt
 FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")  # and those of lite/wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"

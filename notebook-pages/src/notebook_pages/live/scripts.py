@@ -9,7 +9,7 @@ from pathlib import Path
 from ..fonts import FOLDER as FONTS_FOLDER
 from ..fonts import __file__ as FONTS_PROGRAM
 from ..fonts import katex_rules
-from ..paths import NODE, NODE_MODULES, REGISTERED, fingerprint, named
+from ..paths import NODE, NODE_MODULES, REGISTERED, WEBSITE, fingerprint, named
 from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
 
@@ -21,7 +21,7 @@ ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 def folder_name():
     """Its scripts have the same names in every version of the book: the folder tells them apart."""
-    sources = filter(None, [JS, MODEL, PYTHON, Path(FONTS_PROGRAM), NODE_MODULES.parent / "package-lock.json"])
+    sources = filter(None, [JS, MODEL, PYTHON, Path(FONTS_PROGRAM), WEBSITE / "package-lock.json"])
     return f"{FOLDER}/scripts-{fingerprint(*sources)}"
 
 
