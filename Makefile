@@ -63,18 +63,12 @@ $(VENV)/ready-%: constraints.txt $(wildcard pyproject.toml */pyproject.toml */*/
 	@$(PIP) $(addprefix --editable ,$(PROJECTS_$*))
 	@touch $@ $(COVERS_$*:%=$(VENV)/ready-%)
 
-node_modules/ready: package-lock.json | $(VENV)/ready-book
-	@echo "Setting up KaTeX, the typefaces and Python for browsers in node_modules ..."
-	@PATH="$(CURDIR)/$(VENV)/bin:$$PATH" npm ci --silent --ignore-scripts --no-audit --no-fund
+node_modules/ready: $(PAGES)/package-lock.json | $(VENV)/ready-book
+	@$(RUN) -m notebook_pages.set_up packages
 	@touch $@
 
 $(VENV)/runtime/ready: $(PAGES)/live/wheels.txt $(PAGES)/lite/wheels.txt | $(VENV)/ready-book
-	@echo "Setting up Python packages for browsers in $(VENV)/runtime ..."
-	@rm -rf $(@D)
-	@for place in live lite; do \
-	  $(RUN) -m pip download --quiet --disable-pip-version-check --no-deps --only-binary=:all: --python-version 3.14 \
-	    --platform any --implementation py --abi none --require-hashes --requirement $(PAGES)/$$place/wheels.txt --dest $(@D)/$$place || exit 1; \
-	done
+	@$(RUN) -m notebook_pages.set_up wheels
 	@touch $@
 
 $(KERNEL_SETTINGS): $(PAGES)/ipython_kernel_config.py

@@ -9,7 +9,7 @@ import time
 import pytest
 from places import REPOSITORY
 
-#: Stands for Python, pip and npm: writes down when it began and ended.
+#: Stands for Python: writes down when it began and ended.
 RECORDER = """#!/bin/sh
 echo "begin $*" >> "$LOG"
 mkdir -p .venv/runtime
@@ -21,9 +21,10 @@ echo "end $*" >> "$LOG"
 @pytest.fixture
 def make(tmp_path):
     """``make(*arguments)``: what the Makefile runs in a folder of its own, each program as a line of text."""
-    for name in ("Makefile", "constraints.txt", "pyproject.toml", "package-lock.json"):
+    for name in ("Makefile", "constraints.txt", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, tmp_path)
     for name in (
+        "notebook-pages/src/notebook_pages/package-lock.json",
         "notebook-pages/src/notebook_pages/live/wheels.txt",
         "notebook-pages/src/notebook_pages/lite/wheels.txt",
         "notebook-pages/src/notebook_pages/ipython_kernel_config.py",
@@ -33,9 +34,8 @@ def make(tmp_path):
     programs = tmp_path / ".venv" / "bin"
     programs.mkdir(parents=True)
     (tmp_path / "node_modules").mkdir()
-    for name in ("python", "npm"):
-        (programs / name).write_text(RECORDER)
-        (programs / name).chmod(0o755)
+    (programs / "python").write_text(RECORDER)
+    (programs / "python").chmod(0o755)
 
     def run(*arguments):
         log = tmp_path / "log"

@@ -81,8 +81,10 @@ class Times:
         self.begin((item.nodeid.partition("::")[0], item.get_closest_marker("long") is not None))
 
     @pytest.hookimpl(tryfirst=True)
-    def pytest_runtest_teardown(self, item):
-        if "browser" in getattr(item, "fixturenames", ()):
+    def pytest_runtest_teardown(self, item, nextitem):
+        if nextitem is None:
+            self.begin(None)  # when the browser ends, all that it has spent is told once more
+        elif "browser" in getattr(item, "fixturenames", ()):
             processor_seconds()  # before the pages are closed
 
     @pytest.hookimpl(tryfirst=True)

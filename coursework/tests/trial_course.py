@@ -1,8 +1,15 @@
 """A course of one notebook for the tests of authoring: its source, and where everything goes."""
 
+from pathlib import Path
+
 import nbformat
 
 from coursework.authoring.course import Course
+
+PROJECT = Path(__file__).resolve().parents[1]
+# Where this project is part of a book, that has the pins of all that is installed.
+_PINS = PROJECT.parent / "constraints.txt"
+PINNED = {"PIP_CONSTRAINT": str(_PINS)} if _PINS.is_file() else {}
 
 
 def made_in(folder, sources=None, exercises=None, sealed=None):

@@ -18,12 +18,11 @@ PAGES = ("index", "levers", "triangles")
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory):
+def built(tmp_path_factory, take_compiled_wheels):
     """The folder of the site."""
-    if not (FETCHED / "node_modules" / "katex").is_dir():
-        pytest.skip(f"there is no node_modules in {FETCHED}: `make setup` brings it")
     book = tmp_path_factory.mktemp("books") / "small"
     shutil.copytree(HERE / "small-book", book)
+    take_compiled_wheels(book)
     environment = os.environ | {"NOTEBOOK_PAGES_FETCHED": str(FETCHED), "NO_COLOR": "1"}
     done = subprocess.run(
         [sys.executable, "-m", "notebook_pages.build"], cwd=book, env=environment, capture_output=True, text=True

@@ -13,8 +13,6 @@ from notebook_pages import pdf, tagged
 from notebook_pages.paths import NODE_MODULES
 
 pikepdf = pytest.importorskip("pikepdf")
-if not (NODE_MODULES / "katex").is_dir():
-    pytest.skip(f"there is no {NODE_MODULES}: `make setup` brings it", allow_module_level=True)
 Name = pikepdf.Name
 
 DRAWING = (

@@ -203,11 +203,13 @@ def own_labels(cells, name):
 
 
 @pytest.fixture(scope="module")
-def faulty_book(tmp_path_factory):
+def faulty_book(tmp_path_factory, take_compiled_wheels):
     """One book with a chapter for each fault: the exit code, and the warnings, each with its lines."""
     names = {file_name(fault): cells for fault, (cells, _) in FAULTS.items()}
     chapters = {name: own_labels(cells, name) for name, cells in names.items()}
-    code, words = build(tmp_path_factory.mktemp("faulty"), chapters | {"good": own_labels(chapter(), "good")})
+    folder = tmp_path_factory.mktemp("faulty")
+    take_compiled_wheels(folder)
+    code, words = build(folder, chapters | {"good": own_labels(chapter(), "good")})
     return code, re.split(r"^(?=\S+?\.(?:ipynb|md)\S*(?: \(cell \d+\))?: )", words, flags=re.MULTILINE)
 
 

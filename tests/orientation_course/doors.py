@@ -69,8 +69,8 @@ judge = checking.judge
 builtins.tell = lambda name, value: told.update({name: to_plain(value)})
 
 
-def judge_and_tell(name, question, plain):
-    reply = judge(name, question, plain)
+def judge_and_tell(name, *asked):
+    reply = judge(name, *asked)
     told[name] = [reply.outcome, reply.note]
     return reply
 
@@ -119,6 +119,8 @@ def run_in_the_page(cells):
 
 if door == "page":
     sys.path.insert(0, folder)
+elif door == "laptop":
+    import numpy  # once, for all that are forked
 checking.judge = judge_and_tell
 answers = []
 for cells in given:

@@ -3,6 +3,7 @@
 import ast
 import inspect
 import re
+from functools import cache
 
 import doors
 import nbformat
@@ -82,6 +83,7 @@ def test_every_authors_solution_is_right_before_the_grader(path):
         assert found.outcome == ("undecided" if by_a_person else "correct"), (name, found)
 
 
+@cache
 def plain_results(door):
     cells = [["from orientation import *", f"tell({call!r}, {call})"] for call in doors.RESULTS]
     return {call: told[call] for call, (told, _) in zip(doors.RESULTS, doors.through(door, cells), strict=True)}

@@ -169,7 +169,7 @@ COMMITTED = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
 needs_solutions = pytest.mark.skipif(not COMMITTED, reason="the solutions are kept elsewhere and are not here")
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", COMMITTED)
 def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     write_to = tmp_path / "sources", tmp_path / "exercises", tmp_path / "sealed"

@@ -29,6 +29,7 @@ def tex_of(matrix):
     return [[sm.latex(entry, fold_func_brackets=True) for entry in row] for row in matrix.tolist()]
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("fixed, build", [("body", dcm_from_body_fixed), ("space", dcm_from_space_fixed)])
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_it_shows_the_factors_their_product_and_what_lock_leaves(sequence, fixed, build):

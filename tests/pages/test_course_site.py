@@ -96,7 +96,7 @@ def test_what_cannot_be_published_is_said(course, tmp_path, monkeypatch):
     with pytest.raises(AuthorError, match="notebook-pages"):
         publish.publish(found, tmp_path / "site")
     monkeypatch.setenv("NOTEBOOK_PAGES_FETCHED", str(tmp_path))
-    with pytest.raises(RuntimeError, match="make setup"):
+    with pytest.raises(RuntimeError, match="notebook_pages.set_up"):
         pages.publish({"format": 1}, tmp_path / "book", tmp_path / "site")
     with pytest.raises(ValueError, match="format 2"):
         pages.publish({"format": 2}, tmp_path / "book", tmp_path / "site")

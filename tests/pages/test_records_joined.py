@@ -26,3 +26,17 @@ def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
     assert joined(before, after) == {**after, "other variants": {"0": before}}
     kept = {**after, "other variants": {"0": before}}
     assert joined(kept, {**after, "answers": ["c"]}) == {**kept, "answers": ["b", "c"]}
+    # Two editions have other numbers under one place; and whose they were is kept.
+    first = {"outcome": "correct", "variant": 3, "numbers": "aa", "whose": "ada"}
+    second = {"outcome": "wrong", "variant": 3, "numbers": "bb", "whose": "ada", "answers": ["d"]}
+    everybodys = {**before, "numbers": "00", "whose": ""}
+    assert joined(first, second) == {**second, "other variants": {"3": first}}
+    assert joined({**everybodys, "other variants": {"3": second}}, first) == {
+        **first,
+        "other variants": {"0": everybodys, "3": second},
+    }
+    assert joined({**first, "other variants": {"3": second}}, {**second, "answers": ["e"]}) == {
+        **second,
+        "answers": ["d", "e"],
+        "other variants": {"3": first},
+    }

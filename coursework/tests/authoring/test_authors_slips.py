@@ -50,6 +50,7 @@ def changed(old, new, text=QUESTION):
             "hints of 'opposite' are a list of texts",
         ),
         ({"question": changed("'x')", "'x', hints={'oposite': ['Think.']})")}, "`hints` names 'oposite', and this"),
+        ({"question": changed("'x')", "'x', after={'a/b': 'Think.'})")}, "hints of 'a/b' are a list of texts"),
         ({"question": changed("'x')", "'x', credit={'oposite': 0.5})")}, "knows no such mistake. It knows 'opposite'"),
         ({"question": changed("'x')", "'x', credit={'opposite': 50})")}, "is a share from 0 to 1, and this is 50"),
         ({"question": changed("'x')", "'x', tolerance=0, relative=0.01)")}, "more than zero, and this is 0. With `rel"),

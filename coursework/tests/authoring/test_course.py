@@ -14,7 +14,7 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from trial_course import CELLS, made_in, write_source
+from trial_course import CELLS, PINNED, PROJECT, made_in, write_source
 
 import coursework
 from coursework.__main__ import main
@@ -27,8 +27,7 @@ from coursework.authoring.source import measured_strengths
 from coursework.authoring.trial import trial
 from coursework.checking.update import update
 
-REPOSITORY = Path(__file__).resolve().parents[3]
-EXAMPLE = REPOSITORY / "coursework" / "examples" / "plane-statics"
+EXAMPLE = PROJECT / "examples" / "plane-statics"
 
 
 @pytest.fixture(scope="module")
@@ -60,15 +59,14 @@ def test_nothing_is_written_over_by_a_new_course(statics):
     assert contents(statics) == before
 
 
-def test_a_release_from_the_wrong_folder_deletes_nothing(tmp_path, monkeypatch, capsys):
-    """`release --sources MINE` in the book's folder once deleted the book's exercises."""
+def test_a_release_from_the_wrong_folder_deletes_nothing(statics, tmp_path, monkeypatch):
+    """`release --sources MINE` in the folder of a course once deleted the exercises of that."""
     write_source(tmp_path / "mine", *CELLS)
-    shutil.copytree(REPOSITORY / "exercises", tmp_path / "exercises")
-    shutil.copytree(REPOSITORY / "src" / "orientation_course" / "sealed", tmp_path / "exercises" / "sealed")
+    shutil.copytree(statics / "exercises", tmp_path / "exercises")
     (tmp_path / "course.toml").write_text("")
     before = contents(tmp_path)
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit, match=r"is made of no notebook in \S*mine, and neither are \d+ other files"):
+    with pytest.raises(SystemExit, match=r"is made of no notebook in \S*mine, and neither are 1 other files"):
         main(["release", "--sources", "mine"])
     assert contents(tmp_path) == before
 
@@ -147,7 +145,7 @@ def test_the_students_package_has_no_grader(tmp_path):
     assert "coursework/checking/check.py" in names["coursework-checks"]
     assert "coursework/grading/execution/sandbox.py" in names["coursework-tools"]
     packed = {name for found in names.values() for name in found if name.startswith("coursework/")}
-    root = REPOSITORY / "coursework" / "src"
+    root = PROJECT / "src"
     assert packed == {
         path.relative_to(root).as_posix()
         for path in (root / "coursework").rglob("*")
@@ -155,8 +153,9 @@ def test_the_students_package_has_no_grader(tmp_path):
     }
 
 
-#: What is imported only where it is there, or only on request: a browser's own modules, a cluster, pictures in replies.
-ON_REQUEST = {"js", "pyodide_js", "distributed"}
+#: What is imported only where it is there, or only on request: a browser's own modules, a cluster, pictures in replies;
+#: and by type checkers alone, which bring it.
+ON_REQUEST = {"js", "pyodide_js", "distributed", "_typeshed"}
 OF_STUDENTS_ON_REQUEST = {"numpy", "latex2mathml"}
 
 
@@ -168,7 +167,7 @@ def test_what_the_packages_import_they_ask_for():
         if "coursework-checks" in asked:
             asked |= {re.match(r"[a-z0-9-]+", need)[0] for need in DISTRIBUTIONS["coursework-checks"][1]} | {"mpmath"}
         allowed = asked | ON_REQUEST | ({"mpmath"} | OF_STUDENTS_ON_REQUEST if name == "coursework-checks" else set())
-        root = REPOSITORY / "coursework" / "src" / "coursework"
+        root = PROJECT / "src" / "coursework"
         for path in {path for pattern in patterns for path in root.glob(pattern) if path.suffix == ".py"}:
             for node in ast.walk(ast.parse(path.read_text("utf8"))):
                 imported = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
@@ -274,7 +273,7 @@ def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(
     monkeypatch.undo()
     monkeypatch.chdir(course)
     main(["selftest", "beam"])
-    assert "0% are behind more than" in (course / "build" / "selftest.html").read_text("utf8")
+    assert "0% of 3 points are behind more than" in (course / "build" / "selftest.html").read_text("utf8")
     source = course / "solutions" / "beam.ipynb"
     source.write_text(source.read_text("utf8").replace("worth=3", "exam=True, worth=3"), "utf8")
     main(["release", "beam"])
@@ -320,7 +319,7 @@ def outside(tmp_path_factory):
     """Run Python in an environment that holds coursework and nothing of this book."""
     place = tmp_path_factory.mktemp("outside")
     venv.create(place / "environment", with_pip=True)
-    python, environment = place / "environment" / "bin" / "python", {**os.environ, "PYTHONPATH": ""}
+    python, environment = place / "environment" / "bin" / "python", {**os.environ, **PINNED, "PYTHONPATH": ""}
 
     def run(*arguments, folder=place):
         done = subprocess.run([python, *arguments], cwd=folder, env=environment, capture_output=True, text=True)
@@ -328,7 +327,7 @@ def outside(tmp_path_factory):
         return done.stdout
 
     wheels = [str(wheel(name, place)) for name in DISTRIBUTIONS]
-    run("-m", "pip", "install", "--quiet", "--constraint", str(REPOSITORY / "constraints.txt"), *wheels, "pytest")
+    run("-m", "pip", "install", "--quiet", *wheels, "pytest")
     assert "orientation" not in run("-m", "pip", "list")
     return place, run
 

@@ -5,6 +5,7 @@ import collections
 import copy
 import csv
 import io
+import itertools
 import json
 import re
 import shutil
@@ -21,11 +22,13 @@ import coursework
 from coursework.authoring.author import AuthorError, solution_code
 from coursework.authoring.packing import archive
 from coursework.authoring.release import release
-from coursework.authoring.source import read_source
+from coursework.authoring.source import FORMAT_OF_MEASURED, MEASURED, read_source, said_beyond
 from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import check as check_module
-from coursework.checking import identity, questions, sealing, variants
+from coursework.checking import identity, progress, questions, sealing, variants
 from coursework.checking.plain import to_plain
+from coursework.checking.question import Question, Sealed, Variant
+from coursework.checking.reply import Reply
 from coursework.grading.grade import grade
 from coursework.grading.judging import marking
 from coursework.grading.record import Answer, Remembered
@@ -124,13 +127,88 @@ def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
     for other in (number for number in range(6) if number != 2):
         given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
         reply = coursework.check(NAME, given["force"] * given["arm"])
-        assert (reply.outcome, reply.note) == ("wrong", "other numbers") and "another student" in reply.messages[0]
+        assert (reply.outcome, reply.note) == ("wrong", "other numbers")
+        assert ("another student" if other else "that everybody sees") in reply.messages[0]
         assert reply.tries == 0 and not reply.tried
     assert coursework.check(NAME, 1234567).note == ""
     right = coursework.check(NAME, lever.force * lever.arm)
     assert right.outcome == "correct" and not right.help and not right.sibling
     others = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]["others"]
     assert len(base64.b85decode(others[1])) % (8 * sealing.NAME) == 0
+
+
+def test_whoever_says_later_who_they_are_keeps_what_was_solved_before(beside, course, monkeypatch, tmp_path, capsys):
+    """Solved with everybody's numbers, and only then said who one is: both are said, in every place that tells."""
+    monkeypatch.setattr(progress, "KEPT", tmp_path / ".coursework" / "progress.json")
+    coursework.student("")
+    lever = coursework.variant(NAME)
+    assert coursework.check(NAME, lever.force * lever.arm).outcome == "correct"
+    coursework.student(student_with(2))
+    said = capsys.readouterr().out
+    assert "that everybody sees" in said and NAME in said and student_with(2) in said
+    assert f"not with yours yet: {NAME}" in repr(coursework.progress())
+    reply = coursework.check(NAME, lever.force * lever.arm)
+    assert (reply.outcome, reply.tries) == ("wrong", 0) and "right for the numbers that everybody" in reply.messages[0]
+    own = coursework.variant(NAME)
+    assert coursework.check(NAME, own.force * own.arm).outcome == "correct"
+    assert "not with yours" not in repr(coursework.progress()) and "is right" in repr(coursework.progress())
+    coursework.student(student_with(2))
+    assert NAME not in capsys.readouterr().out
+
+
+EDITIONS = [{0: (20, 2), 1: (30, 3), 2: (45, 7)}, {0: (20, 2), 1: (45, 7), 2: (65, 9)}]
+NUMBERS = {"": 0, "ada": 1, "eda": 2, "ida": 1}
+
+
+@pytest.mark.parametrize("first", ["answer", "slip", *NUMBERS])
+def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_of_others(first, monkeypatch, tmp_path):
+    """All orders of answers, names (one of them mistyped, one of a classmate with the same numbers) and editions."""
+    monkeypatch.setattr(progress, "KEPT", tmp_path / "progress.json")
+
+    def question():
+        number = NUMBERS[who]
+        force, arm = EDITIONS[edition][number]
+        return Sealed(Question("expression", variant=Variant(number, 3, {"force": force, "arm": arm})))
+
+    def judged(name, sealed, plain, student):
+        given = sealed.question.given
+        right = plain["nodes"][-1][-1] == str(given["force"] * given["arm"])
+        reply = Reply(name, *(("correct",) if right else ("wrong", "added")))
+        reply.answer = str(plain)[-12:]
+        return reply
+
+    monkeypatch.setattr(check_module, "find_question", lambda name, student: question())
+    monkeypatch.setattr(check_module, "judge", judged)
+    monkeypatch.setattr(check_module, "identity", lambda: who)
+    monkeypatch.setattr(
+        check_module,
+        "own_numbers",
+        lambda name, student: (NUMBERS[who], variants.names_of_variants([question().question.variant])[0]),
+    )
+    others = [step for step in ["answer", "slip", "ada", "eda", "ida", "edition"] if step != first]
+    for steps in itertools.permutations(others, 4):
+        (tmp_path / "progress.json").unlink(missing_ok=True)
+        who, edition, right, slips = "", 0, set(), set()
+        for step in [first, *steps, "answer", "ada"]:
+            numbers = EDITIONS[edition][NUMBERS[who]]
+            if step in NUMBERS:
+                who = step
+            elif step == "edition":
+                edition = 1
+            elif step == "slip":
+                coursework.check(NAME, sum(numbers))
+                slips.add(numbers)
+            else:
+                reply = coursework.check(NAME, numbers[0] * numbers[1])
+                right.add(numbers)
+                assert reply.outcome == "correct" and reply.tries == 1 + (numbers in slips), steps
+            # The file is read anew each time, as after a reload.
+            own = EDITIONS[edition][NUMBERS[who]]
+            kept = progress.Progress.read().entry(NAME)
+            assert sum(one.outcome == "correct" for one in (kept, *kept.others)) == len(right), steps
+            said = repr(check_module.progress())
+            assert ("is right" in said) == (own in right), (steps, step, said)
+            assert ("not with yours yet" in said) == bool(right - {own} and own not in right), (steps, step, said)
 
 
 def test_how_many_pages_there_are_tells_no_variant_from_another(course, tmp_path):
@@ -234,7 +312,7 @@ def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
 
 @pytest.fixture
 def recorded(beside, monkeypatch, tmp_path):
-    monkeypatch.setattr(check_module, "PROGRESS", tmp_path / ".coursework" / "progress.json")
+    monkeypatch.setattr(progress, "KEPT", tmp_path / ".coursework" / "progress.json")
     coursework.student(student_with(2))
 
 
@@ -272,7 +350,7 @@ def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recor
     assert coursework.check(NAME, everybody.force * everybody.arm).help == "hint"
     assert "tried is right" in repr(coursework.progress())
     coursework.student(student_with(3))
-    assert "Nothing has been checked" in repr(coursework.progress()) and "no hint yet" in repr(coursework.hint(NAME))
+    assert "not with yours yet" in repr(coursework.progress()) and "no hint yet" in repr(coursework.hint(NAME))
     first = coursework.check(NAME, 11)
     assert first.tries == 1 and "Hint:" not in repr(first) and "not right yet" in repr(coursework.progress())
     lever = coursework.variant(NAME)
@@ -382,7 +460,7 @@ def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
         if name != "ada":
             coursework.student(student)
             given = coursework.variant(NAME)
-            check_module.PROGRESS.unlink(missing_ok=True)
+            progress.KEPT.unlink(missing_ok=True)
             coursework.check(NAME, given.force + given.arm)
             reply = coursework.check(NAME, given.force * given.arm)
             cell = next(c for c in notebook.cells if c.source == check_cell.source)
@@ -395,13 +473,21 @@ def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
         place = tmp_path / "handed-in" / student
         place.mkdir(parents=True)
         nbformat.write(notebook, place / "levers.ipynb")
-    done = grade(tmp_path / "handed-in", tmp_path / "marks", solutions=course.sources, workers=1, show=io.StringIO())
+    measured = {NAME: [0, 20, None, 30, None, None], "levers/plain": [0]}
+    about = {one: {"worth": 1, "digest": "", "tries": tries, "way": ""} for one, tries in measured.items()}
+    strengths = course.sources / MEASURED
+    strengths.write_text(json.dumps({"format": FORMAT_OF_MEASURED, "questions": about}), "utf8")
+    show = io.StringIO()
+    done = grade(tmp_path / "handed-in", tmp_path / "marks", solutions=course.sources, workers=1, show=show)
+    strengths.unlink()
     assert done["graded"] == 3
     text = (tmp_path / "marks" / "grades.csv").read_text("utf8")
     rows = {row["student"]: row for row in csv.DictReader(text.splitlines())}
     assert [float(rows[student][NAME]) for student in students.values()] == [1, 0.8, 1]
     report = (tmp_path / "marks" / "report.html").read_text("utf8")
     assert "Tries" in report and "2 (2 at most, 2 known)" in report
+    # What the author reads of the attack, the instructor reads beside the marks.
+    assert said_beyond(about) in report and said_beyond(about) in show.getvalue()
     page = (tmp_path / "marks" / feedback_of(students["ben"], "levers")).read_text("utf8")
     assert "2 different answers, as your notebook remembers" in page and "earns the rest" in page
 

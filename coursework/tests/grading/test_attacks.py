@@ -37,7 +37,7 @@ LIMITS = Limits(
     file_bytes=16 << 20,
     runs=4,
 )
-SHORT = dataclasses.replace(LIMITS, cell_wall_seconds=6)
+SHORT = dataclasses.replace(LIMITS, cell_wall_seconds=2)
 HALVES = ("HEIRLOOM", "SPANNER")
 HONEST = {"question": {"variable": None}}
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import nbformat
 
-#: The folder that `make setup` fetches into, where this is a working copy.
+#: What the pages of a book here are made with, where this is a working copy.
 WORKING_COPY = Path(__file__).resolve().parents[3]
 SETTINGS = Path(__file__).with_name("course.yml")
 #: Of what is handed over: see ``parts_of`` in ``coursework.authoring.publish``.
@@ -44,11 +44,13 @@ def publish(parts, workshop, site):
     """
     if parts["format"] != FORMAT:
         raise ValueError(f"the parts of the course are of format {parts['format']}; these pages are made of {FORMAT}")
-    fetched = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", WORKING_COPY)).resolve()
-    if not (fetched / "node_modules" / "katex").is_dir():
+    named = os.environ.get("NOTEBOOK_PAGES_FETCHED")
+    places = [Path(named).resolve()] if named else [Path.cwd(), WORKING_COPY]
+    fetched = next((place for place in places if (place / "node_modules" / "katex").is_dir()), None)
+    if fetched is None:
         raise RuntimeError(
-            f"What pages are made with is not in {fetched}: KaTeX, the typefaces, Python for browsers. `make setup` in "
-            "the repository of notebook-pages fetches them; NOTEBOOK_PAGES_FETCHED names its folder."
+            f"What pages are made with is not in {places[0]}: KaTeX, the typefaces, Python for browsers. "
+            "`python -m notebook_pages.set_up` in that folder fetches them."
         )
     workshop, site = Path(workshop).resolve(), Path(site).resolve()
     write_book(parts, workshop)

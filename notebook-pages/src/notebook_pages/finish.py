@@ -58,6 +58,7 @@ def write(site):
 
     (listed,) = (site / FOLDER).glob(f"lock-*/{LOCK}")
     lock = json.loads(listed.read_text("utf8"))
+    variants = " ".join(sorted(folder.name for folder in (site / FOLDER).glob("sealed-*")))
     addresses = [package["file_name"] for package in lock["packages"].values()]
     elsewhere = sorted({"/".join(address.split("/")[:3]) for address in addresses if "://" in address})
     for page in [*pages_of(site), *sorted(site.glob("embed/*.html"))]:
@@ -70,6 +71,7 @@ def write(site):
         text = VERSIONED.sub(with_version, before)
         text = re.sub(r'("bytes":)\d+', rf"\g<1>{lock['bytes']}", text)
         text = re.sub(r'("lock":")[^"]*', rf"\g<1>{listed.parent.name}/", text)
+        text = re.sub(r'("variants":")[^"]*', rf"\g<1>{variants}", text)
         rules = f'<meta http-equiv="Content-Security-Policy" content="{policy(text, elsewhere)}">'
         text, count = CHARSET.subn(lambda match: match[1] + rules, text)
         if count != 1:

@@ -23,16 +23,12 @@ from packaging.utils import canonicalize_name
 from packaging.version import Version
 
 from .packing import PROJECTS
-from .paths import NODE, REPOSITORY, WEBSITE
+from .paths import REPOSITORY, WEBSITE
+from .set_up import IN_BROWSERS, LOCK, PACKAGE, WHEELS, npm
 
 CONSTRAINTS = REPOSITORY / "constraints.txt"
-WHEELS = [WEBSITE / place / "wheels.txt" for place in ("live", "lite")]
-PACKAGE, LOCK = REPOSITORY / "package.json", REPOSITORY / "package-lock.json"
 #: Packages of npm that stay as they are, and why.
 HELD = {"codemirror": "later numbers hold an older editor, published by mistake"}
-#: For wheels that run in browsers, as the Makefile fetches them. The Python that matters is not the one that asks.
-IN_BROWSERS = ("--python-version", "3.14", "--platform", "any", "--implementation", "py", "--abi", "none")
-IN_BROWSERS += ("--ignore-requires-python",)
 #: What wheels for browsers ask for and do not get: front ends, which JupyterLite brings itself.
 NOT_IN_BROWSERS = {"jupyterlab-widgets", "widgetsnbextension"}
 
@@ -93,7 +89,7 @@ def wheels(old, versions):
         f"{name}=={versions[name]}" if name in versions else f"{name}>={version}" for name, version in pins(old).items()
     ]
     with tempfile.TemporaryDirectory() as folder:
-        reports = resolve("--no-deps", *IN_BROWSERS, "--target", folder, *wanted)
+        reports = resolve("--no-deps", *IN_BROWSERS, "--ignore-requires-python", "--target", folder, *wanted)
     found = {canonicalize_name(one["metadata"]["name"]): one for one in reports}
     lines = comments(old)
     for name in pins(old):
@@ -116,11 +112,6 @@ def missing(reports):
             needed = requirement.marker is None or requirement.marker.evaluate(browser | {"extra": ""})
             if needed and canonicalize_name(requirement.name) not in there:
                 yield f"{one['metadata']['name']} {one['metadata']['version']} needs {requirement.name}"
-
-
-def npm(*arguments, **keywords):
-    program = NODE.parent.parent / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
-    return subprocess.run([NODE, program, *arguments], check=True, text=True, **keywords)
 
 
 def scripts():

@@ -15,6 +15,8 @@ hidden tests, with a call of :func:`question`:
 CONTRIBUTING.md explains each argument with an example.
 """
 
+from __future__ import annotations
+
 import difflib
 import hashlib
 import html
@@ -22,21 +24,21 @@ import inspect
 import itertools
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 from ..checking import sealing
 from ..checking.catalogue import by_short_name
 from ..checking.catalogue import mistakes as catalogued_mistakes
 from ..checking.evaluate import MP
-from ..checking.fields import Misread
-from ..checking.kinds import PARTS, Blank, Fault, Undecidable, sign_limit
+from ..checking.fields import Json, Misread
+from ..checking.kinds import PARTS, Blank, Fault, Number, Undecidable, sign_limit
 from ..checking.mistakes import GENERAL, Mistake, short_name
 from ..checking.plain import NotPlain, Plain, to_plain
 from ..checking.plugins import kind_of_values, kinds
 from ..checking.points import ANGLES
-from ..checking.question import OUTCOMES, KnownAnswer, Locker, Note, Question, Sealed
+from ..checking.question import OUTCOMES, KnownAnswer, Locker, Note, Question, Sealed, Variant
 from ..checking.questions import CODE_LETTERS, NEARLY, code_text, compare, rung_key, salt_of_all
 from ..checking.reading import (
     Reading,
@@ -49,6 +51,7 @@ from ..checking.reading import (
     tolerances,
     within,
 )
+from ..checking.reply import Reply
 from ..checking.units import UnknownUnit
 
 #: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
@@ -68,6 +71,10 @@ MOST_EDGES_FOR_OTHERS = 2
 PAGES_TOGETHER = 4
 
 
+#: The letter of an axis, and the angle about it.
+Turn = tuple[Any, Any]
+
+
 class AuthorError(ValueError):
     """A question is not well posed; the message says which and why."""
 
@@ -82,11 +89,11 @@ class Entry(NamedTuple):
     plain: Plain
 
     @property
-    def outcome(self):
+    def outcome(self) -> str:
         return self.answers[0].outcome
 
     @property
-    def notes(self):
+    def notes(self) -> tuple[Note, ...]:
         return self.answers[0].notes
 
 
@@ -94,19 +101,19 @@ class _Known(NamedTuple):
     """An answer that is known, with all mistakes that lead to it."""
 
     outcome: str
-    notes: list
-    plain: dict
-    reading: object
-    numbers: list
+    notes: list[Note]
+    plain: Plain
+    reading: Reading
+    numbers: list[Number]
 
 
-def far_from_last_bits(question, reading):
+def far_from_last_bits(question: Question, reading: Reading) -> Reading:
     """An answer with a tolerance, rounded so that what is sealed of it is the same on every processor."""
     if question.tolerance is None or reading.text is not None:
         return reading
     absolute, relative = tolerances(question)
 
-    def rounded(number):
+    def rounded(number: Number) -> Number:
         allowed = absolute + relative * abs(number)
         share = min(max(ROUNDED * allowed, DOUBLES * abs(number)), ROUNDED_MOST * allowed)
         if not share:
@@ -132,7 +139,7 @@ class AuthoredQuestion:
         Share of the worth for a mistake, by its note.
     partial : bool
         Whether an answer in several words earns the share of them that is right, beyond what a guess would earn.
-    rubric : list of str, or dict
+    rubric : tuple of str, or dict
         What a person looks for who reads the answers; with the points that each line is worth.
     entries : dict
         :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
@@ -144,35 +151,37 @@ class AuthoredQuestion:
 
     def __init__(
         self,
-        name,
-        public,
-        answer,
+        name: str,
+        public: Question,
+        answer: Any,
         *,
-        variable=None,
-        worth=1,
-        credit=None,
-        partial=False,
-        rubric=None,
-        hints=None,
-        ladder=None,
-        after=None,
-        solution="",
-        title="",
-        turns=(),
-        turned=None,
-        authored=None,
-        exam=False,
-    ):
+        variable: str | None = None,
+        worth: float = 1,
+        credit: Mapping[str, float] | None = None,
+        partial: bool = False,
+        rubric: Mapping[str, float] | Iterable[str] | None = None,
+        hints: Mapping[str, Sequence[str]] | None = None,
+        ladder: Iterable[str] | None = None,
+        after: Mapping[str, Sequence[str]] | None = None,
+        solution: str = "",
+        title: str = "",
+        turns: Iterable[Turn] = (),
+        turned: Turn | None = None,
+        authored: Mapping[str, Any] | None = None,
+        exam: bool = False,
+    ) -> None:
         self.name, self.public, self.answer, self.variable = name, public, answer, variable
         self.worth, self.credit, self.title = (
             worth,
             dict(credit or {}),
             title or name.partition("/")[2].replace("-", " "),
         )
-        self.partial, self.rubric = partial, dict(rubric) if isinstance(rubric, dict) else list(rubric or [])
+        self.partial = partial
+        self.rubric = dict(rubric) if isinstance(rubric, dict) else tuple(rubric or ())
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
-        self.ladder = ladder_of(public, ladder, turns)
+        self.pages = Pages(b"")
         self.turns, self.turned = list(turns), turned
+        self.ladder = ladder_of(public, ladder, self.turns)
         self.plain = self.to_plain(answer)
         held = {node[1] for node in self.plain["nodes"] if node[0] == "symbol"}
         every_symbol = bool(public.symbols) and held >= set(public.symbols)
@@ -185,35 +194,36 @@ class AuthoredQuestion:
             *self._catalogued(),
         ]
         self._demand_notes()
-        self.near, self.no_mistakes = [], []
+        self.near: list[str] = []
+        self.no_mistakes: list[str] = []
         self.entries = {} if kinds()[public.kind].by_a_person else self._entries()
 
     @property
-    def number(self):
+    def number(self) -> int:
         """That of the variant."""
         return self.public.variant.number if self.public.variant else 0
 
-    def to_plain(self, answer):
+    def to_plain(self, answer: Any) -> Plain:
         return to_plain(answer, calls_for(self.public))
 
-    def fingerprint_of(self, plain):
+    def fingerprint_of(self, plain: Plain) -> str:
         return fingerprint(self.public, self.read(plain))
 
-    def read(self, plain):
+    def read(self, plain: Plain) -> Reading:
         """An answer that the author knows, as numbers that are the same on every processor."""
         return far_from_last_bits(self.public, read(self.public, plain))
 
-    def find(self, text):
+    def find(self, text: str) -> Locker | None:
         """What is known of a fingerprint, as a locker holds it; or ``None``."""
         if text in self.entries:
             return Locker(tuple(self.entries[text].answers))
         return Locker() if text in self.near else None
 
-    def reply_to(self, plain):
+    def reply_to(self, plain: Plain) -> Reply:
         """The reply to an answer, as plain data: the one that a student gets, found without the slow hash."""
         return compare(self.name, self.public, plain, self.find)
 
-    def _settle_points(self):
+    def _settle_points(self) -> None:
         """Choose the salt, and with it the points: at them each entry takes every sign that it can take.
 
         What is asked of a salt is so weak that nearly every answer would be content with nearly every salt: the
@@ -242,14 +252,14 @@ class AuthoredQuestion:
                 return
         raise AuthorError(f"{self.name}: no points were found at which the answer is well placed.")
 
-    def _varying(self):
+    def _varying(self) -> set[int]:
         """Which entries of the answer take both signs at some values of the symbols."""
         if not self.public.symbols:
             return set()
         readings = (read(replace(self.public, salt=f"{self.name} {k}"), self.plain).numbers for k in range(8))
         return _varying_in([numbers for reading in readings for numbers in reading])
 
-    def _demand_turns(self):
+    def _demand_turns(self) -> None:
         if not self.turns:
             return
         build = kinds()[self.public.kind].build
@@ -259,7 +269,7 @@ class AuthoredQuestion:
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
             raise AuthorError(f"{self.name}: the turns do not give the right answer.")
 
-    def _demand_notes(self):
+    def _demand_notes(self) -> None:
         """Hints and credit belong to mistakes that the question knows: for another one they would never be given."""
         notes = dict.fromkeys(mistake.note for mistake in self.mistakes)
         texts = [mistake.details["text"] for mistake in self.mistakes if mistake.note == "authored"]
@@ -274,11 +284,11 @@ class AuthoredQuestion:
                         f"{', '.join(repr(one) for one in known)}."
                     )
 
-    def _catalogued(self):
+    def _catalogued(self) -> list[Mistake]:
         if self.public.kind != "function":
             return catalogued_mistakes(self.public, self.answer, self.turns, self.turned)
         inner = replace(self.public, kind=self.public.kind_of_values)
-        results = [self.answer(*arguments) for arguments in calls_for(self.public)]
+        results = [self.answer(*arguments) for arguments in calls_for(self.public) or ()]
         columns = [
             {(found.note, json.dumps(found.details)): found.answer for found in catalogued_mistakes(inner, result)}
             for result in results
@@ -289,10 +299,10 @@ class AuthoredQuestion:
             for note, details in shared
         ]
 
-    def _entries(self):
+    def _entries(self) -> dict[str, Entry]:
         known = self._known()
         right = known[0]
-        by_text = {}
+        by_text: dict[str, list[_Known]] = {}
         for one in known:
             exact = self.public.tolerance is None
             reach = REACH if one is not right else 1 if exact else NEARLY
@@ -306,7 +316,7 @@ class AuthoredQuestion:
             for text, ones in by_text.items()
         }
 
-    def _known(self):
+    def _known(self) -> list[_Known]:
         """The right answer, and then every other answer that a mistake leads to."""
         known, self.no_mistakes = [self._one("correct", [], self.plain)], []
         for mistake in self.mistakes:
@@ -320,33 +330,33 @@ class AuthoredQuestion:
             elif same is not known[0] and one.notes[0] not in same.notes and mistake.note not in GENERAL:
                 same.notes.append(one.notes[0])
             elif same is known[0] and mistake.note == "authored":
-                self.no_mistakes.append(mistake.details["text"])
+                self.no_mistakes.append(str(mistake.details["text"]))
         return known
 
-    def _one(self, outcome, notes, plain):
+    def _one(self, outcome: str, notes: list[Note], plain: Plain) -> _Known:
         reading = self.read(plain)
         numbers = canonical(self.public, reading) if reading.text is None else []
         return _Known(outcome, notes, plain, reading, numbers)
 
-    def _same(self, one, other):
+    def _same(self, one: _Known, other: _Known) -> bool:
         if one.reading.text is not None or other.reading.text is not None:
             return one.reading.text == other.reading.text
         # What differs from the right answer by no more than its tolerance is the right answer.
         return within(self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1)
 
-    def _known_answer(self, one, alone):
+    def _known_answer(self, one: _Known, alone: bool) -> KnownAnswer:
         steps = [
             step
             for note, details in one.notes
             # Those for one mistake of the author's are named by what it says; `authored` is for all of them.
-            for key in dict.fromkeys((details.get("text") if note == "authored" else note, note))
+            for key in dict.fromkeys((str(details["text"]) if note == "authored" else note, note))
             for step in self.hints.get(key, [])
         ]
         needed = self.public.tolerance is not None and (one.outcome == "correct" or not alone)
         numbers = [MP.nstr(number, 17) for number in one.numbers] if needed else []
         return KnownAnswer(one.outcome, tuple(one.notes), tuple(steps), tuple(numbers))
 
-    def names_for_others(self):
+    def names_for_others(self) -> list[str]:
         """Under what names those who have another variant find that their answer is right for this one."""
         if self.public.exam or kinds()[self.public.kind].by_a_person:
             return []
@@ -355,7 +365,7 @@ class AuthoredQuestion:
         texts = fingerprints(common, reading, most=MOST_EDGES_FOR_OTHERS)
         return [sealing.name_of(sealing.slow_key(common.salt, text)).hex() for text in texts]
 
-    def sealed(self, code=None, first=None):
+    def sealed(self, code: str | None = None, first: Pages | None = None) -> Sealed:
         """What a student receives of the question, as :class:`Sealed`.
 
         Parameters
@@ -370,7 +380,6 @@ class AuthoredQuestion:
         """
         answer = self.variable or ""
         if self.public.exam:
-            self.pages = first or Pages(b"")
             salt = hashlib.sha256(f"{self.name} {self.number}".encode()).hexdigest()[:16]
             return Sealed(replace(self.public, every_symbol=None, scale=None, salt=salt), "", self.worth, answer)
         pages = self.pages = Pages(
@@ -384,7 +393,8 @@ class AuthoredQuestion:
             known = all(name in catalogue for name in names)  # what the author says of a mistake is not
             plain = len(entry.answers) == 1 and not entry.answers[0].hints and not entry.answers[0].numbers and known
             shortened = tuple(replace(answer, notes=answer.notes[:2]) for answer in entry.answers)
-            locker = Locker(shortened, self.after if entry.outcome == "correct" else {})
+            after = {name: tuple(steps) for name, steps in self.after.items()}
+            locker = Locker(shortened, after if entry.outcome == "correct" else {})
             if entry.outcome == "correct":
                 plain = plain and not solution and not self.after
             wanted.append((text, entry.outcome, names if plain else [], None if plain else locker.as_json()))
@@ -405,7 +415,7 @@ class AuthoredQuestion:
         return Sealed(self.public, sealing.pack(lockers), self.worth, answer, tuple(pages.sealed), tuple(ladder))
 
 
-def ladder_of(public, authored, turns):
+def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[Turn]) -> list[str]:
     """The steps of a ladder: its author's, or where to begin, and what the answer is built of.
 
     No secret locks them, so nothing of the solution is among them: its first sentence is often the answer.
@@ -431,13 +441,16 @@ class Pages:
         Those of the first variant of the question, which all variants share.
     """
 
-    def __init__(self, secret, first=None):
-        self.secret, self.first, self.contents, self.sealed, self.words = secret, first, {}, [], None
+    def __init__(self, secret: bytes, first: Pages | None = None) -> None:
+        self.secret, self.first = secret, first
+        self.contents: dict[bytes, tuple[dict[str, Json], bytes | None]] = {}
+        self.sealed: list[str] = []
+        self.words: bytes | None = None
 
-    def _key(self, text):
+    def _key(self, text: str) -> bytes:
         return hashlib.blake2b(text.encode("utf8"), key=self.secret, digest_size=sealing.PAGE_KEY).digest()
 
-    def add(self, content, solution=None):
+    def add(self, content: dict[str, Json], solution: bytes | None = None) -> bytes:
         """Add a page, once; gives its key. The page of the right answer tells where the worked solution stands."""
         text = json.dumps(content, ensure_ascii=False, sort_keys=True)
         if self.first:
@@ -448,24 +461,24 @@ class Pages:
         self.contents[key] = (content, solution)
         return key
 
-    def add_solution(self, text, variants):
+    def add_solution(self, text: str, variants: Variant | None) -> bytes:
         """Add the worked solution, in variants as what differs from words that stand beside the first one."""
         if self.first and self.first.words:
             place = self.first.places()[self.first.words]
-            short = sealing.shorten(text, self.first.contents[self.first.words][0]["words"])
+            short = sealing.shorten(text, str(self.first.contents[self.first.words][0]["words"]))
             return self.add({"solution": [place, self.first.words.hex(), short]})
         if variants:
             # No number: they are what differs, and those of the first variant are not for everybody.
             self.words = self.add({"words": re.sub(r"\d+", "", text)})
         return self.add({"solution": text})
 
-    def places(self):
+    def places(self) -> dict[bytes, int]:
         """The place of each page by its key: in an order that tells nothing, after those of the first variant."""
         before = self.first.places() if self.first else {}
         start = len(self.first.sealed) if self.first else 0
         return before | {key: place for place, key in enumerate(sorted(self.contents), start=start)}
 
-    def seal(self):
+    def seal(self) -> dict[bytes, int]:
         """Seal all pages that are not sealed with the first variant; gives the place of each by its key."""
         places = self.places()
         if len(places) >= sealing.NO_PAGE:
@@ -481,7 +494,7 @@ class Pages:
         return places
 
 
-def solution_code(notebook):
+def solution_code(notebook: Mapping[str, Any]) -> str:
     """The code that opens the worked solutions of a notebook: it follows from its source, so only who has that has it.
 
     The variants of its questions have the same code.
@@ -492,7 +505,7 @@ def solution_code(notebook):
     return "-".join(letters[start : start + 4] for start in (0, 4, 8))
 
 
-def _varying_in(rows):
+def _varying_in(rows: Sequence[Sequence[Number]]) -> set[int]:
     """Places of the entries that are above zero in one row and below it in another."""
     return {
         place
@@ -501,7 +514,7 @@ def _varying_in(rows):
     }
 
 
-def _replay(results):
+def _replay(results: Iterable[object]) -> Callable[..., object]:
     """A function that gives prepared results, one for each call: what a mistaken function would return."""
     following = iter(itertools.cycle(results))
     return lambda *arguments: next(following)
@@ -512,16 +525,16 @@ def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-    def written(content, options):
+    def written(content: str, options: Mapping[str, bool]) -> str:
         if formula is not None:
             return formula(content)
         mark = "$$" if options["display_mode"] else "$"
         return f"{mark}{html.escape(content, quote=False)}{mark}"
 
-    return MarkdownIt().use(dollarmath_plugin, renderer=written).render(markdown)
+    return str(MarkdownIt().use(dollarmath_plugin, renderer=written).render(markdown))
 
 
-def _demand_arguments(name, given):
+def _demand_arguments(name: str, given: set[str]) -> None:
     """What a question may say beside the arguments of :func:`question`."""
     known = [
         parameter.name
@@ -534,16 +547,17 @@ def _demand_arguments(name, given):
         raise AuthorError(f"{name}: a question has no `{one}`." + (f" Did you mean `{close[0]}`?" if close else ""))
 
 
-def _demand_forms(name, mistakes, hints, credit, worth):
+def _demand_forms(name: str, mistakes: object, hints: Any, after: Any, credit: Any, worth: object) -> None:
     """What an author says of a question has the form that the manual shows."""
     for argument, value, example in (
         ("mistakes", mistakes, "{'what the student is told': the_wrong_answer}"),
         ("hints", hints, "{'opposite': ['the first step', 'the second']}"),
+        ("after", after, "{'levers/see-saw': ['what helps there']}"),
         ("credit", credit, "{'opposite': 0.5}"),
     ):
         if value is not None and not (isinstance(value, dict) and all(isinstance(key, str) for key in value)):
             raise AuthorError(f"{name}: `{argument}` is a dictionary with texts as its keys: {example}.")
-    for note, steps in (hints or {}).items():
+    for note, steps in [*(hints or {}).items(), *(after or {}).items()]:
         if not isinstance(steps, (list, tuple)) or not all(isinstance(step, str) for step in steps):
             raise AuthorError(f"{name}: the hints of {note!r} are a list of texts.")
     for note, share in (credit or {}).items():
@@ -553,7 +567,7 @@ def _demand_forms(name, mistakes, hints, credit, worth):
         raise AuthorError(f"{name}: `worth` is a number of points, and this is {worth!r}.")
 
 
-def _demand_rubric(name, rubric, worth):
+def _demand_rubric(name: str, rubric: object, worth: float) -> None:
     """Where the lines of a rubric have points, all points can be earned by them."""
     if not isinstance(rubric, dict):
         return
@@ -565,7 +579,7 @@ def _demand_rubric(name, rubric, worth):
         raise AuthorError(f"{name}: the lines of its rubric come to {earned} of {worth} points: nobody could have all.")
 
 
-def _demand_tolerance(name, tolerance, relative):
+def _demand_tolerance(name: str, tolerance: object, relative: object) -> None:
     """What an answer may be off by is more than nothing: the last digits differ from machine to machine."""
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
         also = " With `relative`, it is what an answer of zero may be off by." if relative is not None else ""
@@ -576,7 +590,7 @@ def _demand_tolerance(name, tolerance, relative):
         raise AuthorError(f"{name}: `relative` is a share between 0 and 1, and this is {relative!r}.")
 
 
-def _demand_calls(name, calls):
+def _demand_calls(name: str, calls: object) -> None:
     if calls is None:
         return
     if not isinstance(calls, (list, tuple)) or not calls or not all(isinstance(one, (list, tuple)) for one in calls):
@@ -586,33 +600,33 @@ def _demand_calls(name, calls):
         )
 
 
-def _is_number(value):
+def _is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def question(
-    name,
-    kind,
-    answer,
+    name: str,
+    kind: str,
+    answer: Any,
     *,
-    frames=None,
-    symbols=None,
-    unit=None,
-    shape=None,
-    length=None,
-    options=None,
-    tolerance=None,
-    relative=None,
-    calls=None,
-    takes="lists",
-    result=None,
-    quantity=None,
-    either_sign=None,
-    unit_vector=None,
-    mistakes=None,
-    variant=None,
-    **rest,
-):
+    frames: Iterable[str] | None = None,
+    symbols: str | Mapping[str, Iterable[float]] | None = None,
+    unit: Any = None,
+    shape: Iterable[int] | None = None,
+    length: int | None = None,
+    options: Iterable[str] | None = None,
+    tolerance: float | None = None,
+    relative: float | None = None,
+    calls: Sequence[Sequence[Any]] | None = None,
+    takes: str = "lists",
+    result: str | None = None,
+    quantity: str | None = None,
+    either_sign: bool | None = None,
+    unit_vector: bool | None = None,
+    mistakes: Mapping[str, Any] | None = None,
+    variant: Variant | None = None,
+    **rest: Any,
+) -> AuthoredQuestion:
     """Build an :class:`AuthoredQuestion` from what its author wrote.
 
     Raises
@@ -624,11 +638,11 @@ def question(
         raise AuthorError(f"{name}: the kind {kind!r} is none of {', '.join(sorted(kinds()))}.")
     known, values = kinds()[kind], kinds()[result or kind]
     _demand_arguments(name, {*rest} - {*values.arguments})
-    _demand_forms(name, mistakes, **{key: rest.get(key) for key in ("hints", "credit", "worth")})
+    _demand_forms(name, mistakes, **{key: rest.get(key) for key in ("hints", "after", "credit", "worth")})
     _demand_tolerance(name, tolerance, relative)
     _demand_calls(name, calls)
     try:
-        public = {"kind": kind, **(known.public(answer) if known.public else {})}
+        about = {"kind": kind, **(known.public(answer) if known.public else {})}
     except (TypeError, LookupError, AttributeError, UnknownUnit) as error:
         what = f"`{error}` is no unit that is known here." if isinstance(error, UnknownUnit) else f"This is {answer!r}."
         raise AuthorError(
@@ -642,12 +656,12 @@ def question(
         raise AuthorError(f"{name}: only answers of the kinds {', '.join(PARTS)} are right in part.")
     if isinstance(symbols, str):
         symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
-    symbols = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}
-    if tolerance is None and not symbols and not known.text:
+    ranges = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}
+    if tolerance is None and not ranges and not known.text:
         tolerance = TOLERANCE
     for key, value in {
         "frames": list(frames) if frames else None,
-        "symbols": symbols,
+        "symbols": ranges,
         "unit": unit,
         "shape": shape and list(shape),
         "length": length,
@@ -663,12 +677,12 @@ def question(
         "unit vector": unit_vector,
     }.items():
         if value not in (None, {}, []):
-            public[key] = value
+            about[key] = value
     for needed in known.needs:
-        if needed not in public:
+        if needed not in about:
             raise AuthorError(f"{name}: a question of kind {kind!r} needs {needed!r}.")
     try:
-        public = replace(Question.from_json(public, name), variant=variant)
+        public = replace(Question.from_json(about, name), variant=variant)
     except Misread as error:
         raise AuthorError(str(error)) from None
     return AuthoredQuestion(name, public, answer, authored=mistakes, **rest)

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import tempfile
 import zipfile
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from importlib import import_module
 from pathlib import Path
@@ -14,7 +15,7 @@ from pathlib import Path
 import coursework
 
 from ..checking.update import MANIFEST, manifest
-from .course import find_course
+from .course import Course, find_course
 
 #: Every file of an archive carries this time, so that the same contents are the same bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
@@ -98,7 +99,7 @@ Tag: py3-none-any
 VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
 
 
-def archive(course, target=None):
+def archive(course: Course, target: str | Path | None = None) -> Path:
     """Make the archive for students. The same contents give the same bytes.
 
     Parameters
@@ -134,12 +135,12 @@ def archive(course, target=None):
     return target
 
 
-def archive_of(folder, target):
+def archive_of(folder: str | Path, target: str | Path) -> Path:
     """Make the archive for students of the course in a folder: for what makes pages of a course to offer."""
     return archive(find_course(folder), target)
 
 
-def dated(stated, tag, folder, paths=(".",), files=()):
+def dated(stated: str, tag: str, folder: str | Path, paths: Sequence[str] = (".",), files: Sequence[Path] = ()) -> str:
     """The version of a package that is built from its sources: as it is stated, or ``1.2.0.post20261122093000``.
 
     A package that students hold is only replaced by one of another version. So the version that the sources state is
@@ -157,14 +158,14 @@ def dated(stated, tag, folder, paths=(".",), files=()):
         The sources, where there is no repository.
     """
 
-    def git(*arguments):
+    def git(*arguments: str) -> str:
         """What git says, or nothing where there is no git, or no repository that it would read."""
         if not shutil.which("git"):
             return ""
         done = subprocess.run(["git", "-C", folder, *arguments, "--", *paths], capture_output=True, text=True)
         return done.stdout.strip() if done.returncode == 0 else ""
 
-    def named(*arguments):
+    def named(*arguments: str) -> list[Path]:
         return [Path(folder, name) for name in git(*arguments, "-z").split("\0") if name]
 
     committed = git("log", "-1", "--format=%ct")
@@ -178,7 +179,7 @@ def dated(stated, tag, folder, paths=(".",), files=()):
     return f"{stated}.post{datetime.fromtimestamp(max([int(committed or 0), *written]), UTC):%Y%m%d%H%M%S}"
 
 
-def _own_version(root):
+def _own_version(root: Path) -> str:
     """The version of this package; where it was installed from a wheel, that is the version of the wheel."""
     tracked = (
         shutil.which("git")
@@ -190,7 +191,7 @@ def _own_version(root):
     return dated(stated, f"coursework-checks-{stated}", root) if tracked else stated
 
 
-def wheel(name, folder):
+def wheel(name: str, folder: str | Path) -> Path:
     """Build one of :data:`DISTRIBUTIONS` out of the coursework that is installed here, and give its file."""
     patterns, needs, summary = DISTRIBUTIONS[name]
     root = Path(coursework.__file__).parent
@@ -208,11 +209,20 @@ def wheel(name, folder):
     return write_wheel(folder, name, version, summary, [one.format(version=version) for one in needs], files, command)
 
 
-def write_wheel(folder, name, version, summary, needs, files, entry_points):
+def write_wheel(
+    folder: str | Path,
+    name: str,
+    version: str,
+    summary: str,
+    needs: Iterable[str],
+    files: Mapping[str, bytes],
+    entry_points: str,
+) -> Path:
     """Write a wheel of plain files, by their names in it; the same contents give the same bytes."""
     place = f"{name.replace('-', '_')}-{version}"
     about = ABOUT.format(name=name, version=version, summary=summary)
-    files = files | {
+    files = {
+        **files,
         f"{place}.dist-info/METADATA": (about + "".join(f"Requires-Dist: {one}\n" for one in needs)).encode(),
         f"{place}.dist-info/WHEEL": WHEEL.encode(),
         f"{place}.dist-info/entry_points.txt": entry_points.encode(),
@@ -223,11 +233,11 @@ def write_wheel(folder, name, version, summary, needs, files, entry_points):
     return write_zip(Path(folder, f"{place}-py3-none-any.whl"), files)
 
 
-def _digest(content):
+def _digest(content: bytes) -> str:
     return base64.urlsafe_b64encode(hashlib.sha256(content).digest()).decode().rstrip("=")
 
 
-def write_zip(target, files):
+def write_zip(target: Path, files: Mapping[str, bytes]) -> Path:
     """Write contents by name into a zip, always the same way."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):

@@ -109,7 +109,7 @@ def _maker():
     if not offers:
         raise AuthorError(
             "Nothing here makes pages from notebooks. Install notebook-pages beside coursework, from its folder in the "
-            "repository of coursework: `make setup` there does that, and fetches what pages are made with."
+            "repository of coursework; `python -m notebook_pages.set_up` then fetches what pages are made with."
         )
     if len(offers) > 1:
         named = " and ".join(f"{one.dist.name} ({one.value})" for one in offers)

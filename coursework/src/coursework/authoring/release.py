@@ -5,6 +5,8 @@ made of it: the exercise notebook with blanks, and the file of sealed questions.
 bytes. :mod:`coursework.authoring.packing` makes the archive that students download.
 """
 
+from __future__ import annotations
+
 import concurrent.futures
 import contextlib
 import copy
@@ -15,20 +17,24 @@ import platform
 import re
 import shutil
 import tempfile
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..checking import sealing
+from ..checking import fields, sealing
 from ..checking.evaluate import MP
 from ..checking.question import FORMAT
 from ..checking.questions import MOVED, beside, salt_of_all
 from ..checking.reading import canonical, read
 from ..checking.variants import image
-from .author import AuthorError, solution_code
+from .author import AuthoredQuestion, AuthorError, Pages, solution_code
+from .course import Course
 from .selftest import secrets_of, told_openly, try_question
 from .source import (
     CHAPTERS,
+    Source,
     answered_in,
     checked_names,
     digest_of_code,
@@ -39,20 +45,61 @@ from .source import (
 )
 from .variation import drawn_in
 
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
 #: The lockers of a question without variants are so many, or twice as many, and so on.
 TOGETHER = 8
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
 
+class AboutAnswer(NamedTuple):
+    """What the variants of a question are compared by, and the names under which others find it."""
+
+    answer: str
+    names: list[str]
+
+    @classmethod
+    def from_json(cls, found: object, where: str) -> AboutAnswer:
+        answer, names = fields.a_list(found, where)
+        return cls(fields.text(answer, where), list(fields.many(fields.text)(names, where)))
+
+
+class Made(NamedTuple):
+    """What was made of a notebook.
+
+    Attributes
+    ----------
+    name : str
+    variants : int
+        How many there are.
+    pages : dict of Pages
+        Those that its variants share, by question.
+    code : str
+        Of the worked solutions.
+    answers : dict of AboutAnswer
+        By question with variants.
+    after : dict of list of str
+        The questions that each gives hints for.
+    """
+
+    name: str
+    variants: int
+    pages: dict[str, Pages]
+    code: str
+    answers: dict[str, AboutAnswer]
+    after: dict[str, list[str]]
+
+
 # --- the exercise notebook ----------------------------------------------------------------------
 
 
-def shows_variants(cells, number):
+def shows_variants(cells: Sequence[NotebookNode], number: int) -> bool:
     """Whether a cell is the text of a question with variants, which students are shown by the cell before."""
     return number > 0 and cells[number].cell_type == "markdown" and drawn_in(cells[number - 1].source) is not None
 
 
-def exercise_notebook(source):
+def exercise_notebook(source: Source) -> NotebookNode:
     """The notebook that students get: no solution, no hidden test, and no code of a figure."""
     import nbformat
 
@@ -87,14 +134,18 @@ def exercise_notebook(source):
             cells.append(code)
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
-    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
+    about = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
+    made: NotebookNode = nbformat.v4.new_notebook(cells=cells, metadata=about)
+    return made
 
 
-def _identifier(name):
+def _identifier(name: str) -> str:
     return name.replace("/", "-")
 
 
-def _nbgrader(cell, identifier, solution=False, points=None):
+def _nbgrader(
+    cell: NotebookNode, identifier: str, solution: bool = False, points: float | None = None
+) -> dict[str, Any]:
     """Metadata of nbgrader's schema 3, as its own release step writes it."""
     about = {
         "schema_version": 3,
@@ -111,7 +162,7 @@ def _nbgrader(cell, identifier, solution=False, points=None):
     return about
 
 
-def _checksum(cell, about):
+def _checksum(cell: NotebookNode, about: Mapping[str, Any]) -> str:
     # As nbgrader.utils.compute_checksum; a test compares the two.
     parts = [
         cell.source,
@@ -127,7 +178,7 @@ def _checksum(cell, about):
     return digest.hexdigest()
 
 
-def run_notebook(notebook, folder):
+def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
     """Run an exercise notebook, blanks and all, and keep what it shows."""
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError
@@ -154,26 +205,29 @@ def run_notebook(notebook, folder):
 # --- all of it ----------------------------------------------------------------------------------
 
 
-def sealed_file(source, first=None, pages=None):
+def sealed_file(
+    source: Source, first: Mapping[str, dict[str, Any]] | None = None, pages: Mapping[str, Pages] | None = None
+) -> str:
     """The text of the file with the sealed questions of a notebook; of a variant, what differs from the ``first``.
 
     ``pages`` are those of the first variant, by the name of the question.
     """
     code = solution_code(source.notebook)
     questions = {
-        name: question.sealed(code, pages and pages[name]).as_json() for name, question in source.questions.items()
+        name: question.sealed(code, pages[name] if pages else None).as_json()
+        for name, question in source.questions.items()
     }
     if first:
         questions = {name: beside(one, first[name]) for name, one in questions.items()}
     return _as_text({"format": FORMAT, "questions": questions})
 
 
-def _as_text(content):
+def _as_text(content: Mapping[str, object]) -> str:
     return json.dumps(content, indent=0, sort_keys=True, ensure_ascii=False) + "\n"
 
 
-def _release_one(path, course):
-    """Make a notebook and its sealed questions: its name, how many variants there are, the pages that these share."""
+def _release_one(path: Path, course: Course) -> Made:
+    """Make a notebook and its sealed questions."""
     import nbformat
 
     source = read_source(path, edition=course.edition)
@@ -191,7 +245,7 @@ def _release_one(path, course):
     if source.name != CHAPTERS:
         nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")
     pages = {name: source.questions[name].pages for name in source.rules}
-    return (
+    return Made(
         source.name,
         max((rule.count for rule in source.rules.values()), default=1),
         pages,
@@ -201,12 +255,11 @@ def _release_one(path, course):
     )
 
 
-def _about_answer(question):
-    """What the variants of a question are compared by: :func:`_answer_of`, and the names under which others find it."""
-    return [_answer_of(question), question.names_for_others()]
+def _about_answer(question: AuthoredQuestion) -> AboutAnswer:
+    return AboutAnswer(_answer_of(question), question.names_for_others())
 
 
-def _answer_of(question):
+def _answer_of(question: AuthoredQuestion) -> str:
     """A short text that is the same for variants with one answer, whatever points each is compared at."""
     public = replace(question.public, salt=question.name)
     reading = read(public, question.plain)
@@ -214,10 +267,10 @@ def _answer_of(question):
     return reading.text or " ".join(MP.nstr(number, 9) for number in numbers)
 
 
-def _demand_answers(name, answers):
+def _demand_answers(name: str, answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
     """Variants with one answer are one question: what a classmate has found is right for everybody."""
     for question in answers[0]:
-        found = [one[question][0] for one in answers if question in one]
+        found = [one[question].answer for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:
             raise AuthorError(
                 f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: what is drawn "
@@ -225,7 +278,7 @@ def _demand_answers(name, answers):
             )
 
 
-def _demand_later(course, after):
+def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
     """What a right answer opens hints for is asked somewhere; under its name of today."""
     for question, later in after.items():
         for one in later:
@@ -235,7 +288,7 @@ def _demand_later(course, after):
                 raise AuthorError(f"{question}: `after` names '{one}', and no notebook asks such a question.{now}")
 
 
-def _release_variant(path, number, pages, course):
+def _release_variant(path: Path, number: int, pages: Mapping[str, Pages], course: Course) -> dict[str, AboutAnswer]:
     """Solve, try and seal one variant of a notebook's questions.
 
     What came of it is kept beside the archive, under a name that follows from all that it was made with: the source,
@@ -251,7 +304,7 @@ def _release_variant(path, number, pages, course):
         for name, question in source.questions.items():
             faults = try_question(question, budget=0, against_sealed=False).faults
             if faults:
-                raise AuthorError(f"{name}, variant {number}, {dict(question.public.variant.given)}: {faults[0]}")
+                raise AuthorError(f"{name}, variant {number}, {dict(question.public.given)}: {faults[0]}")
         kept.parent.mkdir(parents=True, exist_ok=True)
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()
@@ -260,10 +313,10 @@ def _release_variant(path, number, pages, course):
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
-    return json.loads(answers.read_text("utf8"))
+    return fields.by_name(AboutAnswer.from_json)(json.loads(answers.read_text("utf8")), str(answers))
 
 
-def _versions():
+def _versions() -> Iterator[str]:
     """What computes the answers of a notebook, with its version, as far as it is installed."""
     yield platform.python_version()
     for name in ("mpmath", "sympy", "numpy", "scipy", "matplotlib"):
@@ -271,7 +324,7 @@ def _versions():
             yield f"{name} {metadata.version(name)}"
 
 
-def _even_out(name, code, course):
+def _even_out(name: str, code: str, course: Course) -> None:
     """Give all variants of a question as many lockers as the one but most of them has, with empty ones.
 
     How many there are follows from the answer: from what mistakes lead to the same, and how near to the edges of
@@ -300,18 +353,18 @@ def _even_out(name, code, course):
         file.write_text(_as_text(content), "utf8")
 
 
-def _add_names_for_others(name, answers, course):
+def _add_names_for_others(name: str, answers: Sequence[Mapping[str, AboutAnswer]], course: Course) -> None:
     """Seal with the first variant of each question what is right in any: so a classmate's answer is recognised."""
     file = course.sealed / f"{name}.json"
     content = json.loads(file.read_text("utf8"))
     for question in answers[0]:
-        names = [bytes.fromhex(text) for one in answers if question in one for text in one[question][1]]
+        names = [bytes.fromhex(text) for one in answers if question in one for text in one[question].names]
         if names:
             content["questions"][question]["others"] = [salt_of_all(question), sealing.pack_names(names, TOGETHER)]
     file.write_text(_as_text(content), "utf8")
 
 
-def _run_one(path, sealed):
+def _run_one(path: Path, sealed: Path) -> None:
     import nbformat
 
     notebook = nbformat.read(path, as_version=4)
@@ -322,7 +375,9 @@ def _run_one(path, sealed):
     nbformat.write(notebook, path)
 
 
-def release(course, only=(), run=True, variants=None):
+def release(
+    course: Course, only: Collection[str] = (), run: bool = True, variants: Collection[int] | None = None
+) -> list[str]:
     """Make the exercise notebooks and the sealed questions.
 
     Parameters
@@ -352,39 +407,36 @@ def release(course, only=(), run=True, variants=None):
     if course.moved:
         moved = {"format": FORMAT, "moved": course.moved, "questions": {}}
         (course.sealed / MOVED).write_text(_as_text(moved), "utf8")
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
-        names = [name for name, *_ in made]
         wanted = [
-            (path, number, pages)
-            for path, (_, count, pages, *_) in zip(paths, made, strict=True)
-            for number in range(1, count)
+            (path, number, one.pages)
+            for path, one in zip(paths, made, strict=True)
+            for number in range(1, one.variants)
             if variants is None or number in variants
         ]
-        answers = {path: [first] for path, (*_, first, _) in zip(paths, made, strict=True)}
+        answers = {path: [one.answers] for path, one in zip(paths, made, strict=True)}
         if wanted:
             found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
             for (path, *_), more in zip(wanted, found, strict=True):
                 answers[path].append(more)
         for path in paths:
             _demand_answers(path.name, answers[path])
-        _demand_later(course, {question: later for *_, after in made for question, later in after.items()})
-        for name, count, _, code, *_ in made:
-            for path in (course.sealed / "variants").glob(f"{name}-*.json"):
-                if (
-                    re.fullmatch(r"\d+", path.stem.removeprefix(f"{name}-"))
-                    and int(path.stem.rpartition("-")[2]) >= count
-                ):
+        _demand_later(course, {question: later for one in made for question, later in one.after.items()})
+        for one in made:
+            for path in (course.sealed / "variants").glob(f"{one.name}-*.json"):
+                number = path.stem.removeprefix(f"{one.name}-")
+                if re.fullmatch(r"\d+", number) and int(number) >= one.variants:
                     path.unlink()  # this notebook made it when it had more variants
-            _even_out(name, code, course)
-            _add_names_for_others(name, answers[course.sources / f"{name}.ipynb"], course)
+            _even_out(one.name, one.code, course)
+            _add_names_for_others(one.name, answers[course.sources / f"{one.name}.ipynb"], course)
         if run:
-            made = [course.exercises / f"{name}.ipynb" for name in names if name != CHAPTERS]
-            list(pool.map(_run_one, made, [course.sealed] * len(made)))
-    return names
+            exercises = [course.exercises / f"{one.name}.ipynb" for one in made if one.name != CHAPTERS]
+            list(pool.map(_run_one, exercises, [course.sealed] * len(exercises)))
+    return [one.name for one in made]
 
 
-def _demand_sources(course, known):
+def _demand_sources(course: Course, known: Collection[str]) -> None:
     """Whoever names the wrong folder must not lose another course's exercises."""
     others = [
         path
@@ -400,7 +452,7 @@ def _demand_sources(course, known):
         )
 
 
-def differences(first, second, pattern):
+def differences(first: str | Path, second: str | Path, pattern: str) -> list[str]:
     """Names of the files of two folders that are not the same in both."""
     names = {path.name for folder in (first, second) for path in Path(folder).glob(pattern)}
     return sorted(

@@ -3,6 +3,8 @@
 ``### BEGIN SOLUTION`` and ``### BEGIN HIDDEN TESTS`` mark what students do not get.
 """
 
+from __future__ import annotations
+
 import ast
 import contextlib
 import functools
@@ -12,13 +14,14 @@ import itertools
 import json
 import re
 import textwrap
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any, NamedTuple
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
 import coursework
+from coursework.checking import fields
 from coursework.checking.plugins import folders_of, packages
 from coursework.checking.question import Variant
 from coursework.checking.variants import Given, image, names_of_variants, packed, shown
@@ -26,7 +29,11 @@ from coursework.checking.variants import Given, image, names_of_variants, packed
 from . import author
 from .course import gives_by_name
 from .packing import VERSION
-from .variation import COUNT, VARIANTS, Rule, drawn_in, written
+from .variation import COUNT, VARIANTS, Pool, Rule, drawn_in, written
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from nbformat import NotebookNode
 
 #: The source whose questions stand inside the chapters: only its sealed file is made.
 CHAPTERS = "chapters"
@@ -59,10 +66,10 @@ class Drawing(NamedTuple):
         What it shows, for those who do not see it.
     """
 
-    figure: object
+    figure: Figure
     alt: str
 
-    def picture(self):
+    def picture(self) -> str:
         """The same SVG each time, with its letters as outlines: nobody needs the typeface."""
         import matplotlib
 
@@ -76,14 +83,23 @@ class Source(NamedTuple):
     """A notebook with solutions, after its cells were run."""
 
     name: str
-    notebook: Any
+    notebook: NotebookNode
     questions: dict[str, author.AuthoredQuestion]
-    figures: dict[int, Any]
+    figures: dict[int, Drawing]
     rules: dict[str, Rule]
     asks_who: bool
 
 
-def notebooks_in(folder, only=()):
+class Measured(TypedDict):
+    """What was measured of a question: after how many tries the attack guessed each variant, if it did, and how."""
+
+    worth: float
+    digest: str
+    tries: list[int | None]
+    way: str
+
+
+def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     """The notebooks with solutions of a folder, or those of them that are named.
 
     Raises
@@ -105,11 +121,11 @@ def notebooks_in(folder, only=()):
 
 
 @functools.cache
-def digest_of_code():
+def digest_of_code() -> str:
     """A text that follows from the code that reads, attacks and seals questions, ours and that of plug-ins."""
     digest = hashlib.sha256()
-    for folder in [*(Path(coursework.__file__).parent / room for room in ROOMS), *folders_of(packages())]:
-        for path in sorted(Path(folder).rglob("*.py")):
+    for folder in [*(Path(coursework.__file__).parent / room for room in ROOMS), *map(Path, folders_of(packages()))]:
+        for path in sorted(folder.rglob("*.py")):
             # A new version by itself is no reason to try everything again.
             digest.update(path.name.encode() + VERSION.sub("", path.read_text("utf8")).encode())
     return digest.hexdigest()
@@ -118,11 +134,8 @@ def digest_of_code():
 def names_asked(path: str | Path) -> dict[str, str]:
     """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
     # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
-    cells = [
-        SimpleNamespace(cell_type=cell["cell_type"], source="".join(cell["source"]))
-        for cell in json.loads(Path(path).read_text("utf8"))["cells"]
-    ]
-    return checked_names(SimpleNamespace(cells=cells))
+    cells = json.loads(Path(path).read_text("utf8"))["cells"]
+    return checked_in("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
 
 
 def measured_strengths(sources: str | Path) -> dict[str, int]:
@@ -139,7 +152,34 @@ def measured_strengths(sources: str | Path) -> dict[str, int]:
     return {name: min((count for count in one["tries"] if count), default=0) for name, one in measured.items()}
 
 
-def measured_questions(sources: str | Path) -> dict[str, dict[str, Any]]:
+def share_beyond(measured: Mapping[str, Measured]) -> float:
+    """The share of the points that the attack has not found, of what was measured: every variant counts alike."""
+    points = sum(one["worth"] for one in measured.values())
+    beyond = 0.0
+    for one in measured.values():
+        tries = [count for count in one["tries"] if count is not None]
+        beyond += one["worth"] * (tries.count(0) / len(tries) if tries else 1)
+    return beyond / max(1, points)
+
+
+def said_beyond(measured: Mapping[str, Measured]) -> str:
+    """That share in words, for authors and for instructors; and how many variants it is of, where there are any.
+
+    >>> said_beyond({"levers/arm": {"worth": 1, "tries": [0, 20, None]}, "levers/plain": {"worth": 2, "tries": [0]}})
+    '83% of 3 points are behind more than 65,536 tries of a script, as far as 3 of 4 variants were attacked'
+    """
+    from .attack import BUDGET  # needed here alone: it brings NumPy
+
+    points = sum(one["worth"] for one in measured.values())
+    tries = [count for one in measured.values() for count in one["tries"]]
+    attacked = f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
+    return (
+        f"{share_beyond(measured):.0%} of {points:g} {'point' if points == 1 else 'points'} are behind more than "
+        f"{BUDGET:,} tries of a script{attacked if any(len(one['tries']) > 1 for one in measured.values()) else ''}"
+    )
+
+
+def measured_questions(sources: str | Path) -> dict[str, Measured]:
     """What was measured of each question by name, as :func:`coursework.authoring.selftest.measured_of` gives it."""
     file = Path(sources, MEASURED)
     if not file.is_file():
@@ -151,8 +191,18 @@ def measured_questions(sources: str | Path) -> dict[str, dict[str, Any]]:
         }
     if measured.get("format") != FORMAT_OF_MEASURED:
         raise author.AuthorError(f"{file} is of another version of coursework: delete it, and release anew.")
-    questions: dict[str, dict[str, Any]] = measured["questions"]
-    return questions
+    return fields.by_name(_measured)(measured["questions"], str(file))
+
+
+def _measured(found: object, where: str) -> Measured:
+    about = fields.Fields(found, where)
+    tries = about.get("tries", fields.many(lambda count, where: None if count is None else fields.whole(count, where)))
+    return {
+        "worth": about.get("worth", fields.number),
+        "digest": about.get("digest", fields.text),
+        "tries": list(tries),
+        "way": about.get("way", fields.text),
+    }
 
 
 def read_source(
@@ -189,19 +239,29 @@ def read_source(
         cell.source = cell.source.replace("\r\n", "\n")  # as some editors of Windows write it
         if cell.cell_type == "code":
             _demand_marks(cell.source, f"{path.name}, cell {number}")
-    answers, questions, figures = {}, {}, {}
-    rules, given, texts, identities = {}, {}, _texts_of_variants(notebook), []
+    answers: dict[str, object] = {}
+    questions: dict[str, author.AuthoredQuestion] = {}
+    figures: dict[int, Drawing] = {}
+    rules: dict[str, Rule] = {}
+    given: dict[str, dict[str, Any]] = {}
+    texts, identities = _texts_of_variants(notebook), list[str]()
     by_name = gives_by_name(path.parent)
 
-    def draw(name, count=COUNT, where=None, picture=None, **pools):
+    def draw(
+        name: str,
+        count: int = COUNT,
+        where: Callable[..., object] | None = None,
+        picture: Callable[..., Drawing] | None = None,
+        **pools: Pool,
+    ) -> Given:
         rules[name] = Rule(name, count, pools, where, picture)
         given[name] = rules[name].parameters(variant if variant < count else 0, edition)
         return Given(shown(texts[name], written(given[name])), given[name])
 
-    def record_check(name, answer):
+    def record_check(name: str, answer: object) -> None:
         answers[name] = answer
 
-    def record_question(name, **about):
+    def record_question(name: str, **about: Any) -> None:
         if name not in answers:
             raise author.AuthorError(
                 f"{name}: the question stands before its check"
@@ -224,20 +284,21 @@ def read_source(
             if by_name:
                 drawn = (rules[name].parameters(number, edition) for number in range(rules[name].count))
                 own = replace(own, names=tuple(names_of_variants(variant_drawn(one, texts[name]) for one in drawn)))
-            if rules[name].picture and (only is None if pictures is None else pictures):
-                drawing = rules[name].picture(given[name])
+            picture = rules[name].picture
+            if picture and (only is None if pictures is None else pictures):
+                drawing = picture(given[name])
                 own = replace(own, picture=packed(drawing.picture(), drawing.alt))
             questions[name] = author.question(name, about.pop("kind"), answers[name], variant=own, **about)
 
-    def record_identity(identity=""):
+    def record_identity(identity: str = "") -> None:
         identities.append(identity)
 
     namespace = {"__name__": "__main__", "question": record_question, "draw": draw, "drawing": Drawing}
     # A figure is nobody's answer: it is drawn where pictures are asked for, and once for all variants.
-    drawn = [number for number, cell in enumerate(notebook.cells) if "figure" in cell.metadata.get("tags", [])]
-    needed = range(len(notebook.cells))
+    plots = [number for number, cell in enumerate(notebook.cells) if "figure" in cell.metadata.get("tags", [])]
+    needed = set(range(len(notebook.cells)))
     if only is not None:
-        needed = cells_needed(notebook, only, drawn if pictures and not variant else ())
+        needed = cells_needed(notebook, only, plots if pictures and not variant else ())
     said = {"check": record_check, "student": record_identity, "me": record_identity}
     with contextlib.ExitStack() as replaced:
         for name, record in said.items():
@@ -268,7 +329,7 @@ def read_source(
     return Source(path.stem, notebook, questions, figures, rules, bool(identities))
 
 
-def _demand_marks(text, where):
+def _demand_marks(text: str, where: str) -> None:
     """Marks that are not understood would leave a solution in what students get."""
     open_one = ""
     for line in text.splitlines():
@@ -288,7 +349,7 @@ def _demand_marks(text, where):
         raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
 
 
-def _demand_pi(file, notebook):
+def _demand_pi(file: str, notebook: NotebookNode) -> None:
     """A rounded pi makes right answers wrong: those that students give with all of its digits."""
     for number, cell in enumerate(notebook.cells):
         for region in SOLUTION.findall(cell.source) if cell.cell_type == "code" else ():
@@ -300,7 +361,7 @@ def _demand_pi(file, notebook):
                 )
 
 
-def _demand_few_digits(name, shown):
+def _demand_few_digits(name: str, shown: Mapping[str, str]) -> None:
     """A text shows numbers as they are meant, and not 0.30000000000000004."""
     for parameter, text in shown.items():
         found = re.search(rf"\d*\.\d{{{MOST_PLACES + 1},}}", text)
@@ -310,7 +371,7 @@ def _demand_few_digits(name, shown):
             )
 
 
-def _demand_hidden(file, notebook, variables):
+def _demand_hidden(file: str, notebook: NotebookNode, variables: Mapping[str, str]) -> None:
     """An answer or a question that stands outside of the marks would be given to students."""
     owners = {variable: name for name, variable in variables.items()}
     cells = [(number, cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
@@ -330,7 +391,14 @@ def _demand_hidden(file, notebook, variables):
                 )
 
 
-def _demand_shown(file, notebook, rules, given, texts, questions):
+def _demand_shown(
+    file: str,
+    notebook: NotebookNode,
+    rules: Mapping[str, Rule],
+    given: Mapping[str, Mapping[str, object]],
+    texts: Mapping[str, str],
+    questions: Mapping[str, author.AuthoredQuestion],
+) -> None:
     """What varies belongs to a question, and what a text shows in braces is drawn; students see all that is drawn."""
     codes = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     code = "\n".join(VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", text))) for text in codes)
@@ -356,9 +424,9 @@ def _demand_shown(file, notebook, rules, given, texts, questions):
             )
 
 
-def _texts_of_variants(notebook):
+def _texts_of_variants(notebook: NotebookNode) -> dict[str, str]:
     """The text of each question with variants, with the places of its parameters: the Markdown below what may vary."""
-    texts = {}
+    texts: dict[str, str] = {}
     for cell, after in itertools.pairwise([*notebook.cells, None]):
         found = drawn_in(cell.source) if cell.cell_type == "code" else None
         if found:
@@ -368,7 +436,7 @@ def _texts_of_variants(notebook):
     return texts
 
 
-def variant_drawn(drawn, text, number=0, count=1, edition=""):
+def variant_drawn(drawn: Mapping[str, Any], text: str, number: int = 0, count: int = 1, edition: str = "") -> Variant:
     """What is shown and given of what was drawn for a variant."""
     return Variant(
         number,
@@ -380,36 +448,37 @@ def variant_drawn(drawn, text, number=0, count=1, edition=""):
     )
 
 
-def texts_of_questions(notebook: Any, figures: Mapping[int, Any] | None = None) -> dict[str, str]:
+def texts_of_questions(notebook: NotebookNode, figures: Mapping[int, Drawing] | None = None) -> dict[str, str]:
     """The text of each question as it stands in the source: the Markdown between the check before it and its own.
 
     ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
     """
     texts: dict[str, str] = {}
-    above, figures = [], figures or {}
+    above: list[str] = []
+    figures = figures or {}
     for number, cell in enumerate(notebook.cells):
         if number in figures:
             above.append(image(figures[number].picture(), figures[number].alt))
         elif cell.cell_type == "markdown":
             above.append(cell.source)
         elif cell.cell_type == "code":
-            found = checked_names(type(notebook)(cells=[cell]))
+            found = checked_in([cell.source])
             texts |= dict.fromkeys(found, "\n\n".join(above))
             above = [] if found else above
     return texts
 
 
-def _is_given(value):
+def _is_given(value: object) -> bool:
     """Whether a student's cell may need a parameter: numbers, words and lists of them, no whole sentences."""
     return (isinstance(value, str) and len(value) <= LONGEST_WORD) or _is_plain(value) and not isinstance(value, str)
 
 
-def _is_plain(value):
+def _is_plain(value: object) -> bool:
     return isinstance(value, (int, float, str)) or isinstance(value, (list, tuple)) and all(map(_is_plain, value))
 
 
 @contextlib.contextmanager
-def _replaced(module, name, value):
+def _replaced(module: ModuleType, name: str, value: object) -> Iterator[None]:
     before = getattr(module, name)
     setattr(module, name, value)
     try:
@@ -418,17 +487,19 @@ def _replaced(module, name, value):
         setattr(module, name, before)
 
 
-def _run(source, namespace, where):
+def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
     """Run a cell and give the value of its last line, as a notebook shows it."""
     tree = ast.parse(source, where)
-    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+    last = tree.body[-1] if tree.body else None
+    if isinstance(last, ast.Expr):
+        tree.body.pop()
     exec(compile(tree, where, "exec"), namespace)
-    if last is not None:
+    if isinstance(last, ast.Expr):
         return eval(compile(ast.Expression(last.value), where, "eval"), namespace)
     return None
 
 
-def cells_needed(notebook, names, also=()):
+def cells_needed(notebook: NotebookNode, names: Iterable[str], also: Collection[int] = ()) -> set[int]:
     """The numbers of the code cells that some questions of a notebook need: by the names that cells bind and use.
 
     What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than too few: which of
@@ -438,8 +509,7 @@ def cells_needed(notebook, names, also=()):
     needed = {number for number, cell in uses.items() if cell.texts & set(names) or number in also}
     while True:
         # What a function uses it may use as late as it is called.
-        anywhere = set().union(*(uses[number].in_functions for number in needed))
-        wanted, before = set(anywhere), len(needed)
+        wanted, before = {name for number in needed for name in uses[number].in_functions}, len(needed)
         for number, cell in sorted(uses.items(), reverse=True):
             if number in needed or cell.bound & wanted:
                 needed.add(number)
@@ -454,12 +524,12 @@ class _Uses(ast.NodeVisitor):
     #: Functions that change nothing of what they are given.
     HARMLESS = ("check", "question", "draw", "print", "display")
 
-    def __init__(self, source):
-        self.bound, self.used, self.in_functions, self.texts = set(), set(), set(), set()
+    def __init__(self, source: str) -> None:
+        self.bound, self.used, self.in_functions, self.texts = (set[str]() for _ in range(4))
         self.depth = 0
         self.visit(ast.parse(source))
 
-    def visit_Name(self, node):
+    def visit_Name(self, node: ast.Name) -> None:
         if isinstance(node.ctx, ast.Load):
             self.used.add(node.id)
             if self.depth:
@@ -467,14 +537,14 @@ class _Uses(ast.NodeVisitor):
         else:
             self.bound.add(node.id)
 
-    def visit_Constant(self, node):
+    def visit_Constant(self, node: ast.Constant) -> None:
         if isinstance(node.value, str):
             self.texts.add(node.value)
 
-    def visit_alias(self, node):
+    def visit_alias(self, node: ast.alias) -> None:
         self.bound.add((node.asname or node.name).partition(".")[0])
 
-    def visit_FunctionDef(self, node):
+    def visit_FunctionDef(self, node: ast.AST) -> None:
         if hasattr(node, "name"):
             self.bound.add(node.name)
         self.depth += 1
@@ -483,38 +553,41 @@ class _Uses(ast.NodeVisitor):
 
     visit_AsyncFunctionDef = visit_ClassDef = visit_Lambda = visit_FunctionDef
 
-    def visit_Expr(self, node):
+    def visit_Expr(self, node: ast.Expr) -> None:
         if isinstance(node.value, ast.Call) and getattr(node.value.func, "id", "") not in self.HARMLESS:
             self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
         self.generic_visit(node)
 
-    def visit_Attribute(self, node):
+    def visit_Attribute(self, node: ast.Attribute) -> None:
         self._change(node)
 
-    def visit_Subscript(self, node):
+    def visit_Subscript(self, node: ast.Subscript) -> None:
         self._change(node)
 
-    def _change(self, node):
+    def _change(self, node: ast.Attribute | ast.Subscript) -> None:
         if not isinstance(node.ctx, ast.Load):
             self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
         self.generic_visit(node)
 
 
-def checked_names(notebook: Any) -> dict[str, str]:
+def checked_names(notebook: NotebookNode) -> dict[str, str]:
     """The name of the answer of each question, from the calls of ``check``."""
+    return checked_in(cell.source for cell in notebook.cells if cell.cell_type == "code")
+
+
+def checked_in(codes: Iterable[str]) -> dict[str, str]:
+    """The same of the code of cells."""
     found: dict[str, str] = {}
-    for cell in notebook.cells:
-        if cell.cell_type == "code" and "check" in cell.source:
-            for node in ast.walk(ast.parse(cell.source)):
-                if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
-                    name, answer = node.args
-                    if not isinstance(answer, ast.Name):
-                        raise author.AuthorError(f"{ast.unparse(node)}: the answer of a check is a plain name.")
-                    found[name.value] = answer.id
+    for node in (node for code in codes if "check" in code for node in ast.walk(ast.parse(code))):
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
+            name, answer = node.args
+            if not isinstance(name, ast.Constant) or not isinstance(answer, ast.Name):
+                raise author.AuthorError(f"{ast.unparse(node)}: a check has a text, and the plain name of an answer.")
+            found[str(name.value)] = answer.id
     return found
 
 
-def bound(region, owners):
+def bound(region: str, owners: Mapping[str, str]) -> list[str]:
     """The answers that a solution binds, in order."""
     names = []
     for node in ast.parse(textwrap.dedent(region)).body:
@@ -525,28 +598,28 @@ def bound(region, owners):
     return [name for name in names if name in owners]
 
 
-def answered_in(text, owners):
+def answered_in(text: str, owners: Mapping[str, str]) -> list[str]:
     """The answers that the solutions in a cell bind, in order."""
     return [name for region in SOLUTION.findall(text) for name in bound(region, owners)]
 
 
-def solved(text):
+def solved(text: str) -> str:
     """A cell with its solution, without the marks around it and without hidden tests."""
     return HIDDEN.sub("", SOLUTION.sub(lambda region: region[1], in_variants(text))).rstrip()
 
 
-def posed(text, owners):
+def posed(text: str, owners: Mapping[str, str]) -> str:
     """The same cell as students get it: with blanks, and without hidden tests."""
     return HIDDEN.sub("", SOLUTION.sub(lambda region: blank(region[1], owners), in_variants(text))).rstrip()
 
 
-def in_variants(text):
+def in_variants(text: str) -> str:
     """A cell that says what may vary as students get it: it shows their variant."""
     found = drawn_in(text)
     return text if found is None else VARIANTS.sub("", text) + f'{found[0]} = variant("{found[1]}")\n{found[0]}'
 
 
-def blank(region, owners):
+def blank(region: str, owners: Mapping[str, str]) -> str:
     """What stands in place of a solution."""
     functions = {
         node.name: node for node in ast.parse(textwrap.dedent(region)).body if isinstance(node, ast.FunctionDef)

@@ -16,8 +16,9 @@ import hashlib
 import random
 import re
 import textwrap
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from .author import AuthorError
 
@@ -28,7 +29,12 @@ COUNT = 16
 MOST_ATTEMPTS = 400
 
 
-class Rule(NamedTuple):
+#: What a parameter is drawn from: a list, or a function of chance.
+Pool = Iterable[Any] | Callable[[random.Random], Any]
+
+
+@dataclass(frozen=True)
+class Rule:
     """What may vary in a question.
 
     Attributes
@@ -45,11 +51,11 @@ class Rule(NamedTuple):
 
     name: str
     count: int
-    pools: dict
-    where: Callable | None = None
-    picture: Callable | None = None
+    pools: Mapping[str, Pool]
+    where: Callable[..., object] | None = None
+    picture: Callable[..., Any] | None = None
 
-    def parameters(self, number, edition=""):
+    def parameters(self, number: int, edition: str = "") -> dict[str, Any]:
         """The parameters of a variant. Of the first edition, variant 0 takes the first of each list.
 
         Raises
@@ -57,7 +63,7 @@ class Rule(NamedTuple):
         AuthorError
             There are not as many different variants as were asked for.
         """
-        found = []
+        found: list[dict[str, Any]] = []
         for order in range(number + 1):
             for attempt in range(MOST_ATTEMPTS):
                 drawn = self._draw(
@@ -73,34 +79,34 @@ class Rule(NamedTuple):
                 )
         return found[number]
 
-    def _draw(self, seed, first):
+    def _draw(self, seed: str, first: bool) -> dict[str, Any]:
         chance = random.Random(int.from_bytes(hashlib.sha256(seed.encode()).digest()))
         drawn = {}
         for name, pool in self.pools.items():
             if callable(pool):
                 drawn[name] = pool(chance)
             else:
-                pool = list(pool)
-                drawn[name] = pool[0 if first else int(chance.random() * len(pool))]
+                choices = list(pool)
+                drawn[name] = choices[0 if first else int(chance.random() * len(choices))]
         return drawn
 
 
-def written(parameters):
+def written(parameters: Mapping[str, object]) -> dict[str, str]:
     """Parameters as the text of a question shows them."""
     return {name: _written(value) for name, value in parameters.items()}
 
 
-def _written(value):
+def _written(value: object) -> str:
     if hasattr(value, "free_symbols"):
         import sympy
 
-        return sympy.latex(value)
+        return str(sympy.latex(value))
     if isinstance(value, (list, tuple)):
         return ", ".join(map(_written, value))
     return str(value)
 
 
-def drawn_in(text):
+def drawn_in(text: str) -> tuple[str, str] | None:
     """The variable and the question of a cell that says what may vary, or ``None``.
 
     Raises
@@ -113,11 +119,13 @@ def drawn_in(text):
         return None
     body = ast.parse(textwrap.dedent(region[1])).body
     calls = [
-        (statement.targets[0].id, statement.value.args[0].value)
+        (target.id, str(name.value))
         for statement in body
         if isinstance(statement, ast.Assign)
         and isinstance(statement.value, ast.Call)
         and getattr(statement.value.func, "id", "") == "draw"
+        for target, name in zip(statement.targets, statement.value.args)
+        if isinstance(target, ast.Name) and isinstance(name, ast.Constant)
     ]
     if len(calls) != 1:
         raise AuthorError(

@@ -6,6 +6,7 @@ from the grader that they earn nothing: so it is said beside every such question
 
 from pathlib import Path
 
+from .progress import Progress
 from .question import Question
 
 #: Where it is kept who works in this folder; the pages of a book keep it under the same name.
@@ -42,6 +43,11 @@ def student(identity: str = "") -> None:
                 print(f"The numbers below are those of {_identity}, as you have said before.")
     except (OSError, UnicodeError):
         pass  # a folder that cannot be written to: then it is said anew in each notebook
+    for whose, names in (Progress.read().right_for_others(_identity) if _identity else {}).items():
+        print(
+            f"With {f'the numbers of {whose}' if whose else 'the numbers that everybody sees'} you have solved "
+            f"{', '.join(names)}. That stays written down; for the numbers of {_identity}, run the cells again."
+        )
 
 
 #: The older name, which stands in notebooks that were handed out; elsewhere it is SymPy's mechanics.

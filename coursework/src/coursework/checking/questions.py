@@ -27,7 +27,7 @@ from .points import spellings
 from .question import FORMAT, OUTCOMES, KnownAnswer, Locker, Note, Place, Question, Sealed, Variant
 from .reading import Reading, canonical, distance, fault, fingerprint, read, tolerances
 from .reply import Reply
-from .variants import Given, own_variant, siblings_of, text_of, without_sibling
+from .variants import Given, names_of_variants, own_variant, siblings_of, text_of, without_sibling
 
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
@@ -43,12 +43,14 @@ NOT_IN_THIS_CATALOGUE = (
 ALWAYS_WRONG = ("not unit length",)
 #: Up to so many tolerances from the right answer, its locker opens, and one is told that it is close.
 NEARLY = 3
-#: The note of an answer that is right for another variant, here and in the marks, and what is said of it.
+#: The note of an answer that is right for another variant, here and in the marks, and what is said of it, by whether
+#: that is the one that everybody sees.
 OTHER_NUMBERS = "other numbers"
-FOR_OTHERS = (
-    "This would be right for other numbers than yours: those of another student, or those that everybody sees. Yours "
-    "stand in the text of the question, as its cell shows it once it has run."
-)
+FOR_OTHERS = {
+    True: "This is right for the numbers that everybody sees. Since you have said who you are, yours are others: they ",
+    False: "This is right for other numbers than yours, those of another student. Yours ",
+}
+WHERE_ONES_OWN_ARE = "stand in the text of the question, as its cell shows it once it has run."
 #: As far from it one is told so where the locker has opened all the same: its cell is wider for several numbers.
 CLOSE = 30
 #: What numbers may be off by that were rounded to two digits after the point.
@@ -202,11 +204,19 @@ def variant(name: str) -> Given:
     return Given(text_of(found) + (f"\n\n{note}" if note else ""), found.given)
 
 
-def own_number(name: str, student: str) -> int:
-    """The number of the variant in which a student finds a question, or a sibling; 0 where there is only one."""
-    asked, order = without_sibling(name)
-    questions = notebook_questions(name.partition("/")[0])
-    return own_variant(student, asked, questions[asked].question, order) if asked in questions else 0
+def own_numbers(name: str, student: str) -> tuple[int, str]:
+    """The variant in which a student finds a question, or a sibling, and what its numbers are called.
+
+    0 and nothing where there is only one, and for a question of another release; no name where the variant cannot be
+    had, as without a network.
+    """
+    (asked, order), notebook = without_sibling(name), name.partition("/")[0]
+    number = 0
+    with suppress(RuntimeError, KeyError):
+        number = own_variant(student, asked, notebook_questions(notebook)[asked].question, order)
+        variant = notebook_questions(notebook, number)[asked].question.variant
+        return number, names_of_variants([variant])[0] if variant else ""
+    return number, ""
 
 
 def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str, Json]:
@@ -220,12 +230,19 @@ def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str,
     return {name: question.get(name) for name in {**question, **first} if question.get(name) != first.get(name)}
 
 
-def judge(name: str, sealed: Sealed, plain: Plain) -> Reply:
-    """Compare an answer, as plain data, with what is sealed; the reply holds what it opened."""
+def judge(name: str, sealed: Sealed, plain: Plain, student: str = "") -> Reply:
+    """Compare an answer, as plain data, with what is sealed; the reply holds what it opened.
+
+    What a classmate has answered is looked for where somebody has said who works here: it costs a slow hash, and those
+    who have not hear in each reply that these are nobody's numbers.
+    """
     if sealed.question.exam:
         return compare(name, sealed.question, plain, None)
-    for_others = functools.partial(is_right_for_others, sealed, plain)
-    return compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
+    for_others = functools.partial(is_right_for_others, sealed, plain) if student and sealed.others else None
+    reply = compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
+    if reply.note == OTHER_NUMBERS:
+        reply.messages = [FOR_OTHERS[_is_right_for_everybody(name, sealed, plain)] + WHERE_ONES_OWN_ARE]
+    return reply
 
 
 def salt_of_all(name: str) -> str:
@@ -244,6 +261,15 @@ def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
     except (Blank, Fault, Undecidable):
         return False
     return sealing.is_among(names, sealing.slow_key(salt, known))
+
+
+def _is_right_for_everybody(name: str, sealed: Sealed, plain: Plain) -> bool:
+    """Whether an answer to a variant is right for the one that everybody sees."""
+    everybodys = notebook_questions(name.partition("/")[0]).get(without_sibling(name)[0])
+    if everybodys is None or not (sealed.question.variant and sealed.question.variant.number):
+        return False
+    find = functools.partial(opened, everybodys)
+    return compare(name, everybodys.question, plain, find).outcome == "correct"
 
 
 def code_text(code: str) -> str:
@@ -306,7 +332,8 @@ def compare(
         ``None`` where there is nothing to compare with, as in an exam: then only the form of the answer is looked at.
         It gives the locker of a fingerprint, or ``None``.
     for_others : function, optional
-        It says of an answer that is not known whether it is right for other numbers.
+        It says of an answer that is not known whether it is right for other numbers. It is asked at once, beside
+        ``find``, where two things can be done at a time.
     """
     try:
         reading = read(question, plain)
@@ -355,6 +382,7 @@ def _compare(
     find: Find,
     for_others: Callable[[], bool] | None,
 ) -> Reply:
+    for_others = _begun(for_others) if for_others else None
     locker = find(fingerprint)
     known = _known_in(question, reading, locker)
     wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
@@ -420,9 +448,9 @@ def _not_known(
     near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
     others = [] if rounded else list(other_readings(question, reading))
     texts = near + [fingerprint(question, turned) for _, _, turned in others]
-    lockers, right_for_others = _each(find, texts, for_others)
-    if right_for_others:
-        return Reply(name, "wrong", OTHER_NUMBERS, [FOR_OTHERS])
+    lockers = _each(find, texts)
+    if for_others and for_others():
+        return Reply(name, "wrong", OTHER_NUMBERS)
     if near and lockers.pop(0) is not None:
         return Reply(
             name,
@@ -446,18 +474,27 @@ def _not_known(
     return Reply(name, "wrong", "", [" ".join(filter(None, lines))])
 
 
-def _each(find: Find, texts: Sequence[str], for_others: Callable[[], bool] | None) -> tuple[list[Locker | None], bool]:
-    """What is known of each fingerprint, and whether an answer is right for others.
+def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
+    """Begin some work in a thread, since the slow hash lets others run; what it gives comes when it is asked for."""
+    from concurrent.futures import ThreadPoolExecutor  # needed here alone
 
-    The slow hash lets other threads run: all is looked up at once.
-    """
-    if texts and for_others or len(texts) > 1:
-        from concurrent.futures import ThreadPoolExecutor  # what it brings is needed here alone
+    threads = ThreadPoolExecutor(1)
+    try:
+        return threads.submit(work).result
+    except RuntimeError:  # a browser's Python has no threads: then it is done if it is asked for
+        return work
+    finally:
+        threads.shutdown(wait=False)
 
-        with suppress(RuntimeError), ThreadPoolExecutor(len(texts) + 1) as threads:  # a browser's Python has no threads
-            asked = threads.submit(for_others) if for_others else None
-            return list(threads.map(find, texts)), asked is not None and asked.result()
-    return [find(text) for text in texts], for_others is not None and for_others()
+
+def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
+    """What is known of each fingerprint; the slow hash lets other threads run: all is looked up at once."""
+    if len(texts) > 1:
+        from concurrent.futures import ThreadPoolExecutor
+
+        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
+            return list(threads.map(find, texts))
+    return [find(text) for text in texts]
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:

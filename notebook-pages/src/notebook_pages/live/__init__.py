@@ -60,7 +60,8 @@ def add_live_code(app, pagename, templatename, context, doctree):
             "bytes": 0,  # finish.py puts in how many it takes to start Python
             "runtime": pathto(f"{runtime.FOLDER}/", 1),
             "pyodide": f"{runtime.pyodide_folder()}/",
-            "lock": "",  # finish.py puts in where the packages of this edition are listed
+            "lock": "",  # finish.py puts in where the packages of this edition are listed,
+            "variants": "",  # and where its sealed variants are
             "scripts": pathto(f"{scripts.folder_name()}/", 1),
             "notebook": pathto(notebook_address(pagename), 1),
             "cells": {

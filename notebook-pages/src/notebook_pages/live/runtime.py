@@ -1,6 +1,6 @@
 """The runtime folder of the site: Pyodide from npm, wheels from PyPI and our own, and their lock file.
 
-Whatever is fetched is fetched by `make setup`, pinned and hash-checked; here it is byte-compiled and
+Whatever is fetched is fetched by ``notebook_pages.set_up``, pinned and hash-checked; here it is byte-compiled and
 put in place. A wheel is compiled once: the result is kept under its contents' hash.
 """
 
@@ -23,7 +23,7 @@ from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY, fingerprint
 from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
-FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"  # where `make setup` puts the wheels of wheels.txt
+FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"  # where the set-up puts the wheels of wheels.txt
 FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")  # and those of lite/wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
@@ -97,13 +97,21 @@ def one_at_a_time():
         yield
 
 
+def our_packages_in(wheel):
+    """Those whose sources stay: of a wheel without them, any book's compiled form is the same."""
+    with zipfile.ZipFile(wheel) as file:
+        held = {name.partition("/")[0] for name in file.namelist()}
+    return [package for package in PACKAGES if package in held]
+
+
 @one_at_a_time()
 def compile_wheels(wheels):
     """Return the compiled form of each of ``wheels``, made now or kept from before."""
-    ours = "\n".join(PACKAGES)
-    program = ours.encode() + b"".join(path.read_bytes() for path in COMPILER)
-    program += (PYODIDE / "package.json").read_bytes()
-    compiled = {wheel: COMPILED / sha256(program + wheel.read_bytes())[:12] / wheel.name for wheel in wheels}
+    program = b"".join(path.read_bytes() for path in (*COMPILER, PYODIDE / "package.json"))
+    compiled = {}
+    for wheel in wheels:
+        digest = sha256(program + "\n".join(our_packages_in(wheel)).encode() + wheel.read_bytes())
+        compiled[wheel] = COMPILED / digest[:12] / wheel.name
     missing = {wheel: target for wheel, target in compiled.items() if not target.exists()}
     if missing:
         with tempfile.TemporaryDirectory() as folder:
@@ -111,7 +119,7 @@ def compile_wheels(wheels):
                 Path(folder, name).mkdir()
             for wheel in missing:
                 shutil.copy(wheel, Path(folder, "in"))
-            Path(folder, "ours.txt").write_text(ours, "utf8")
+            Path(folder, "ours.txt").write_text("\n".join(PACKAGES), "utf8")
             command = [NODE, COMPILER[0], PYODIDE / "pyodide.mjs", COMPILER[1], folder]
             subprocess.run(command, check=True)
             for wheel, target in missing.items():

@@ -6,7 +6,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from ..paths import NODE, NODE_MODULES, REGISTERED, fingerprint, named
+from ..paths import NODE, NODE_MODULES, REGISTERED, WEBSITE, fingerprint, named
 from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
 
@@ -18,7 +18,7 @@ ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 def folder_name():
     """Its scripts have the same names in every version of the book: the folder tells them apart."""
-    sources = filter(None, [JS, MODEL, PYTHON, NODE_MODULES.parent / "package-lock.json"])
+    sources = filter(None, [JS, MODEL, PYTHON, WEBSITE / "package-lock.json"])
     return f"{FOLDER}/scripts-{fingerprint(*sources)}"
 
 

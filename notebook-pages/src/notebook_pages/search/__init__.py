@@ -43,12 +43,18 @@ def text_of(element, left_out=()):
             parts.append(one)
         elif id(one) not in left_out:
             waiting += reversed(one.contents)
-    return re.sub(r" (?=[,.;:)])", "", " ".join(" ".join(parts).split()))
+    words = " ".join(" ".join(parts).replace("\u2061", "").split())  # the sign by which a function is applied
+    return re.sub(r" (?=[,.;:)])|(?<=\() ", "", re.sub(r" ?∘", "°", words))
 
 
 def first_sentence(element, left_out=()):
     """The first words that stand as text in ``element``: a sentence, or as much of it as a line shows."""
-    paragraph = element if element.name in ("dd", "p") else element.find("p", recursive=False)
+    if element.name in ("dd", "p"):
+        paragraph = element
+    else:  # a line that is nothing but emphasis stands beside the text
+        asides = [one for one in element.select(":scope > p > em:only-child") if text_of(one) == text_of(one.parent)]
+        beside = {id(one.parent) for one in asides}
+        paragraph = next((one for one in element.find_all("p", recursive=False) if id(one) not in beside), None)
     words = text_of(paragraph, left_out) if paragraph else ""
     return first_words(re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0])
 

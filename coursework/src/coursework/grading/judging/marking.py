@@ -276,8 +276,10 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
     if short and question.newer and _is_right(name, question.newer, answer):
         said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
         reply = _undecided(name, "numbers of another edition", said)
-    elif short and any(_is_right(name, Asked(other), answer) for other in question.siblings):
-        reply = Reply(name, "wrong", OTHER_NUMBERS, ["This is right for other numbers than the ones given to you."])
+    elif short and (others := [one for one in question.siblings if _is_right(name, Asked(one), answer)]):
+        everybodys = any(one.variant.number == 0 for one in others)
+        whose = "the numbers that everybody sees; yours are others" if everybodys else "other numbers than yours"
+        reply = Reply(name, "wrong", OTHER_NUMBERS, [f"This is right for {whose}."])
     share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
     if reply.outcome == "wrong" and contract.partial and reply.note != OTHER_NUMBERS:
         right, parts, beyond_chance = parts_right(contract, text)

@@ -1,7 +1,7 @@
 // What the reader writes in the cells of a page, as the store keeps it: a text that gives way to another one is set
 // aside, not lost.
 
-import { fingerprint, Store } from "./store.js";
+import { fingerprint, plainName, Store } from "./store.js";
 
 export const SITE = new URL("../../", import.meta.url).pathname;
 export const store = new Store(SITE);
@@ -82,14 +82,15 @@ export class Answers {
       .filter(({ code }) => !shown.includes(code)).sort((one, other) => other.at - one.at);
   }
 
-  // What a question gives its reader, whose numbers are nobody else's: {student, text, original}, by the cell's name.
+  // What a question gives its reader, whose numbers are nobody else's, by the cell's name: {student, text, original,
+  // variants}. What an edition with other variants has given is not shown again.
   keepGiven(name, entry) {
     store.put(this.given + name, entry);
   }
 
-  givenTo(student, name, original) {
-    const entry = store.read(this.given + name);
-    return entry?.student === student && entry.original === fingerprint(original) ? entry.text : undefined;
+  givenTo(student, name, original, variants) {
+    const entry = store.read(this.given + name), { original: print, text } = entry ?? {};
+    return student && plainName(entry?.student ?? "") === student && print === fingerprint(original) && entry.variants === variants ? text : undefined;
   }
 
   // What this page and its notebook last agreed on: fingerprints by the names of the cells.

@@ -27,7 +27,9 @@ export class Cell {
       this.box.append(output);
     }
     this.output = output.querySelector(":scope > figure:has(> figcaption)") ?? output;
-    this.built = [...this.output.children].filter((child) => child.tagName !== "FIGCAPTION");
+    // What the page says over it is no result (see page.js).
+    this.built = [...this.output.children].filter((child) => !child.matches("figcaption, .live-known"))
+      .flatMap((child) => (child.matches(".live-others") ? [...child.children].slice(1) : [child]));
     this.current = this.built;
     this.made = this.original; // the code that has given what stands there
   }
@@ -140,7 +142,7 @@ export class Cell {
   // --- results ---------------------------------------------------------------------------------
 
   replace(nodes) {
-    for (const node of this.current) node.remove();
+    for (const node of [...this.current, ...this.output.querySelectorAll(":scope > .live-known, :scope > .live-others")]) node.remove();
     this.output.prepend(...nodes);
     this.current = nodes;
     wake(this.output);
@@ -148,13 +150,15 @@ export class Cell {
 
   restore() {
     this.replace(this.built);
+    delete this.box.dataset.whose;
     this.made = this.original;
     this.box.classList.remove("waiting", "running", "failed");
     this.ran = this.stopped = false;
   }
 
   // The text of a question as its reader has it, from an earlier visit, in place of everybody's.
-  showGiven(text) {
+  showGiven(student, text) {
+    this.box.dataset.whose = student;
     this.replace([shown({ "text/markdown": text }, this.name, () => null)[0]]);
   }
 

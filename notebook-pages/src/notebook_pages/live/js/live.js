@@ -16,6 +16,7 @@ class Page {
   constructor({ data, boxes, bar }) {
     this.place = { runtime: new URL(data.runtime, location.href).href, pyodide: data.pyodide, lock: data.lock };
     this.answers = new Answers(data.page);
+    this.variants = data.variants;
     this.bar = bar;
     this.figures = new Figures((name, data) => this.python?.tell(name, data));
     this.cells = boxes.map((box, index) => new Cell(box, index + 1, data.cells[index] ?? {}, this));
@@ -54,7 +55,6 @@ class Page {
       coursework.write("me.txt", field.value.trim());
       field.blur();
       button.blur();
-      for (const other of this.cells) other.ran = false;
       this.tellWhose();
       this.askWho();
       this.bar.say(field.value.trim() ? "From the next run on, the numbers are your own." : "From the next run on, the numbers are those that everybody sees.");
@@ -66,27 +66,26 @@ class Page {
 
   // The numbers of a question that were a reader's own are there again when the page is opened the next time.
   keepGiven(cell) {
-    const student = coursework.read("me.txt")?.text;
+    const { student } = store;
     if (student && cell.given !== undefined && SHOWS.test(cell.original)) {
-      this.answers.keepGiven(cell.id, { student, text: cell.given, original: fingerprint(cell.original) });
+      this.answers.keepGiven(cell.id, { student, text: cell.given, original: fingerprint(cell.original), variants: this.variants });
     }
   }
 
-  // Whoever has said anew who they are does not see another one's numbers.
+  // Whoever has said anew who they are sees neither another one's numbers nor a reply to them as their own.
   tellWhose() {
-    const student = coursework.read("me.txt")?.text;
-    for (const cell of this.cells.filter(({ original }) => SHOWS.test(original))) {
-      if (!student) cell.restore();
-      else cell.replace([element("p", "live-known", `Run this cell: you get the numbers of ${student}.`)]);
+    for (const cell of this.cells) {
+      cell.ran = false;
+      if (SHOWS.test(cell.original) && cell.box.dataset.whose !== store.student) cell.restore();
     }
+    this.bar.tellWhatIsKnown();
     this.showGiven();
   }
 
   showGiven() {
-    const student = coursework.read("me.txt")?.text;
     for (const cell of this.cells) {
-      const text = student && this.answers.givenTo(student, cell.id, cell.original);
-      if (text) cell.showGiven(text);
+      const text = this.answers.givenTo(store.student, cell.id, cell.original, this.variants);
+      if (text) cell.showGiven(store.student, text);
     }
   }
 
@@ -302,7 +301,9 @@ class Page {
 
   // Coursework has written down who works here, or how far they are.
   keepOf({ name, text, base }) {
+    const before = store.student;
     coursework.write(name, text, Date.now(), base);
+    if (store.student !== before) this.tellWhose();
     if (name === "me.txt") this.askWho();
   }
 
@@ -336,6 +337,7 @@ class Page {
     const { status } = outcome;
     if (status === "ok") {
       cell.end();
+      cell.box.dataset.whose = store.student;
       this.keepGiven(cell);
       this.tally.ran += 1;
       this.tally.plain += Boolean(outcome.plain);

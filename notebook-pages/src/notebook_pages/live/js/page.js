@@ -204,27 +204,40 @@
     });
   }
 
-  // The outputs that the page was built with are those of nobody: what coursework knows of this reader is said over them.
-  const tellWhatIsKnown = (student, record) => {
+  // What stands below a cell may be nobody's, as the page was built, or another one's: what coursework knows of this
+  // reader is said over it, and it is folded. A cell that has run for this reader (see live.js) speaks for itself.
+  const named = (call) => originals.map((code) => new RegExp(`\\b${call}\\(\\s*["']([^"']+)["']`).exec(code)?.[1]);
+  const shown = named("variant"), checked = named("check");
+  tools.tellWhatIsKnown = () => {
+    const name = store.read("coursework me.txt")?.text;
     boxes.forEach((box, number) => {
-      const output = box.querySelector(".cell_output");
-      const shown = /\bvariant\(\s*["']([^"']+)["']/.exec(originals[number]), checked = /\bcheck\(\s*["']([^"']+)["']/.exec(originals[number]);
-      const outcome = record[checked?.[1]]?.outcome;
+      const output = box.querySelector(".cell_output"), question = checked[number], { whose } = box.dataset;
+      output?.querySelector(":scope > .live-known")?.remove();
+      const folded = output?.querySelector(":scope > details.live-others");
+      folded?.replaceWith(...[...folded.childNodes].slice(1));
+      if (!output || !(shown[number] || question) || whose === store.student) return;
+      const varies = shown.includes(question), known = question && store.standing(question, varies);
+      if (whose !== undefined && question && !varies) return; // the same for everybody
+      const run = "Run this cell to see the reply again.";
+      const numbers = known?.whose ? `the numbers of ${known.whose}` : "the numbers that everybody sees";
+      const now = `The numbers are those ${name ? `of ${name}` : "that everybody sees"} now`;
       let said = "";
-      if (shown && student) said = `Run this cell: you get the numbers of ${student}.`;
-      else if (outcome === "correct") said = "✓ Correct, when you checked it last. Run this cell to see the reply again.";
-      else if (outcome) said = "You have tried this one before. Run this cell to see the reply again.";
-      if (!said || !output) return;
+      if (shown[number]) said = name && `Run this cell: you get the numbers of ${name}.`;
+      else if (!known) said = whose !== undefined && `${now}: run this cell once your answer is for these.`;
+      else if (known.whose !== undefined) said = `${known.outcome === "correct" ? "✓ Right with" : "Tried with"} ${numbers}, and that stays known. ${now}: run the question and this cell to see how you stand.`;
+      else if (known.outcome === "correct") said = `✓ Correct, when you checked it last. ${run}`;
+      else said = `You have tried this one before. ${run}`;
+      if (!said) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
-      if (shown && student) { // everybody's numbers are not taken for one's own
-        const folded = make("details", { className: "live-built" });
-        folded.append(make("summary", {}, "The numbers that everybody sees"), ...output.childNodes);
-        output.append(folded);
+      if (shown[number] || whose !== undefined) { // what is another one's is not taken for one's own
+        const others = make("details", { className: "live-built live-others" });
+        others.append(make("summary", {}, shown[number] ? "The numbers that everybody sees" : "The reply to other numbers"), ...output.childNodes);
+        output.append(others);
       }
       output.prepend(make("p", { className: "live-known" }, said));
     });
   };
-  tellWhatIsKnown(store.read("coursework me.txt")?.text, JSON.parse(store.tries()?.text ?? "{}"));
+  tools.tellWhatIsKnown();
 
   // What the reader has written here before comes back, also from another tab; see store.js for the keys.
   const own = [`answer ${data.page} `, `earlier ${data.page} `, `agreed ${data.page}`, `given ${data.page} `];

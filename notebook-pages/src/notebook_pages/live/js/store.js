@@ -211,6 +211,26 @@ export class Store {
     return { text, at: Math.max(...all.map(([, { at }]) => at)) };
   }
 
+  // Who has said to work here, as names are compared; "" for nobody.
+  get student() {
+    return plainName(this.read("coursework me.txt")?.text ?? "");
+  }
+
+  // How a question stands: its outcome with the reader's own numbers; or, where nothing is known with these, what is known
+  // with others, and whose those were, "" for everybody's. Older entries do not say whose: a reader's own is taken to be
+  // the one that comes first, unless it is everybody's, of a question that ``varies``.
+  standing(name, varies) {
+    const tried = this.read(`question ${name}`)?.tried;
+    if (!isObject(tried)) return null;
+    const { student } = this;
+    const all = [tried, ...Object.values(tried[OTHERS] ?? {})].filter((one) => isObject(one) && one.outcome);
+    const whose = (one) => one.whose ?? (one !== tried ? undefined : varies && !one.variant ? "" : student);
+    const own = all.find((one) => whose(one) !== undefined && plainName(whose(one)) === student);
+    if (own) return { outcome: own.outcome };
+    const other = all.find(({ outcome }) => outcome === "correct") ?? all[0];
+    return other ? { outcome: other.outcome, whose: whose(other) ?? "another name" } : null;
+  }
+
   // Keep what a file says of the questions that it changes; ``base`` is the file that it was made from. What another
   // tab has written meanwhile is joined with it.
   keepTries(text, at = Date.now(), base = "") {
@@ -228,7 +248,7 @@ export class Store {
 }
 
 const HELP = ["mistake", "hint", "solution"]; // from little to much, as in coursework.checking.reply
-// In the entry of a question: what is known of its other variants, by number.
+// In the entry of a question: what is known of its other variants, by number (see coursework.checking.progress).
 const OTHERS = "other variants";
 
 // A damaged record is none, as for coursework.
@@ -237,16 +257,34 @@ function sound(text) {
   return isObject(found) ? found : {};
 }
 
-// What is known of one question, made one: what was right stays right, and no answer, hint or help is forgotten.
+// Names as coursework compares them: without spaces around them, and whatever their capitals.
+export const plainName = (name) => name.trim().split(/\s+/).join(" ").toUpperCase();
+
+// Whether two entries are of the same numbers; older ones know their place among the variants alone.
+const ofSameNumbers = (one, other) =>
+  one.numbers && other.numbers ? one.numbers === other.numbers : (one.variant ?? 0) === (other.variant ?? 0);
+
+// What is known of one question, made one: with the numbers of the newer entry, and beside it with all others.
 function joinTries(older, newer) {
   if (!isObject(older) || !isObject(newer)) return newer ?? older;
-  if ((older.variant ?? 0) !== (newer.variant ?? 0)) { // between the two somebody said who they are
-    const { [OTHERS]: others, ...own } = older;
-    const { [newer.variant ?? 0]: same, ...rest } = others ?? {};
-    return { ...joinTries(same, newer), [OTHERS]: { ...rest, [own.variant ?? 0]: own, ...newer[OTHERS] } };
+  const apart = ({ [OTHERS]: others, ...own }) => [own, ...Object.values(others ?? {}).filter(isObject)];
+  const all = apart(newer);
+  for (const entry of apart(older)) {
+    const place = all.findIndex((one) => ofSameNumbers(one, entry));
+    if (place < 0) all.push(entry);
+    else all[place] = joinEntries(entry, all[place]);
   }
+  const [own, ...rest] = all, others = {};
+  for (const one of rest) {
+    const name = String(one.variant ?? 0);
+    others[name in others ? `${name} ${one.numbers}` : name] = one;
+  }
+  return rest.length ? { ...own, [OTHERS]: others } : own;
+}
+
+// Of two entries with the same numbers: what was right stays right, and no answer, hint or help is forgotten.
+function joinEntries(older, newer) {
   const joined = { ...older, ...newer };
-  if (joined[OTHERS]) joined[OTHERS] = { ...older[OTHERS], ...newer[OTHERS] };
   const right = [older, newer].find(({ outcome }) => outcome === "correct");
   const help = right ? right.help : HELP.findLast((kind) => [older.help, newer.help].includes(kind));
   if (right) joined.outcome = "correct";

@@ -39,15 +39,19 @@ function attach(form) {
   const list = make("ul", { className: "found" });
   const count = make("p", { className: "found-count" });
   count.setAttribute("role", "status");
+  form.closest("dialog")?.setAttribute("aria-label", "Search");
   const place = document.getElementById("search-results");
   if (place && !form.closest("dialog")) place.append(count, list);
   else form.after(count, list);
   const links = () => [...list.querySelectorAll("a")];
   const answer = () => {
+    if (list.contains(document.activeElement)) return; // whoever is among the answers keeps them
     const query = field.value.trim();
-    const found = query.length < 3 ? [] : [...numbersFirst(query), ...find(query).map(shown)];
+    const numbers = numbersFirst(query); // in which there is nothing to be looked for
+    const found = query.length < 3 ? [] : numbers.length ? numbers : find(query).map(shown);
     list.replaceChildren(...found);
-    count.textContent = query.length < 3 ? "" : found.length ? `${found.length} ${found.length === 1 ? "place" : "places"}` : "Nothing in this book. Try another word for it.";
+    count.textContent = query.length < 3 ? "" : found.length
+      ? `${found.length} ${found.length === 1 ? "place" : "places"}; Enter opens the first` : "Nothing in this book. Try another word for it.";
   };
   fields.push(answer);
   field.addEventListener("input", answer);

@@ -32,7 +32,10 @@ const WEAK_WORDS = "3d able access accurate action actual actually add additiona
   + " support sure suspicion take task tell terms test thank thanks theorem thing though thought three time tip"
   + " tool topic tried trouble tutorial two type unable unclear understand unexpected unexplainable unknown"
   + " unusual update useful user usual usually value various version visual way weird well whether whole without"
-  + " wonder word work working worse write wrong yet";
+  + " wonder word work working worse write wrong yet"
+  // Programs and languages: the convention card names them, and most questions that do ask for something else.
+  + " arduino babylon blender cpp directx eigen glm glsl godot java javascript js matlab numpy opencv opengl pyopengl pytorch qt"
+  + " ros space unity unreal webgl";
 const IRREGULAR = new Map(Object.entries({ matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre", ninety: "90" }));
 const ENDINGS = /(?:ati(?:ons?|ves?|ng|onal)|at(?:es?|ed|ors?)|i(?:ng|ngs|es|ed)|ed|es|ly|s|e|y)$/;
 const GREEK = { α: "alpha", β: "beta", γ: "gamma", δ: "delta", θ: "theta", λ: "lambda", π: "pi", σ: "sigma", φ: "phi", ϕ: "phi", ψ: "psi", ω: "omega", Ω: "omega" };
@@ -62,7 +65,7 @@ function told(text) {
 // All words, and of those that count the stems and where they stand among all.
 export function read(text) {
   const all = told(text), list = [], at = [];
-  for (const [k, word] of all.entries()) if (!LEFT_OUT.has(word) && !/^[-=→]/.test(word)) list.push(stem(word)), at.push(k);
+  for (const [k, word] of all.entries()) if (!isLeftOut(word) && !/^[-=→]/.test(word)) list.push(stem(word)), at.push(k);
   return { all, list, at };
 }
 export const words = (text) => read(text).list;

@@ -1,0 +1,182 @@
+"""What is written down beside a notebook: how far its student is with each question, and with whose numbers.
+
+Never an answer, and never a hint: where hints can be read again. The file may hold anything, since it is the student's:
+what is no record is none, and what a newer version has added to an entry stays in it. The pages of a book keep the same
+entries (``store.js`` of their scripts), and know from them, without Python, what was solved with other numbers.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from .fields import Fields, Json, Misread, Reader, Some, anything, by_name, many, number, text, whole, written
+from .question import Place
+
+#: Where it lies: beside the notebook, and nowhere else.
+KEPT = Path(".coursework", "progress.json")
+#: In an entry: what is known with other numbers than those of the entry itself.
+OTHERS = "other variants"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What is known of a question with one set of numbers.
+
+    Attributes
+    ----------
+    outcome, note : str
+        Of the last check, but what was right stays right; empty before the first.
+    answers : tuple of str
+        The different wrong answers, hashed.
+    help : str
+        The help that was had before the answer was right, a key of :data:`coursework.checking.reply.HELP`.
+    page : Place or None
+        Where the hints of the last mistake stand.
+    mistake : str
+        What is worth another look, and when it was made, in seconds.
+    after : tuple of (str, Place)
+        Hints that other questions have opened for this one: these, and where they stand.
+    variant : int
+    numbers : str
+        What these numbers are called, whatever their place among the variants; empty where a question has no others.
+    whose : str or None
+        Whose numbers they were, empty for everybody's; ``None`` where all have the same, and in older records.
+    others : tuple of Entry
+        What is known with other numbers.
+    more : mapping
+        What else stands there.
+    """
+
+    outcome: str = ""
+    note: str = ""
+    answers: tuple[str, ...] = ()
+    help: str = ""
+    page: Place | None = None
+    mistake: str = ""
+    mistake_at: float = 0
+    after: tuple[tuple[str, Place], ...] = ()
+    variant: int = 0
+    numbers: str = ""
+    whose: str | None = None
+    others: tuple[Entry, ...] = ()
+    more: Mapping[str, Json] = field(default_factory=dict)
+
+    @classmethod
+    def from_json(cls, found: object) -> Entry:
+        """Read an entry; a field that is not what it should be is as if it were not there."""
+        try:
+            about = Fields(found, "An entry")
+        except Misread:
+            return cls()
+
+        def maybe(name: str, reader: Reader[Some]) -> Some | None:
+            with suppress(Misread):
+                return about.maybe(name, reader)
+            return None
+
+        return cls(
+            maybe("outcome", text) or "",
+            maybe("note", text) or "",
+            maybe("answers", many(text)) or (),
+            maybe("help", text) or "",
+            maybe("page", Place.from_json),
+            maybe("mistake", text) or "",
+            maybe("mistake at", number) or 0,
+            maybe("after", many(_opened)) or (),
+            maybe("variant", whole) or 0,
+            maybe("numbers", text) or "",
+            maybe("whose", text),
+            tuple(map(cls.from_json, (maybe(OTHERS, by_name(anything)) or {}).values())),
+            about.beside(FIELDS),
+        )
+
+    def as_json(self) -> dict[str, Json]:
+        """What :meth:`from_json` reads; what is empty is left out."""
+        found: dict[str, Json] = dict(self.more)
+        for name, value in vars(self).items():
+            if name in ("outcome", "note", "answers", "help", "mistake", "mistake_at", "variant", "numbers") and value:
+                found[name.replace("_", " ")] = written(value)
+        if self.page:
+            found["page"] = [self.page.page, self.page.key]
+        if self.after:
+            found["after"] = [[name, place.page, place.key] for name, place in self.after]
+        found |= {} if self.whose is None else {"whose": self.whose}
+        return found | ({OTHERS: _by_variant(self.others)} if self.others else {})
+
+    def has(self, variant: int, numbers: str) -> bool:
+        """Whether it is of these numbers. Older entries know their place among the variants alone."""
+        return self.numbers == numbers if self.numbers and numbers else self.variant == variant
+
+    def with_numbers(self, variant: int, numbers: str) -> Entry:
+        """What is known with these numbers; what is known with others stays beside it."""
+        if self == Entry(after=self.after) or self.has(variant, numbers):
+            return replace(self, variant=variant, numbers=numbers)
+        known = [replace(self, others=()), *self.others]
+        own = next((one for one in self.others if one.has(variant, numbers)), Entry())
+        others = tuple(one for one in known if one is not own)
+        after = tuple(dict.fromkeys((*own.after, *self.after)))
+        return replace(own, variant=variant, numbers=numbers, after=after, others=others)
+
+
+FIELDS = {name.replace("_", " ") for name in Entry.__dataclass_fields__} - {"others", "more"} | {OTHERS}
+
+
+def _opened(found: object, where: str) -> tuple[str, Place]:
+    name, *place = many(anything)(found, where) or [None]
+    return text(name, where), Place.from_json(place, where)
+
+
+def _by_variant(entries: Iterable[Entry]) -> dict[str, Json]:
+    """Entries by the number of their variant; where two editions have other numbers under one, by these, too."""
+    found: dict[str, Json] = {}
+    for one in entries:
+        name = str(one.variant)
+        found[f"{name} {one.numbers}" if name in found else name] = one.as_json()
+    return found
+
+
+class Progress:
+    """The file, as it was when it was read; what is changed in it is written at once.
+
+    >>> progress = Progress({"levers/arm": {"outcome": "correct"}, "levers/see-saw": 3})
+    >>> progress.entry("levers/arm").outcome, progress.entry("levers/see-saw") == Entry()
+    ('correct', True)
+    """
+
+    def __init__(self, entries: Mapping[str, Json]) -> None:
+        self.entries = dict(entries)
+
+    @classmethod
+    def read(cls) -> Progress:
+        with suppress(OSError, ValueError):
+            return cls(by_name(anything)(json.loads(KEPT.read_text("utf8")), str(KEPT)))
+        return cls({})
+
+    def entry(self, name: str) -> Entry:
+        return Entry.from_json(self.entries.get(name))
+
+    def put(self, entries: Mapping[str, Entry]) -> None:
+        """Write some entries; a folder that cannot be written to costs the record and nothing else."""
+        self.entries |= {name: entry.as_json() for name, entry in entries.items()}
+        with suppress(OSError):
+            KEPT.parent.mkdir(exist_ok=True)
+            draft = KEPT.with_name(f"progress-{os.getpid()}-{random.randrange(10**9)}.json")
+            draft.write_text(json.dumps(self.entries, indent=1, sort_keys=True), "utf8")
+            draft.replace(KEPT)
+
+    def right_for_others(self, student: str) -> dict[str, list[str]]:
+        """The questions that are right with other numbers, and not with those of a student: by whose they were."""
+        found: dict[str, list[str]] = {}
+        for name in sorted(self.entries):
+            entry = self.entry(name)
+            known = {one.whose: one.outcome == "correct" for one in (*entry.others, entry) if one.whose is not None}
+            if not known.get(student):
+                for whose in [whose for whose, right in known.items() if right][:1]:
+                    found.setdefault(whose, []).append(name)
+        return found
