@@ -1,5 +1,6 @@
 """The Python side of the moving figures: what they accept, and what a notebook stores of them."""
 
+import ast
 import json
 import math
 import re
@@ -114,6 +115,12 @@ def test_the_labels_are_kept_as_they_are_set():
 def test_the_pictures_are_what_python_describes():
     written = {file: file.read_text("utf8") for file in javascript.FOLDER.glob("js/*_picture.js")}
     assert written == javascript.files(), f"run `{javascript.COMMAND}`"
+
+
+def test_what_the_page_takes_in_order_is_not_named():
+    """JavaScript has no arguments by name: a colour would be an object there, and no colour."""
+    with pytest.raises(ValueError, match="line is given stands in order"):
+        javascript.expression(ast.parse("sheet.line(points, colour='N')", mode="eval").body)
 
 
 def texts_of(source):

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 from places import HTML, REPOSITORY
+from playwright.sync_api import expect
 from test_site import NARROW, WIDE, Visit, violations
 
 from notebook_pages import search
@@ -131,6 +132,13 @@ def test_names_slips_and_words_of_programs_are_understood():
         assert place is None or place in places[:3], typed
 
 
+def test_first_sentences_are_those_of_the_text():
+    """No line that only leads elsewhere; degrees as readers know them."""
+    index = json.loads((HTML / SCRIPT).read_text("utf8").partition("=")[2].partition(";\n")[0])
+    about = [row[index["fields"].index("about")] for row in index["entries"] if len(row) > 5]
+    assert not [words for words in about if words.startswith("On the gimbal:") or "∘" in words or "\u2061" in words]
+
+
 def test_little_is_fetched_before_the_first_answer():
     assert (HTML / SCRIPT).stat().st_size <= FIRST_ANSWER
     assert WORDS.name in (HTML / SCRIPT).read_text("utf8")
@@ -146,6 +154,7 @@ def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, si
         page.keyboard.type("er")
         page.locator(FOUND).first.wait_for()
         assert page.locator(FOUND).first.bounding_box()["width"] <= size["width"]
+        assert page.get_by_role("dialog", name="Search").is_visible()
         assert violations(page, "'dialog'") == []  # nothing else can be reached
         page.keyboard.press("ArrowDown")
         page.keyboard.press("ArrowDown")
@@ -153,6 +162,34 @@ def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, si
         assert page.evaluate("document.activeElement.href") == second
         page.keyboard.press("Enter")
         page.wait_for_url(second)
+        assert visit.faults == []
+
+
+def test_words_that_come_late_leave_the_reader_where_they_are(browser, site):
+    with Visit(browser, site, CHAPTER, "light", WIDE) as visit:
+        held = []
+        visit.page.route("**/search-words.js*", lambda route: held.append(route))
+        visit.page.keyboard.press("/")
+        visit.page.keyboard.type("slerp")
+        visit.page.locator(FOUND).first.wait_for()
+        visit.page.keyboard.press("ArrowDown")
+        there = visit.page.evaluate("document.activeElement.href")
+        held[0].continue_()
+        while not visit.page.evaluate("'searchWords' in self"):
+            visit.page.wait_for_timeout(20)
+        visit.page.wait_for_timeout(100)
+        assert there and visit.page.evaluate("document.activeElement.href") == there
+
+
+def test_pasted_numbers_lead_to_the_workbench_alone(browser, site):
+    with Visit(browser, site, CHAPTER, "light", WIDE) as visit:
+        visit.page.keyboard.press("/")
+        visit.page.locator("dialog input").fill("0.7071 0 0 0.7071")
+        visit.page.locator(FOUND).first.wait_for()
+        assert visit.page.locator(FOUND).count() == 1
+        visit.page.keyboard.press("Enter")
+        visit.page.wait_for_url("**/workbench.html#workbench=*")
+        expect(visit.page.locator("textarea").first).to_have_value("0.7071 0 0 0.7071")
         assert visit.faults == []
 
 

@@ -12,11 +12,8 @@ from ..style import STYLE
 
 FOLDER = Path(__file__).parent
 SHARED = ("formulas", "mathematics", "common_picture", "glyphs", "model", "address", "shared")
-#: What ``pictures`` describes, and ``javascript`` translates.
-PICTURES = (
-    "belt", "challenge", "common", "converter", "gimbal", "graph", "hands", "motion", "nine_numbers", "phone",
-    "quaternion", "simple", "successive", "triad", "workbench",
-)  # fmt: skip
+#: What ``pictures`` describes, and ``javascript`` has translated.
+PICTURES = sorted(path.name.removesuffix("_picture.js") for path in (FOLDER / "js").glob("*_picture.js"))
 #: Modules that one figure alone needs, before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
 OWN |= {name: (*OWN.get(name, ()), f"{name}_picture") for name in PICTURES if name != "common"}

@@ -13,11 +13,13 @@ list counts as true, so ask for its length; and a text is no list until ``list``
 import ast
 import re
 
-from .bundle import FOLDER, PICTURES
+from .bundle import FOLDER
 
 COMMAND = "python -m orientation_figures.moving.javascript"
 
 _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
+#: Words of a sheet that take what they are given in order, in both languages.
+_IN_ORDER = ("area", "cylinder", "dot", "label", "label_beyond", "line", "path", "ring")
 _METHODS = {"append": "push", "index": "indexOf", "lower": "toLowerCase"}
 _OPERATORS = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2), ast.Pow: ("**", 3),
@@ -197,6 +199,8 @@ def over(part):
 def call(node):
     given = [expression(one) for one in node.args]
     if node.keywords:
+        if isinstance(node.func, ast.Attribute) and node.func.attr in _IN_ORDER:
+            raise ValueError(f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, without names")
         given.append(entries((one.arg, one.value) for one in node.keywords))
     if isinstance(node.func, ast.Name) and node.func.id in ("min", "max"):
         return f"Math.{node.func.id}({'...' if len(given) == 1 else ''}{', '.join(given)})"
@@ -223,7 +227,8 @@ def filled(part):
 
 def files():
     """All that is written, by the names of the files."""
-    return {FOLDER / "js" / f"{name}_picture.js": translated(name) for name in PICTURES}
+    names = sorted(path.stem for path in (FOLDER / "pictures").glob("[!_]*.py"))
+    return {FOLDER / "js" / f"{name}_picture.js": translated(name) for name in names}
 
 
 if __name__ == "__main__":

@@ -44,7 +44,7 @@ def text_of(element, left_out=()):
         elif id(one) not in left_out:
             waiting += reversed(one.contents)
     words = " ".join(" ".join(parts).replace("\u2061", "").split())  # the sign by which a function is applied
-    return re.sub(r" (?=[,.;:)])", "", re.sub(r" ?∘", "°", words))
+    return re.sub(r" (?=[,.;:)])|(?<=\() ", "", re.sub(r" ?∘", "°", words))
 
 
 def first_sentence(element, left_out=()):

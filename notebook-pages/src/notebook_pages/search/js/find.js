@@ -1,14 +1,15 @@
 // Finds places of the book by what a reader types: words, with slips and synonyms, or signs of a formula.
 //
-// A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare it
-// is, and most if it is one of the subject's; a phrase is as good as the share of the question that it answers, and of
-// itself that was asked for. The shares below were fitted to questions of forums (``tests/pages/queries``), not by feeling.
+// A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare
+// it is, and most if it is one of the subject's; a phrase is as good as the share of the question that it answers, and
+// of itself that was asked for. The shares below were fitted to titles of forums (``tests/pages/queries``).
 import { isLeftOut, isWeak, plain, read, stem, words } from "./words.js";
 
 // The signs of a formula, as TeX has them or as they are typed: what only shapes them is left out.
 export function signs(text) {
   return plain(text.replace(/\{\}\^\{?[A-Z]\}?(\\left\(|\()?(\\mathbf\{C\}|C)\^\{?[A-Z]\}?/g, "$1 C ")
-    .replace(/\\(?:math\w+|boldsymbol|hat|bar|left|right|[dt]?frac|quad|qquad|lvert|rvert|begin|end|text\w*)(?![a-z])/gi, " ")
+    .replace(/\\(?:math\w+|text\w*|boldsymbol|hat|bar|left|right)(?![a-z])/gi, " ")
+    .replace(/\\(?:[dt]?frac|q?quad|lvert|rvert|begin|end)(?![a-z])/gi, " ")
     .replace(/\\[,;:! ]|\b(?:aligned|bmatrix|cases)\b/g, " ")).match(/[a-z]{3,}|[a-z0-9]|[=+-]/g) ?? [];
 }
 const FORMULA = /[=^\\√·×]|\b(?:[a-z]|sin|cos|tan|exp|log|det)\(|\d\/|\/\d|[a-z]_[a-z0-9]\b/i;
@@ -38,14 +39,16 @@ function slips(one, other) {
 }
 
 // What a reader looks for is rather one than another of these, where both answer as well.
-const KINDS = { page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8 };
+const KINDS = {
+  page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8,
+};
 const IN_LONG = { term: 0.85 }; // a question of more than two words asks for more than a term
 const READ = { page: true, section: true }; // those of the chapters have numbers
 const NO_CHAPTER = 0.93;
 const ASKED = 0.95; // what a place counts at least that readers ask for in words of their own
 const WITHIN = { chapter: 0.45, about: 0.45, text: 0.25 }; // what a word counts that stands not in a phrase, but there
 const PHRASE = 0.98, SYNONYM = 0.8, SAME = 1.12; // for a phrase, a synonym, the very words
-const OF_WEAK = 0.4, OF_OTHERS = 0.6, OF_GUESSED = 0.7; // for words that say little, are not the subject's, may be slips
+const OF_WEAK = 0.4, OF_OTHERS = 0.6, OF_GUESSED = 0.7; // for words that say little, of no subject, that may be slips
 const APART = 0.7; // for a word of a name of several words, without the others
 const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
 const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
@@ -105,7 +108,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       const amid = all.slice(one.last + 1, other.first).filter((word) => !AMID.has(word) && !isWeak(stem(word)));
       if (one.number === other.number || amid.length !== 1) continue;
       const there = `§${one.number}>${other.number}`, back = `§${other.number}>${one.number}`;
-      const [term, its] = /^(?:to|into|2|as|->|=>|→)$/.test(amid[0]) ? [there, back] : amid[0] === "from" ? [back, there] : [];
+      const [term, its] = /^(?:to|into|2|as|->|=>|→)$/.test(amid[0]) ? [there, back]
+        : amid[0] === "from" ? [back, there] : [];
       if (term) signs.push({ term, back: its, start: one.start, end: other.end });
     }
     return { all, list, signs, names };
@@ -114,7 +118,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   // Each title and each phrase is a document, and so is each text.
   const documents = [], having = new Map(), spread = new Map(), forms = new Set();
   const add = (entry, text, { within, ...more }) => {
-    const one = { entry, share: 1, within, ...more, ...within === "text" ? { list: words(text), signs: [] } : understood(text) };
+    const read = within === "text" ? { list: words(text), signs: [] } : understood(text);
+    const one = { entry, share: 1, within, ...more, ...read };
     for (const word of one.all ?? []) forms.add(word);
     for (const term of new Set([...one.list, ...one.signs.map((sign) => sign.term)])) {
       if (!having.has(term)) having.set(term, []), spread.set(term, new Set());
@@ -125,14 +130,15 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   };
   for (const [id, { kind, page, anchor, number, title, about, asked = [] }] of entries.entries()) {
     add(id, title, {});
-    if (number) add(id, /^[A-Z]/.test(number) ? number : `${kind === "page" ? "chapter" : kind} ${number}`, { alone: true });
+    const called = kind === "page" ? "chapter" : kind;
+    if (number) add(id, /^[A-Z]/.test(number) ? number : `${called} ${number}`, { alone: true });
     for (const phrase of asked) add(id, phrase, { share: PHRASE });
     if (about) add(id, about, { within: "about" });
     if (anchor && pages[page][2]) add(id, pages[page][1], { within: "chapter" });
     if (more.words?.[id]) add(id, more.words[id], { within: "text" });
   }
-  const ofSubject = new Set(["words", "conversions"].flatMap((of) => (synonyms[of] ?? []).flat().flatMap(words)));
-  for (const { kind, title } of entries) if (kind === "term" || kind === "function") words(title).forEach((word) => ofSubject.add(word));
+  const ofNames = entries.filter(({ kind }) => kind === "term" || kind === "function").map(({ title }) => title);
+  const ofSubject = new Set([...Object.values(synonyms).flat(2), ...ofNames].flatMap(words));
   const size = (term) => spread.get(term)?.size ?? 0; // in how many entries it stands
   const rarity = (term) => Math.log(1 + entries.length / (1 + size(term)));
   const worths = ({ list, signs }) => list.map((word, k) => {
@@ -153,10 +159,12 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     for (let k = 0; k < given.length; k += 1) {
       const [one, next] = [given[k], given[k + 1]];
       const put = () => {
-        if (next && ![one, next].some(isLeftOut) && ![one, next].every(isKnown) && isKnown(one + next)) return k += 1, [one + next];
+        const two = [one, next];
+        if (next && !two.some(isLeftOut) && !two.every(isKnown) && isKnown(one + next)) return k += 1, [one + next];
         const longer = one.length > 2 ? [...forms].filter((form) => form.startsWith(one)) : [];
         if (goesOn && !next && longer.length) { // as it makes a name with what stands before, or else the most frequent
-          return [longer.find((form) => understood([...found, form].join(" ")).names.at(-1)) ?? (forms.has(one) ? one : widest(longer))];
+          const named = longer.find((form) => understood([...found, form].join(" ")).names.at(-1));
+          return [named ?? (forms.has(one) ? one : widest(longer))];
         }
         if (isKnown(one) || one.length < 4 || isLeftOut(one) || longer.length) return [one];
         const letters = /^([a-z]{3,})\d\w*$/.exec(one)?.[1]; // Vector3
@@ -165,7 +173,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
           .find((parts) => parts.every((part) => part.length > 2 && forms.has(part)));
         if (cut) return cut;
         for (let most = 1; most <= (one.length > 6 ? 2 : 1); most += 1) {
-          const like = [...forms].filter((form) => Math.abs(form.length - one.length) <= most && slips(one, form) <= most);
+          const near = [...forms].filter((form) => Math.abs(form.length - one.length) <= most);
+          const like = near.filter((form) => slips(one, form) <= most);
           if (like.length) return guessed.add(stem(widest(like))), [widest(like)];
         }
         return [one];
@@ -179,7 +188,9 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   function meant(word, typed, goesOn) {
     const found = new Map(), whole = having.has(typed) || having.has(stem(typed));
     if (typed.length > 2 && (goesOn || !whole)) {
-      for (const term of having.keys()) if (term.startsWith(typed)) found.set(term, whole ? 0.6 : 0.92 - 0.02 * (term.length - typed.length));
+      for (const term of having.keys()) if (term.startsWith(typed)) {
+        found.set(term, whole ? 0.6 : 0.92 - 0.02 * (term.length - typed.length));
+      }
     }
     if (having.has(word)) found.set(word, typed === word || stem(typed) === word ? 1 : 0.95);
     return found;
@@ -187,7 +198,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
 
   function byWords(text, goesOn) {
     const put = mended(text, goesOn), asked = understood(put.text), { list, signs } = asked;
-    const weights = worths(asked).map((worth, k) => (put.guessed.has(list[k]) ? OF_GUESSED : 1) * worth), whole = sum(weights);
+    const weights = worths(asked).map((worth, k) => (put.guessed.has(list[k]) ? OF_GUESSED : 1) * worth);
+    const whole = sum(weights);
     const answered = (likes) => (sum(likes.map((like, k) => weights[k] * like)) / whole) ** POWER;
     const states = new Map();
     const state = (one) => {
@@ -211,9 +223,13 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       for (const one of having.get(sign.term) ?? []) {
         const { likes, own } = state(one);
         for (let k = sign.start; k < sign.end; k += 1) raise(likes, k, like);
-        for (const its of one.signs) if (its.term === sign.term) for (let j = its.start; j < its.end; j += 1) raise(own, j, like);
+        for (const its of one.signs) if (its.term === sign.term) {
+          for (let j = its.start; j < its.end; j += 1) raise(own, j, like);
+        }
       }
-      if (sign.back) for (const one of having.get(sign.back) ?? []) state(one).back = !one.signs.some(({ term }) => term === sign.term);
+      if (sign.back) for (const one of having.get(sign.back) ?? []) {
+        state(one).back = !one.signs.some(({ term }) => term === sign.term);
+      }
     }
     const beside = new Map(); // what the text of an entry adds
     for (const [one, { likes }] of states) if (one.within) {
@@ -224,15 +240,16 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     const take = (id, score) => best.set(id, Math.max(best.get(id) ?? 0, score));
     for (const [one, { likes, own, back }] of states) if (!one.within) {
       const used = sum(own.map((like, j) => one.worths[j] * like)) / one.worth;
-      const with_ = one.alone ? likes : likes.map((like, k) => Math.max(like, beside.get(one.entry)?.[k] ?? 0));
+      const text = one.alone ? undefined : beside.get(one.entry);
+      const both = likes.map((like, k) => Math.max(like, text?.[k] ?? 0));
       const way = !ways.size || one.signs.some(({ term }) => ways.has(term)) ? 1 : NO_WAY;
       const same = one.list.join(" ") === list.join(" ") ? SAME : 1;
-      take(one.entry, answered(with_) * (1 - OWN + OWN * used) * one.share * same * (back ? OTHER_WAY : way));
+      take(one.entry, answered(both) * (1 - OWN + OWN * used) * one.share * same * (back ? OTHER_WAY : way));
       if (one.alone) continue;
       if (!all.has(one.entry)) all.set(one.entry, { likes: list.map(() => 0), used: 0, way: NO_WAY });
       const its = all.get(one.entry);
-      for (const [k, like] of with_.entries()) raise(its.likes, k, Math.max(likes[k] * one.share, beside.get(one.entry)?.[k] ?? 0));
-      its.used = Math.max(its.used, used * sum(with_.map((like, k) => weights[k] * like)) / whole);
+      for (const [k, like] of likes.entries()) raise(its.likes, k, Math.max(like * one.share, text?.[k] ?? 0));
+      its.used = Math.max(its.used, used * sum(both.map((like, k) => weights[k] * like)) / whole);
       its.way = Math.max(its.way, way);
     }
     // What no one phrase of a place answers, all of them may; and its text, where none does.
@@ -261,7 +278,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     take(byWords(query, !/\s$/.test(query)), formula ? 0.6 : 1);
     if (formula) {
       const asked = pairs(signs(query));
-      take(formulas.map(({ id, signs: there }) => [id, (overlap(asked, there) / asked.length) ** 2 * (asked.length / there.length) ** 0.2]));
+      take(formulas.map(({ id, signs: there }) => (
+        [id, (overlap(asked, there) / asked.length) ** 2 * (asked.length / there.length) ** 0.2])));
     }
     return [...scores].filter(([, score]) => score > 0.06).sort((one, other) => other[1] - one[1]).slice(0, most)
       .map(([id, score]) => ({ ...entries[id], score }));

@@ -65,7 +65,7 @@ function told(text) {
 // All words, and of those that count the stems and where they stand among all.
 export function read(text) {
   const all = told(text), list = [], at = [];
-  for (const [k, word] of all.entries()) if (!LEFT_OUT.has(word) && !/^[-=→]/.test(word)) list.push(stem(word)), at.push(k);
+  for (const [k, word] of all.entries()) if (!isLeftOut(word) && !/^[-=→]/.test(word)) list.push(stem(word)), at.push(k);
   return { all, list, at };
 }
 export const words = (text) => read(text).list;
