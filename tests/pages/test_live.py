@@ -679,7 +679,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     assert page.cell(shown).locator("details:has-text('that everybody sees')").get_attribute("open") is None
 
 
-@pytest.mark.sampled(1, of="what a page keeps")
+@pytest.mark.long
 def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(context, site):
     """In any order of answers, names, a corrected name and reloads, the page says with whose numbers one was right."""
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"

@@ -61,10 +61,10 @@ WITHOUT_SHADOW = """() => [...document.querySelectorAll(".bd-article *")].filter
   && ["auto", "scroll"].includes(getComputedStyle(box).overflowX) && box.scrollWidth > box.clientWidth + 1
   && !getComputedStyle(box).backgroundImage.includes("gradient") && !box.closest("textarea")).map((box) =>
   `${box.tagName}.${box.className}: ${box.textContent.trim().slice(0, 80)}`)"""
-# A full stop or comma after a formula that has come to begin a line.
+# A full stop, comma or ’s after a formula that has come to begin a line.
 STRAY = """() => [...document.querySelectorAll(".bd-article span.math")].filter((formula) => {
   const after = formula.nextSibling, last = [...formula.getClientRects()].at(-1);
-  if (after?.nodeType !== Node.TEXT_NODE || !/^[.,;:!?)]/.test(after.data) || !last?.width) return false;
+  if (after?.nodeType !== Node.TEXT_NODE || !/^(?:[.,;:!?)]|['’]s)/.test(after.data) || !last?.width) return false;
   const range = document.createRange();
   range.setStart(after, 0);
   range.setEnd(after, 1);

@@ -23,6 +23,8 @@ SCRIPT = WEBSITE / "katex.mjs"
 KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 
 PUNCTUATION = tuple(".,;:!?)")
+#: What the end of a line may not part from a formula: after it, and before it.
+CLOSING, OPENING = ("’s", "'s", *PUNCTUATION), tuple("([“")
 SHORT = 18  # signs, as a reader sees them, of a formula that need not be broken: half a line of the narrowest page
 #: What TeX needs and nobody sees, or sees above or around another sign.
 UNSEEN = re.compile(r"\\(?:math\w+|hat|bar|dot|ddot|vec|tilde|left|right|[dt]?frac|quad)\b|\\[,;:! ]|[{}^_&\s]")
@@ -216,15 +218,25 @@ def signs(tex):
 
 
 def keep_punctuation(app, doctree, docname):
-    """Let no line begin with the full stop or comma after a short formula."""
+    """Let no line begin with the full stop, comma or ’s after a short formula, nor end with the bracket before it."""
     for formula in list(doctree.findall(nodes.math)):
+        if signs(formula.astext()) > SHORT:
+            continue
         parent = formula.parent
         place = parent.index(formula)
-        after = parent[place + 1] if place + 1 < len(parent) else None
-        if isinstance(after, nodes.Text) and after[:1] in PUNCTUATION and signs(formula.astext()) <= SHORT:
-            together = nodes.inline("", "", classes=["together"])
-            parent[place : place + 2] = [together, nodes.Text(after[1:])]
-            together += [formula, nodes.Text(after[0])]
+        before, after = (
+            parent[k] if 0 <= k < len(parent) and isinstance(parent[k], nodes.Text) else nodes.Text("")
+            for k in (place - 1, place + 1)
+        )
+        opening = before[-1:] if before.endswith(OPENING) else ""
+        closing = next((mark for mark in CLOSING if after.startswith(mark)), "")
+        if opening or closing:
+            parent[place] = together = nodes.inline("", "", classes=["together"])
+            together += [nodes.Text(opening), formula, nodes.Text(closing)]
+            if closing:
+                parent[place + 1] = nodes.Text(after[len(closing) :])
+            if opening:
+                parent[place - 1] = nodes.Text(before[:-1])
 
 
 def visit_inline(translator, node):

@@ -379,11 +379,16 @@ def make(site, file, title, author):
         page.evaluate("document.fonts.ready")
         if faults := page.evaluate(FIT, SMALLEST):
             raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
-        # The list of contents needs the page numbers: print, read them, print again.
-        numbers = page_numbers(page.pdf(**PAPER))
-        page.evaluate(FILL_IN, numbers)
-        headings = page.evaluate(HEADINGS)
-        printed = page.pdf(**PAPER, outline=True, tagged=True)
+        # The list of contents needs the page numbers: print, read them, print again, until they are true. On a busy
+        # machine the first print may come before a typeface that only paper shows.
+        numbers, printed = None, page.pdf(**PAPER)
+        for _ in range(3):
+            if page_numbers(printed) == numbers:
+                break
+            numbers = page_numbers(printed)
+            page.evaluate(FILL_IN, numbers)
+            headings = page.evaluate(HEADINGS)
+            printed = page.pdf(**PAPER, outline=True, tagged=True)
     if page_numbers(printed) != numbers:
         raise RuntimeError("the page numbers in the list of contents moved the pages they name")
     return finish(printed, headings, title, author)

@@ -22,10 +22,18 @@ from ..store import REFUSED, Store, file_name, write
 from ..submissions.intake import Refused
 from ..tables import lines, table
 from . import pages
-from .templates_of_pages import page
+from .templates_of_pages import ENVIRONMENT, page
 
 #: The addresses that feedback leads to, as the course had them when it was graded.
 LINKS = "links.json"
+#: What the author's attack says of the points of each assignment, and what that means for a mark.
+STRENGTHS = "strengths.json"
+GUESSING = (
+    "What lies before is earned without an idea by whoever lets a script try answers in `check`, at some 12 ms a try; what "
+    "lies behind was not found by the author's attack, and somebody may have a better one. An exam, a function, or a word "
+    "with the student tells more."
+)
+ENVIRONMENT.globals["GUESSING"] = GUESSING
 #: What is said of an outcome once there is no "yet" any more.
 FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
@@ -142,7 +150,7 @@ def write_all(store: Store) -> None:
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
     write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
-    write(store.folder / "report.html", report(classes, refused))
+    write(store.folder / "report.html", report(classes, refused, store.said(STRENGTHS, by_name(text)) or {}))
 
 
 UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer")
@@ -263,7 +271,7 @@ def _deeds() -> dict[str, str]:
     return DEEDS | {note: deed for plugin in plugins() for note, deed in getattr(plugin, "DEEDS", {}).items()}
 
 
-def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> str:
+def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused], strengths: Mapping[str, str]) -> str:
     """The page on the class."""
     ways = sum((found.ways for found in classes.values()), Counter())
     versions = sum((found.versions for found in classes.values()), Counter())
@@ -271,6 +279,7 @@ def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> st
         "report.html",
         classes=[(name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())],
         refused=refused,
+        strengths=strengths,
         ways=sorted(ways.items()),
         versions=sorted(versions.items()),
         parts=PARTS,
