@@ -415,8 +415,11 @@ def measure(course, only=(), all_variants=False, budget=BUDGET):
     paths = notebooks_in(course.sources, only)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         sources = [course] * len(paths), [all_variants] * len(paths), [budget] * len(paths)
-        measured = {name: one for some in pool.map(_measured_in, paths, *sources) for name, one in some.items()}
-    write_measured(course.sources, paths, measured)
+        measured = {}
+        for path, some in zip(paths, pool.map(_measured_in, paths, *sources), strict=True):
+            # What is known is kept, should somebody have no time for the rest.
+            write_measured(course.sources, [path], some)
+            measured |= some
     found = {name: (one["worth"], weakest_of(one)) for name, one in measured.items()}
     return [
         *(f"{name}, {_of(worth, 'point')}: {one}" for name, (worth, one) in found.items()),
