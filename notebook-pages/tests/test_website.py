@@ -141,7 +141,7 @@ def test_good_book(tmp_path):
     html = (tmp_path / "_build/html/chapter.html").read_text("utf8")
     assert "Figure 1.1" in html and "(1.1)" in html and "Exercise 1.1" in html
     assert ALTERNATIVE in (tmp_path / "_build/html/plot.html").read_text("utf8")
-    assert 'class="katex"' in html and "<math" in html
+    assert "<span class=katex " in html and "<math" in html
     assert "mathjax@" not in html.lower() and "thebe" not in html.lower()
     markdown = nbformat.read(tmp_path / "_build/html/take-away/chapter.ipynb", as_version=4)
     text = "\n\n".join(cell.source for cell in markdown.cells if cell.cell_type == "markdown")

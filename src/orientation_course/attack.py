@@ -275,5 +275,7 @@ def _turns_in(call):
         if not isinstance(one, list) or len(one) != 2 or not isinstance(one[1], (int, float)):
             return None
         axis = np.eye(3)["xyz".index(one[0])] if one[0] in ("x", "y", "z") else np.array(one[0], dtype=float)
+        if axis.shape != (3,):
+            return None
         turns.append((axis / np.linalg.norm(axis), one[1]))
     return turns

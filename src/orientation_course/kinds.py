@@ -4,6 +4,8 @@ A quaternion and its negative, or the many Euler angles of one orientation, are 
 there is one of.
 """
 
+import unicodedata
+
 from coursework.checking.evaluate import MP
 from coursework.checking.kinds import (
     FUNCTIONS,
@@ -78,9 +80,10 @@ def _axis_and_angle(question, value):
 
 
 def _sequence(question, plain):
-    text = "".join(
-        letter for letter in word(plain, "A sequence of three axes, such as `'xyz'`,").lower() if letter.isalnum()
-    )
+    given = word(plain, "A sequence of three axes, such as `'xyz'`,").lower()
+    # Wide letters are letters; and in many a book the axes are numbers.
+    text = "".join(letter for letter in unicodedata.normalize("NFKC", given) if letter.isalnum())
+    text = text.translate(str.maketrans("123", "xyz"))
     if len(text) != 3 or set(text) - set("xyz"):
         raise Fault("shape", f"A sequence is three of the letters x, y and z, such as `'xyz'`; this is `{text[:20]}`.")
     if text[0] == text[1] or text[1] == text[2]:

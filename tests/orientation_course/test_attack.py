@@ -123,6 +123,14 @@ def test_a_function_of_turns_is_attacked_by_some_of_them():
     assert not found.way and found.tries > 30
 
 
+def test_a_list_of_pairs_of_numbers_is_not_taken_for_turns():
+    """The attack once stopped with an error at a function that is given points of a plane."""
+    calls = [[[[0.3, 0.5], [1.0, 2.0]]], [[[-1.1, 0.2]]]]
+    about = {"result": "quaternion", "calls": calls, "tolerance": 1e-9}
+    found = attack(question("trial/plane", "function", lambda points: [0.6, 0, 0.48, 0.64], **about), budget=100)
+    assert not found.way
+
+
 def test_the_reply_to_a_mistake_shortens_the_attack():
     """Turned through the wrong sign, the reply says so: no other choice need be tried."""
     assert "by the reply" in attack(GIMBAL).way

@@ -257,6 +257,11 @@ AXES = make("trial/up", "words", ["+x", "-z", "none"], options=["+x", "-x", "+z"
         (SIGNS, [-sm.Symbol("i"), sm.Integer(1), "+k"]),
         (SIGNS, ["- i", "+ 1", " K "]),
         (AXES, ["x", "- z", "None"]),
+        (AXES, ["\u201cx\u201d", "\uff0d\uff5a", "'none'"]),  # out of a text program
+        (KINDS["a sequence"], "\uff3a\u2013\uff38\u2013\uff39"),
+        (KINDS["a sequence"], "3-1-2"),
+        (KINDS["a number"], 180 * units.degree / 7),
+        (KINDS["Euler angles"], [degrees * units.degree for degrees in (17.18873, 28.64789, -40.10705)]),
         (KINDS["truth values"], ["True", "False", "true", True, 0, sm.false, np.True_, "False"]),
         (KINDS["a number"], sm.pi / 7 + 0 * sm.Symbol("x")),
         (KINDS["a vector"], TWO * sm.Matrix([1, 2, 0]) * units.radian),
@@ -273,6 +278,8 @@ THREE, MATRIX = "The question wants a list of 3 components; this is ", "The ques
     ("kind", "answer", "words"),
     [
         ("a vector", ["1", "2", "0"], THREE + "a list that holds a text: numbers stand without quotation marks."),
+        ("a vector", "[1, 2, 0]", THREE + "a text: write it without quotation marks."),
+        ("a number", "0,5", "this is a text: write it without quotation marks."),
         ("a vector", [theta, ..., ...], THREE + "a list that is still blank in part."),
         ("a vector", [theta, 1, [1, 2]], THREE + "a list with 3 entries, one of which is a list with 2 entries."),
         ("a vector", sm.Matrix([1, 2, 0]) * units.meter, "the unit `meter`. Give numbers alone"),

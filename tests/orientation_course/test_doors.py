@@ -30,8 +30,9 @@ DRAW = "\n".join(
     [
         "import hashlib, html, random, re",
         "from collections.abc import Callable, Mapping",
-        "from typing import NamedTuple",
-        "Json = object",
+        "from dataclasses import dataclass",
+        "from typing import Any, NamedTuple",
+        "Json = Pool = object",
         "class AuthorError(ValueError): pass",
         f"MOST_ATTEMPTS = {variation.MOST_ATTEMPTS}",
         inspect.getsource(variation.Rule),

@@ -10,7 +10,6 @@ from coursework.authoring.attack import BUDGET, CODE, Found
 from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive as pack
 from coursework.authoring.selftest import (
-    _share_beyond,
     _try_notebook,
     leaks,
     measure,
@@ -22,7 +21,7 @@ from coursework.authoring.selftest import (
     write_measured,
     write_page,
 )
-from coursework.authoring.source import measured_strengths, names_asked
+from coursework.authoring.source import measured_strengths, names_asked, said_beyond
 
 SOURCES = {path.stem: path for path in sorted(COURSE.sources.glob("*.ipynb"))}
 
@@ -109,7 +108,7 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
     assert findings[0].attack.way and findings[0].attack.tries < 100
     # Every variant is attacked, and each counts for its part of the points.
     assert measured["levers/arm"]["tries"][0] == 0 and all(measured["levers/arm"]["tries"][1:])
-    assert _share_beyond(measured) == "33%"
+    assert said_beyond(measured).startswith("33% of 1 point are")
 
 
 def test_what_was_measured_is_measured_again_only_where_something_has_changed(tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ import matplotlib
 import numpy as np
 import pytest
 
-from orientation_figures.plot import Plot, _short_path
+from orientation_figures.plot import SETTINGS, Plot, _short_path
 from orientation_figures.style import LIGHT
 
 ALT = "A line that rises from the origin to the point one, one, and a flat dashed line below it."
@@ -54,6 +54,13 @@ def test_the_same_plot_has_the_same_bytes_and_two_plots_share_no_id():
     assert ids[0] and not ids[0] & ids[1]
     used = re.findall(r'(?:href="#|url\(#)([^")]+)', example())
     assert used and set(used) <= ids[0]
+
+
+def test_words_are_11_pixels_high_on_a_telephone():
+    """A telephone of 380 pixels leaves 348 for a figure."""
+    for width in (400, 560, 640):
+        set_wide = float(re.search(r'viewBox="0 0 ([\d.]+)', Plot(ALT, width=width)._repr_html_())[1])
+        assert SETTINGS["font.size"] * 348 / set_wide >= 11
 
 
 def test_matplotlib_is_left_as_it_was():

@@ -105,10 +105,8 @@ def special():
         yield case(text, "1 0 0 0")
     for text in TABLES:
         yield case(text, printed([dcm]))
-    yield case("roll: 0.1\npitch: 0.2\nyaw: 0.3", "0.3 0.2 0.1", ({}, {"sequence": "zyx"}))
     yield case(printed([simple_dcm("z", 0.5)]), printed([simple_dcm("z", -0.5)]))
     yield case("1 0 0 0", "1 0 0 0")
-    yield case("0.3 0 0", "0.3 0 0", ({"sequence": "zyx"}, {"sequence": "zyx"}))
     yield case(printed(poses[:3]), printed(constants[0] @ poses[:3]))
     yield case(printed(poses), printed(constants[0] @ poses @ constants[1]))
     yield case(printed(poses[:2]), printed(poses[2:]))
@@ -116,9 +114,15 @@ def special():
     yield case(printed([dcm]), printed([dcm @ np.diag([1, 1, -1])]))
 
 
+def angles_that_fit_in_many_ways():
+    """Each takes the search a second: for every night."""
+    yield case("roll: 0.1\npitch: 0.2\nyaw: 0.3", "0.3 0.2 0.1", ({}, {"sequence": "zyx"}))
+    yield case("0.3 0 0", "0.3 0 0", ({"sequence": "zyx"}, {"sequence": "zyx"}))
+
+
 @pytest.mark.parametrize("count", [10, pytest.param(2_000, marks=pytest.mark.long)])
 def test_both_say_the_same(count):
-    cases = [*special(), *mixtures(count, seed=8)]
+    cases = [*special(), *(angles_that_fit_in_many_ways() if count > 10 else ()), *mixtures(count, seed=8)]
     for one, found in zip(cases, in_the_page(cases)):
         wanted = in_python(one)
         if "residual" in wanted and wanted["residual"] is not None:

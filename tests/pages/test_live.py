@@ -255,9 +255,16 @@ def test_nothing_is_loaded_before_the_reader_asks(context, site):
 def test_pages_hardly_grow(name):
     data = re.search(r'<script type="application/json" id="live-data">.*?</script>', (HTML / name).read_text("utf8"))
     button = '<button class="run-page">Run this page</button>' * 3
-    added = [(HTML / "_static" / file).read_bytes() for file in ("live.js", "live.css")]
+    added = [(HTML / "_static" / "live.js").read_bytes(), (scripts.JS / "page.css").read_bytes()]
     added.append((data[0] + button).encode())
     assert sum(len(gzip.compress(part)) for part in added) < 5000
+
+
+def test_formulas_of_the_page_stay_as_they_are_when_python_comes():
+    """KaTeX's own rules, which come with it, give way to those of the page: they would make all formulas larger."""
+    (sheet,) = HTML.glob("runtime/scripts-*/live.css")
+    before, _, rules = sheet.read_text("utf8").partition("@layer katex {")
+    assert ".katex" not in before and ".vlist" in rules and rules.count("{") + 1 == rules.count("}")
 
 
 @pytest.mark.long
@@ -679,7 +686,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     assert page.cell(shown).locator("details:has-text('that everybody sees')").get_attribute("open") is None
 
 
-@pytest.mark.sampled(1, of="what a page keeps")
+@pytest.mark.long
 def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(context, site):
     """In any order of answers, names, a corrected name and reloads, the page says with whose numbers one was right."""
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"

@@ -178,10 +178,12 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
         page.locator("input[type=file]").set_input_files(tmp_path / "wrong.json")
         page.wait_for_function("document.querySelector('.said').textContent.includes('nothing has changed')")
         page.evaluate("document.querySelector('.said').textContent = ''")
+    assert not page.get_by_text("earlier edition").is_visible()
+    record["pages"][CHAPTER]["done"].append("exercise-of-an-earlier-edition")
     (tmp_path / "kept.json").write_text(json.dumps(record))
     page.locator("input[type=file]").set_input_files(tmp_path / "kept.json")
     page.wait_for_function("document.querySelector('.said').textContent === 'Imported: your record is back.'")
-    assert cell("done").startswith("1 of ")
+    assert cell("done").startswith("1 of ") and "1 in all" in page.get_by_text("earlier edition").inner_text()
 
 
 def test_right_answer_of_the_checker_counts(context, site):

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 from places import HTML, REPOSITORY
+from playwright.sync_api import expect
 from test_site import NARROW, WIDE, Visit, violations
 
 from notebook_pages import search
@@ -164,6 +165,22 @@ def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, si
         assert visit.faults == []
 
 
+def test_words_that_come_late_leave_the_reader_where_they_are(browser, site):
+    with Visit(browser, site, CHAPTER, "light", WIDE) as visit:
+        held = []
+        visit.page.route("**/search-words.js*", lambda route: held.append(route))
+        visit.page.keyboard.press("/")
+        visit.page.keyboard.type("slerp")
+        visit.page.locator(FOUND).first.wait_for()
+        visit.page.keyboard.press("ArrowDown")
+        there = visit.page.evaluate("document.activeElement.href")
+        held[0].continue_()
+        while not visit.page.evaluate("'searchWords' in self"):
+            visit.page.wait_for_timeout(20)
+        visit.page.wait_for_timeout(100)
+        assert there and visit.page.evaluate("document.activeElement.href") == there
+
+
 def test_pasted_numbers_lead_to_the_workbench_alone(browser, site):
     with Visit(browser, site, CHAPTER, "light", WIDE) as visit:
         visit.page.keyboard.press("/")
@@ -172,9 +189,7 @@ def test_pasted_numbers_lead_to_the_workbench_alone(browser, site):
         assert visit.page.locator(FOUND).count() == 1
         visit.page.keyboard.press("Enter")
         visit.page.wait_for_url("**/workbench.html#workbench=*")
-        visit.page.wait_for_function(
-            "[...document.querySelectorAll('textarea')].some((one) => one.value === '0.7071 0 0 0.7071')"
-        )
+        expect(visit.page.locator("textarea").first).to_have_value("0.7071 0 0 0.7071")
         assert visit.faults == []
 
 

@@ -273,7 +273,7 @@ def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(
     monkeypatch.undo()
     monkeypatch.chdir(course)
     main(["selftest", "beam"])
-    assert "0% are behind more than" in (course / "build" / "selftest.html").read_text("utf8")
+    assert "0% of 3 points are behind more than" in (course / "build" / "selftest.html").read_text("utf8")
     source = course / "solutions" / "beam.ipynb"
     source.write_text(source.read_text("utf8").replace("worth=3", "exam=True, worth=3"), "utf8")
     main(["release", "beam"])

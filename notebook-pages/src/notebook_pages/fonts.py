@@ -21,21 +21,26 @@ from .paths import NODE_MODULES, fingerprint
 KATEX = NODE_MODULES / "katex" / "dist"
 SERIF = NODE_MODULES / "@fontsource" / "source-serif-4" / "files"
 SANS = NODE_MODULES / "@fontsource-variable" / "source-sans-3" / "files"
-#: Signs of the text; the files of fontsource hold hardly more.
-LATIN = "U+20-7E,U+A0-FF,U+131,U+152-153,U+2BC,U+2C6,U+2DA,U+2DC,U+2009-200B,U+2010-2026,U+202F,U+2032,U+20AC,U+2212"
+#: Signs of the text: those that the book has, and a few more; with one of the others a page fetches the whole face.
+LATIN = (
+    "U+20-7E,U+A0,U+A9,U+B0-B2,U+B5,U+B7,U+D7,U+E0,U+E4,U+E8-E9,U+F6,U+F8,U+FC,U+2009,U+2013-2014,U+2018-2019,"
+    "U+201C-201D,U+2026,U+202F,U+2032,U+2212"
+)
+SELDOM = "U+A1-FF,U+131,U+152-153,U+2BC,U+2C6,U+2DA,U+2DC,U+200A-200B,U+2010-2026,U+20AC"
 #: Signs of formulas: letters, Greek, operators, brackets and accents.
-GREEK = "U+391-3A9,U+3B1-3C9,U+3D1,U+3D5-3D6,U+3F1,U+3F5"
+GREEK = "U+3B1-3B9,U+3BB,U+3BC,U+3C0,U+3C1,U+3C3,U+3C4,U+3C6-3C9,U+3D5,U+3F5"
 FORMULAS = (
-    "U+20-7E,U+A0,U+A8,U+AF-B1,U+B4,U+B7,U+D7,U+F7,U+131,U+2C6-2DC,U+391-3A9,U+2013-2026,U+2032,U+20D7,"
-    "U+2190-2193,U+21A6,U+21D2,U+21D4,U+2200-2208,U+2211-221E,U+2223-222B,U+223C,U+2245-2248,U+2260-226B,U+22A4-22A5,"
-    "U+22C5,U+22EE-22F1,U+27E8-27E9,U+27F6,U+27FA"
+    "U+20-7E,U+A0,U+A8,U+AF-B1,U+B4,U+B7,U+D7,U+2C6,U+2C9,U+2D9,U+2DC,U+394,U+398,U+3A3,U+3A6,U+3A9,U+2013-2014,"
+    "U+2018-2019,U+201C-201D,U+2026,U+2032,U+20D7,U+2190-2193,U+21D2,U+21D4,U+2202,U+2208,U+2211-2212,U+2217-2218,"
+    "U+221A,U+221E,U+2223,U+2225,U+222B,U+223C,U+2248,U+2260-2261,U+2264-2265,U+22A4-22A5,U+2297,U+22C5,U+22EE-22F1,"
+    "U+27E8-27E9,U+27FA"
 )
 FACES = (
     # family, weight, style, file, signs, whether the whole file stands by
-    ("Source Serif 4", "400", "normal", SERIF / "source-serif-4-latin-400-normal.woff2", LATIN, False),
-    ("Source Serif 4", "400", "italic", SERIF / "source-serif-4-latin-400-italic.woff2", LATIN, False),
-    ("Source Serif 4", "600", "normal", SERIF / "source-serif-4-latin-600-normal.woff2", LATIN, False),
-    ("Source Sans 3", "400 600", "normal", SANS / "source-sans-3-latin-wght-normal.woff2", LATIN, False),
+    ("Source Serif 4", "400", "normal", SERIF / "source-serif-4-latin-400-normal.woff2", LATIN, True),
+    ("Source Serif 4", "400", "italic", SERIF / "source-serif-4-latin-400-italic.woff2", LATIN, True),
+    ("Source Serif 4", "600", "normal", SERIF / "source-serif-4-latin-600-normal.woff2", LATIN, True),
+    ("Source Sans 3", "400 600", "normal", SANS / "source-sans-3-latin-wght-normal.woff2", LATIN, True),
     ("KaTeX_Main", "400", "normal", KATEX / "fonts" / "KaTeX_Main-Regular.woff2", FORMULAS, True),
     ("KaTeX_Main", "700", "normal", KATEX / "fonts" / "KaTeX_Main-Bold.woff2", "U+20-7E,U+A0,U+2C6-2DC,U+D7", True),
     ("KaTeX_Math", "400", "italic", KATEX / "fonts" / "KaTeX_Math-Italic.woff2", f"U+20-7E,U+A0,{GREEK}", True),
@@ -59,9 +64,9 @@ def codes(signs):
         yield from range(int(first, 16), int(last or first, 16) + 1)
 
 
-def beyond(file, signs):
-    """The ``unicode-range`` of what the face ``file`` has beyond ``signs``."""
-    left = sorted(set(TTFont(file).getBestCmap()) - set(codes(signs)))
+def beyond(file, signs, seldom):
+    """The ``unicode-range`` of what ``file`` has beyond ``signs``: of ``seldom``, or of all that is in it."""
+    left = sorted((set(codes(seldom)) if seldom else set(TTFont(file).getBestCmap())) - set(codes(signs)))
     starts = [code for code in left if code - 1 not in left]
     ends = [code for code in left if code + 1 not in left]
     return ",".join(f"U+{a:X}" if a == b else f"U+{a:X}-{b:X}" for a, b in zip(starts, ends))
@@ -118,32 +123,42 @@ def name_of(source):
     return next(name for name, known in files().items() if known == source)
 
 
+def face_rule(folder, family, weight, style, source, reach):
+    begin = f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};font-display:swap;'
+    return f'{begin}src:url({folder}/{name_of(source)}) format("woff2"){f";unicode-range:{reach}" if reach else ""}}}'
+
+
 @cache
 def face_rules(folder):
     """The rules for the page, whose fonts stand in ``folder``."""
-    rules = []
-    for family, weight, style, file, signs, whole in FACES:
-        rule = f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};font-display:swap;src:url('
-        parts = [(cut_faces() / file.name, f";unicode-range:{signs}" if whole else "")]
-        if whole:
-            parts.append((file, f";unicode-range:{beyond(file, signs)}"))
-        rules += [f'{rule}{folder}/{name_of(source)}) format("woff2"){reach}}}' for source, reach in parts]
+    rules = [
+        face_rule(folder, family, weight, style, cut_faces() / file.name, signs if whole else None)
+        for family, weight, style, file, signs, whole in FACES
+    ]
     for name, width in UNTIL_THEN.items():
         rules.append(f'@font-face{{font-family:"{name} for now";src:local("{name}");size-adjust:{width}%}}')
     return "\n".join(rules)
 
 
+def whole_face_rules(folder):
+    """The rules for a sheet from which the fonts stand in ``folder``: the whole faces, for what the cut ones lack."""
+    return "\n".join(
+        face_rule(folder, family, weight, style, file, beyond(file, signs, SELDOM if signs == LATIN else None))
+        for family, weight, style, file, signs, whole in FACES
+        if whole
+    )
+
+
 def katex_rules(folder):
-    """KaTeX's rules, without those that the page itself has; the fonts that few pages need go to ``folder``."""
+    """KaTeX's rules, without those that the page itself has, for a sheet from which the fonts stand in ``folder``."""
     known = {face[3].name for face in FACES}
 
     def rule(match):
-        font = KATEX / "fonts" / re.search(r"KaTeX_[\w-]+\.woff2", match[0])[0]
-        if font.name in known:
-            known.remove(font.name)
+        font = re.search(r"KaTeX_[\w-]+\.woff2", match[0])[0]
+        if font in known:
+            known.remove(font)
             return ""
-        shutil.copyfile(font, folder / font.name)
-        return re.sub(r"src:url\([^}]*", f'src:url(fonts/{font.name}) format("woff2")', match[0])
+        return re.sub(r"src:url\([^}]*", f'src:url({folder}/{font}) format("woff2")', match[0])
 
     rules = re.sub(r"@font-face\{[^}]*\}", rule, (KATEX / "katex.min.css").read_text("utf8"))
     if any(name.startswith("KaTeX") for name in known):
@@ -158,16 +173,18 @@ def write(app):
         for outdated in folder.iterdir():
             if outdated.name not in files():
                 outdated.unlink()
-        for name, source in files().items():
+        known = {face[3].name for face in FACES}
+        seldom = {font.name: font for font in (KATEX / "fonts").glob("*.woff2") if font.name not in known}
+        for name, source in (files() | seldom).items():
             shutil.copyfile(source, folder / name)
 
 
 #: How one sees in the HTML of a part of a page that it is set in a face; the faces that are not named here are
 #: on every page.
 SEEN_BY = {
-    ("Source Serif 4", "400", "italic"): r"<(?:em|i|cite|dfn)\b",
-    ("KaTeX_Main", "400", "normal"): r'class="katex\b',
-    ("KaTeX_Main", "700", "normal"): r"\bmathbf\b",
+    ("Source Serif 4", "400", "italic"): r"<(?:em|cite|dfn)\b",
+    ("KaTeX_Main", "400", "normal"): r"class=katex\b",
+    ("KaTeX_Main", "700", "normal"): r"<b>",
     ("KaTeX_Math", "400", "italic"): r"<var\b|\bboldsymbol\b",
     ("KaTeX_Math", "700", "italic"): r"\bboldsymbol\b",
     ("KaTeX_Size1", "400", "normal"): r"\b(?:delimsizing size1|delim-size1|small-op)\b",

@@ -7,7 +7,7 @@ from pathlib import Path
 from docutils import nodes
 
 from .finish import pages_of
-from .fonts import katex_rules
+from .fonts import katex_rules, whole_face_rules
 from .paths import NODE, NODE_MODULES, WEBSITE
 
 PURGE = WEBSITE / "purge.mjs"
@@ -25,7 +25,7 @@ THEME_STYLES = (
     "mystnb.*.css",
     "exercise.css",
 )
-STYLES = ("theme.css", "book.css")
+STYLE = "style.css"
 # Scripts that some extension would put on every page although no page uses them.
 UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight")
 #: The scripts of the page itself, in their order, which a page fetches as one file; and those that not all pages have.
@@ -47,6 +47,7 @@ JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
 #: How the theme finds out which boxes scroll: by measuring all of them at once, which lays out the whole page, and
 #: again for each in turn. book.js watches them instead.
 MEASURES = re.compile(r"\.forEach\(e=>\{e\.tabIndex=e\.scrollWidth>e\.clientWidth\|\|[^{}]*\}\)")
+VALUE = re.compile(r"--(?:bs|mystnb|pst|sbt)-[\w-]+")
 UNUSED_FILES = (
     "searchtools.js",
     "language_data.js",
@@ -167,7 +168,7 @@ def trim_page(app, pagename, templatename, context, doctree):
     app.add_js_file(f"{joined}.js", priority=100)
     for script in context["script_files"]:
         script.attributes.setdefault("defer", "defer")  # no script is awaited before the text is shown
-    context["styles"] = STYLES
+    context["styles"] = [STYLE]
     if "body" in context:
         context["body"] = lighten(context["body"])
 
@@ -183,19 +184,46 @@ def make_small(static, files, told):
         subprocess.run([NODE, ESBUILD, *options, *files], check=True)
 
 
+def number_values(site, rules):
+    """The rules with numbers for the long names of the theme's values, unless something else asks for them."""
+    others = [*pages_of(site), *site.glob("_static/moving/*"), WEBSITE / "print.css"]
+    known = {name for path in others for name in VALUE.findall(path.read_text("utf8"))}
+    numbers = {name: f"--{number}" for number, name in enumerate(sorted({*VALUE.findall(rules)} - known))}
+    return VALUE.sub(lambda match: numbers.get(match[0], match[0]), rules)
+
+
+def purged(site, rules, *others):
+    """The rules that some page uses, or one of the scripts or style sheets ``others``."""
+    sheet = site / "_static" / "purged.css"
+    sheet.write_text(rules, "utf8")
+    subprocess.run([NODE, PURGE, NODE_MODULES, site, sheet, *others], check=True)
+    kept = sheet.read_text("utf8")
+    sheet.unlink()
+    return kept
+
+
 def bundle_styles(site):
-    """Write the theme's style sheets as one layer, and KaTeX's: no icon font, no rule that no page uses, no blank."""
+    """Write the styles of all pages as one file: no icon font, no rule that no page uses, no blank.
+
+    The theme's are one layer. KaTeX's are for the words of light_formulas.py; what is set while one reads, of what a
+    cell puts out, has KaTeX's own rules with the styles of the editor.
+    """
     static = site / "_static"
     parts = theme_styles(static)
     if (static / "basic.css").exists():  # else Sphinx had nothing to build and copied nothing
-        rules = "\n".join(path.read_text("utf8") for path in parts)
-        rules = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", rules, flags=re.DOTALL)
-        theme = static / "theme.css"
-        theme.write_text("@layer theme {\n" + rules + "\n}\n", "utf8")
-        others = [static / "book.css", *static.glob("**/*.js"), *static.glob("moving/*.css")]
-        subprocess.run([NODE, PURGE, NODE_MODULES, site, theme, *others], check=True)
-        with theme.open("a", encoding="utf8") as file:
-            file.write(katex_rules(static / "fonts"))
+        theme = "\n".join(path.read_text("utf8") for path in parts)
+        theme = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", theme, flags=re.DOTALL)
+        own = [static / "book.css", WEBSITE / "live" / "js" / "page.css"]
+        scripts = [path for name in PAGE_SCRIPTS if (path := static / name).exists()]
+        others = [*own, *scripts, *static.glob("moving/*"), *(WEBSITE / "live" / "js").glob("*.js")]
+        rules = [
+            purged(site, "@layer theme {\n" + theme + "\n}\n", *others),
+            purged(site, katex_rules("fonts").replace("span", "i")),
+            whole_face_rules("fonts"),
+            *(path.read_text("utf8") for path in own),
+        ]
+        (static / STYLE).write_text(number_values(site, "\n".join(rules)), "utf8")
+        parts.append(static / "book.css")
     for path in parts:
         path.unlink()
     make_small(static, [*static.glob("*.css"), *static.glob("moving/*.css")], "warning")
@@ -231,8 +259,8 @@ def finish(app, exception):
         for path in static.glob(pattern):
             if path.is_file() and path not in kept:
                 path.unlink()
-    join_scripts(Path(app.outdir))
     bundle_styles(Path(app.outdir))
+    join_scripts(Path(app.outdir))
     for folder in sorted(static.rglob("*"), reverse=True):
         if folder.is_dir() and not any(folder.iterdir()):
             folder.rmdir()

@@ -63,7 +63,7 @@ FIT = """smallest => {
   const faults = [];
   for (const element of document.querySelectorAll("article *")) {
     // MathML is there for screen readers, one pixel large.
-    if (element.closest("svg, .katex-mathml") && element.tagName !== "svg") continue;
+    if (element.closest("svg, .katex > :first-child") && element.tagName !== "svg") continue;
     if (element.closest(".katex") && element.className !== "katex") continue;
     const box = element.getBoundingClientRect();
     if (box.width && (box.right > sheet.right + 1 || box.left < sheet.left - 30))
@@ -115,10 +115,9 @@ def move_answers(text):
 def as_picture(formula):
     """A PDF has no MathML: screen readers get the formula in words."""
     formula["role"], formula["aria-label"] = "img", tagged.FORMULA + spoken(formula.select_one("math"))
-    formula.select_one(".katex-mathml").decompose()
-    del formula.select_one(".katex-html")["aria-hidden"]
-    for blank in formula.select(".vlist-s"):
-        blank.string = "\u00a0"  # KaTeX's own typeface lacks the blank without width that stands here
+    heard, drawn = formula.find_all(recursive=False)
+    heard.decompose()
+    del drawn["aria-hidden"]
 
 
 def as_drawn(state):
@@ -298,7 +297,7 @@ def document(site, title):
             text.insert(0, BeautifulSoup(f'<h1 class="part">{escape(caption)}</h1>', "html.parser"))
         body.append(str(text))
     static = (site / "_static").resolve().as_uri()
-    styles = ["theme.css", "book.css", "moving/moving.css"]
+    styles = ["style.css", "moving/moving.css"]
     links = "".join(f'<link rel="stylesheet" href="{static}/{name}">' for name in styles)
     own = (WEBSITE / "print.css").read_text("utf8")
     return (
@@ -379,11 +378,16 @@ def make(site, file, title, author):
         page.evaluate("document.fonts.ready")
         if faults := page.evaluate(FIT, SMALLEST):
             raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
-        # The list of contents needs the page numbers: print, read them, print again.
-        numbers = page_numbers(page.pdf(**PAPER))
-        page.evaluate(FILL_IN, numbers)
-        headings = page.evaluate(HEADINGS)
-        printed = page.pdf(**PAPER, outline=True, tagged=True)
+        # The list of contents needs the page numbers: print, read them, print again, until they are true. On a busy
+        # machine the first print may come before a typeface that only paper shows.
+        numbers, printed = None, page.pdf(**PAPER)
+        for _ in range(3):
+            if page_numbers(printed) == numbers:
+                break
+            numbers = page_numbers(printed)
+            page.evaluate(FILL_IN, numbers)
+            headings = page.evaluate(HEADINGS)
+            printed = page.pdf(**PAPER, outline=True, tagged=True)
     if page_numbers(printed) != numbers:
         raise RuntimeError("the page numbers in the list of contents moved the pages they name")
     return finish(printed, headings, title, author)

@@ -44,6 +44,7 @@ from .source import (
     measured_questions,
     notebooks_in,
     read_source,
+    said_beyond,
 )
 from .variation import VARIANTS
 
@@ -414,15 +415,16 @@ def measure(course, only=(), all_variants=False, budget=BUDGET):
     paths = notebooks_in(course.sources, only)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
         sources = [course] * len(paths), [all_variants] * len(paths), [budget] * len(paths)
-        measured = {name: one for some in pool.map(_measured_in, paths, *sources) for name, one in some.items()}
-    write_measured(course.sources, paths, measured)
+        measured = {}
+        for path, some in zip(paths, pool.map(_measured_in, paths, *sources), strict=True):
+            # What is known is kept, should somebody have no time for the rest.
+            write_measured(course.sources, [path], some)
+            measured |= some
     found = {name: (one["worth"], weakest_of(one)) for name, one in measured.items()}
-    points = sum(worth for worth, _ in found.values())
     return [
         *(f"{name}, {_of(worth, 'point')}: {one}" for name, (worth, one) in found.items()),
         *(proposal(name, worth, one) for name, (worth, one) in found.items() if one.way and worth > LIGHT),
-        f"{_share_beyond(measured)} of {_of(points, 'point')} are behind more than {BUDGET:,} tries of a script"
-        f"{_of_how_many(measured)}.",
+        f"{said_beyond(measured)}.",
     ]
 
 
@@ -574,28 +576,8 @@ def _open_code(source, question):
     return ""
 
 
-def _share_beyond(measured):
-    """The share of the points that the attack has not found, of what was measured: every variant counts alike."""
-    points = sum(one["worth"] for one in measured.values())
-    beyond = 0
-    for one in measured.values():
-        tries = [count for count in one["tries"] if count is not None]
-        beyond += one["worth"] * (tries.count(0) / len(tries) if tries else 1)
-    return f"{beyond / max(1, points):.0%}"
-
-
-def _of_how_many(measured):
-    """In how many variants something was measured, where there are any."""
-    tries = [count for one in measured.values() for count in one["tries"]]
-    if all(len(one["tries"]) < 2 for one in measured.values()):
-        return ""
-    return f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
-
-
 def write_page(findings, found, before="", measured=None):
-    share = (
-        f"{_share_beyond(measured)} are behind more than {BUDGET:,} tries{_of_how_many(measured)}" if measured else ""
-    )
+    share = said_beyond(measured) if measured else ""
     rows = []
     for finding in findings:
         said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
@@ -628,7 +610,7 @@ def write_page(findings, found, before="", measured=None):
         "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
         f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has needed to find the "
         "answer. Not found means not found by this attack: somebody may have a better idea."
-        f"{f' Of the points, {share}.' if share else ''}</p>"
+        f"{f' {share}.' if share else ''}</p>"
         f"{before}{leaked}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"

@@ -152,6 +152,33 @@ def measured_strengths(sources: str | Path) -> dict[str, int]:
     return {name: min((count for count in one["tries"] if count), default=0) for name, one in measured.items()}
 
 
+def share_beyond(measured: Mapping[str, Measured]) -> float:
+    """The share of the points that the attack has not found, of what was measured: every variant counts alike."""
+    points = sum(one["worth"] for one in measured.values())
+    beyond = 0.0
+    for one in measured.values():
+        tries = [count for count in one["tries"] if count is not None]
+        beyond += one["worth"] * (tries.count(0) / len(tries) if tries else 1)
+    return beyond / max(1, points)
+
+
+def said_beyond(measured: Mapping[str, Measured]) -> str:
+    """That share in words, for authors and for instructors; and how many variants it is of, where there are any.
+
+    >>> said_beyond({"levers/arm": {"worth": 1, "tries": [0, 20, None]}, "levers/plain": {"worth": 2, "tries": [0]}})
+    '83% of 3 points are behind more than 65,536 tries of a script, as far as 3 of 4 variants were attacked'
+    """
+    from .attack import BUDGET  # needed here alone: it brings NumPy
+
+    points = sum(one["worth"] for one in measured.values())
+    tries = [count for one in measured.values() for count in one["tries"]]
+    attacked = f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
+    return (
+        f"{share_beyond(measured):.0%} of {points:g} {'point' if points == 1 else 'points'} are behind more than "
+        f"{BUDGET:,} tries of a script{attacked if any(len(one['tries']) > 1 for one in measured.values()) else ''}"
+    )
+
+
 def measured_questions(sources: str | Path) -> dict[str, Measured]:
     """What was measured of each question by name, as :func:`coursework.authoring.selftest.measured_of` gives it."""
     file = Path(sources, MEASURED)

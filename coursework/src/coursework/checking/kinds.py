@@ -4,6 +4,7 @@ Plug-ins build their kinds from what stands here. An answer is the plain data of
 becomes of its entries is in :mod:`coursework.checking.reading`.
 """
 
+import unicodedata
 from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
@@ -92,14 +93,18 @@ def _holding(whole: list[Any], part: list[Any]) -> str:
     return f"a list with {len(whole[1])} entries, one of which is {_describe(part)}"
 
 
+def _fault_of_numbers(wanted: str, value: list[Any]) -> Fault:
+    return shape_fault(wanted, value, "a text: write it without quotation marks" if value[0] == "text" else None)
+
+
 def leaf(value: list[Any], wanted: str) -> int:
     """The one expression that a value is; a list or matrix of one entry is that entry."""
     if value[0] == "matrix" and value[1] == value[2] == 1:
         return int(value[3][0])
-    if value[0] == "list" and len(value[1]) == 1:
+    if value[0] == "list" and (len(value[1]) == 1 or list(value[1][1:]) == [["text", "1"]]):  # degrees are no unit
         return leaf(value[1][0], wanted)
     if value[0] != "expression":
-        raise shape_fault(wanted, value)
+        raise _fault_of_numbers(wanted, value)
     return int(value[1])
 
 
@@ -123,7 +128,7 @@ def components(value: list[Any], length: int, wanted: str) -> list[int]:
         return [_leaf_of(value, part, wanted) for part in value[1]]
     if value[0] == "list" and len(value[1]) == 1 and value[1][0][0] == "list":
         return components(value[1][0], length, wanted)
-    raise shape_fault(wanted, value)
+    raise _fault_of_numbers(wanted, value)
 
 
 def _measurement(question: Question, value: list[Any]) -> list[int]:
@@ -156,7 +161,7 @@ def row_entries(value: list[Any], rows: int, columns: int, wanted: str) -> list[
         return list(value[3])
     if value[0] == "list" and len(value[1]) == rows:
         return [entry for row in value[1] for entry in _row(value, row, columns, wanted)]
-    raise shape_fault(wanted, value)
+    raise _fault_of_numbers(wanted, value)
 
 
 def _row(whole: list[Any], row: list[Any], columns: int, wanted: str) -> list[int]:
@@ -207,7 +212,8 @@ def _choice(question: Question, plain: Plain) -> str:
     # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left out.
     text = given.lower().translate(MINUS)
     options = {option.lower(): option for option in question.options}
-    bare = text.replace("- ", "-").replace("+ ", "+")
+    # Nor are wide letters, or quotation marks within those of Python.
+    bare = unicodedata.normalize("NFKC", text).strip(QUOTES).replace("- ", "-").replace("+ ", "+")
     found = [one for one in (text, bare, bare.removeprefix("+"), f"+{bare}") if one in options]
     if not found:
         raise Fault("shape", f"The answer is one of {listed(question.options)}; this is `{given[:40]}`.")
@@ -262,7 +268,8 @@ def _free_text(question: Question, plain: Plain) -> str:
     return text
 
 
-#: What a keyboard or a text program may make of a minus.
+#: What a text program puts around a word that is quoted twice; and what it may make of a minus.
+QUOTES = " \"'`\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u00ab\u00bb"
 MINUS = str.maketrans("\u2212\u2010\u2011\u2013", "----")
 
 

@@ -484,12 +484,12 @@ class _Writer:
         return part.args
 
     def without_unit(self, unit):
-        """What stands for a unit in a list or matrix of numbers: a radian is none."""
+        """What stands for a unit in a list or matrix of numbers: a radian is none, and a degree a part of it."""
         units = sys.modules.get("sympy.physics.units")
         if not units or not isinstance(unit, units.Quantity):
             return unit.args
-        if unit == units.radian:
-            return (sympy.S.One,)
+        if unit in (units.radian, units.degree):
+            return (sympy.S.One if unit == units.radian else sympy.pi / 180,)
         raise NotPlain(f"The answer holds the unit `{unit}`. Give numbers alone, in the unit that the question names.")
 
     def operation(self, part, children):

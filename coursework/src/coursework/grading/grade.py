@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from ..authoring.course import edition_of, find_course, links_of
-from ..authoring.source import names_asked
+from ..authoring.source import measured_questions, names_asked, said_beyond
 from ..checking.fields import Json, by_name, many, text
 from ..checking.identity import plain_identity
 from ..checking.plugins import kinds
@@ -39,7 +39,7 @@ from .store import REFUSED, Store, as_text, write
 from .submissions import intake
 from .submissions.intake import Notebook, Refused
 from .submissions.roster import BadRoster, Roster
-from .tables import in_a_line, lines, number
+from .tables import in_a_line, lines
 from .versions import software
 from .workers import processors, side_by_side
 
@@ -324,12 +324,14 @@ def grade(
             if again and again != found:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
+        strengths = dict(store.said(reports.STRENGTHS, by_name(text)) or {}, **_strengths(course.folder, questions))
+        write(store.folder / reports.STRENGTHS, as_text(strengths))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
         store.log("end")
     for line in said_of_people(store, standing):
         print(line, file=show)
-    _say_guessable(questions, show)
+    _say_guessable(questions, strengths, show)
     _say_other_numbers(store, work, questions, show)
     return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
 
@@ -530,18 +532,22 @@ def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
             yield f"{len(names)} {what[len(names) > 1]}{since} ({whose}): `coursework review` shows them as {shown!r}."
 
 
-def _say_guessable(questions: Mapping[str, Questions], show: TextIO) -> None:
+def _strengths(folder: Path, questions: Mapping[str, Questions]) -> dict[str, str]:
+    """What the author's attack says of the points of each assignment; nothing of one that was not attacked."""
+    measured = measured_questions(folder)
+    of_each = {name: {one: measured[one] for one in asked if one in measured} for name, asked in questions.items()}
+    return {name: f"{said_beyond(found)}." for name, found in of_each.items() if found}
+
+
+def _say_guessable(questions: Mapping[str, Questions], strengths: Mapping[str, str], show: TextIO) -> None:
     """Say which points a script could have guessed: whoever tries answers in the check earns them."""
     for assignment, asked in questions.items():
-        worth = sum(first.worth for first, *_ in asked.values())
+        if assignment in strengths:
+            print(f"{assignment}: {strengths[assignment]}", file=show)
         cheap = {name: first for name, (first, *_) in asked.items() if first.guessable is not None}
         if cheap:
             tries = ", ".join(f"{name} after {contract.guessable} tries" for name, contract in sorted(cheap.items()))
-            print(
-                f"{assignment}: {number(sum(contract.worth for contract in cheap.values()))} of {number(worth)} "
-                f"points were guessed by a script that tries answers ({tries}).",
-                file=show,
-            )
+            print(f"{assignment}: the others were guessed ({tries}).", file=show)
 
 
 def _assignments_kept(store: Store) -> dict[str, tuple[str, ...]]:

@@ -21,6 +21,7 @@ from markupsafe import Markup
 from tornado import httpserver, ioloop, netutil, web
 
 from ..authoring.author import to_page
+from ..checking import fields
 from ..checking.identity import plain_identity
 from ..checking.plain import Plain
 from ..checking.variants import text_of
@@ -43,7 +44,7 @@ from .judging.ledger import (
 from .record import Answer, Mark, Record
 from .reporting import pages
 from .reporting.mathematics import answer_as_mathematics
-from .reporting.reports import deed
+from .reporting.reports import STRENGTHS, deed
 from .reporting.templates_of_pages import ENVIRONMENT, source_of
 from .store import Store
 from .submissions.intake import SAYS
@@ -432,7 +433,7 @@ class _Overview(_Page):
         found = graded.chosen(filters, self.settings["hide_names"])
         outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
         guessable = {name: about for name, about in graded.questions.items() if about.guessable is not None}
-        guessed, clusters = sum(about.worth for about in guessable.values()), graded.clusters.values()
+        clusters = graded.clusters.values()
         self.show(
             "overview.html",
             filters=filters,
@@ -444,7 +445,7 @@ class _Overview(_Page):
             titles={one.question: one.mark.title for one in graded.clusters.values()},
             text=lambda cluster: pages.answer_as_text(cluster.answer.plain, 120),
             guessable=guessable,
-            beyond=1 - guessed / max(1, sum(about.worth for about in graded.questions.values())),
+            strengths=graded.store.said(STRENGTHS, fields.by_name(fields.text)) or {},
         )
 
 

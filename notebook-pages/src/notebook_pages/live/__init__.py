@@ -72,7 +72,6 @@ def add_live_code(app, pagename, templatename, context, doctree):
         },
         separators=(",", ":"),
     )
-    context["styles"] = [*context["styles"], "live.css"]
     app.add_js_file("live.js", loading_method="defer")
 
 
@@ -88,5 +87,5 @@ def setup(app):
     app.connect("config-inited", take_settings)
     app.add_directive("cells-that-need-more", NeedsMore)
     app.connect("builder-inited", write_scripts)
-    app.connect("html-page-context", add_live_code, priority=970)  # after page.py has set the styles
+    app.connect("html-page-context", add_live_code, priority=970)
     app.connect("build-finished", write_runtime, priority=900)  # after take_away.py has built the wheel

@@ -6,6 +6,9 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from ..fonts import FOLDER as FONTS_FOLDER
+from ..fonts import __file__ as FONTS_PROGRAM
+from ..fonts import katex_rules
 from ..paths import NODE, NODE_MODULES, REGISTERED, WEBSITE, fingerprint, named
 from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
@@ -18,7 +21,7 @@ ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 def folder_name():
     """Its scripts have the same names in every version of the book: the folder tells them apart."""
-    sources = filter(None, [JS, MODEL, PYTHON, WEBSITE / "package-lock.json"])
+    sources = filter(None, [JS, MODEL, PYTHON, Path(FONTS_PROGRAM), WEBSITE / "package-lock.json"])
     return f"{FOLDER}/scripts-{fingerprint(*sources)}"
 
 
@@ -46,11 +49,12 @@ def write(site):
             *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")),
             "--bundle", "--format=esm", "--loader:.py=text", f"--outdir={target}",
         )  # fmt: skip
-    shutil.copyfile(JS / "live.css", target / "live.css")
+    # What Python puts out is set in the page, in KaTeX's own words. Its rules are a layer: those of the page go before.
+    rules = f"@layer katex {{{katex_rules(f'../../{FONTS_FOLDER.as_posix()}')}}}\n"
+    (target / "live.css").write_text((JS / "live.css").read_text("utf8") + rules, "utf8")
     static = site / "_static"
     static.mkdir(exist_ok=True)
     esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
     esbuild(JS / "progress.js", "--bundle", "--global-name=progress", f"--outfile={static / 'progress.js'}")
-    shutil.copyfile(JS / "page.css", static / "live.css")
     # A service worker may act for the pages below it only.
     esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")

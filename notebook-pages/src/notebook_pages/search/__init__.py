@@ -85,7 +85,7 @@ def entries_of_page(page, article):
     numbers = {
         box["id"]: text_of(box.select_one(".eqno")).strip("()# ") for box in article.select("div.math[id]:has(.eqno)")
     }
-    for rest in article.select(".headerlink, .katex-html, annotation"):
+    for rest in article.select(".headerlink, .katex > [aria-hidden]"):
         rest.extract()
     rest = {id(one) for one in article.select(REST)}
     inner = rest | {id(one) for one in article.select("section")}

@@ -80,9 +80,9 @@ if (menu) {
   });
 }
 
-// Numbers that stand below each other stay so: on a narrow screen their lines scroll. As in live/js/output.js.
+// Numbers that stand below each other stay so, and lines of code: on a narrow screen they scroll. As in live/js/output.js.
 for (const text of document.querySelectorAll("div.cell_output .output pre")) {
-  text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|\S {2,}\S/m.test(text.textContent));
+  text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|^ {4}|\S {2,}\S/m.test(text.textContent));
 }
 
 // What a check says where nobody has answered yet is known from the dots in its cell.

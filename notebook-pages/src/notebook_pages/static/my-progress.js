@@ -1,8 +1,10 @@
 // Fills in the table of My progress, and lets the reader take the record away, bring it back and clear it.
 {
   const table = document.querySelector("table.my-progress");
+  const gone = document.createElement("p"); // of what was answered in an edition that asked more
   const record = (page) => progress.all()[page] ?? { read: [], done: [], checked: [], answers: {} };
   const fill = () => {
+    let older = 0;
     for (const row of table.tBodies[0].rows) {
       const { read, done, checked, answers } = record(row.dataset.page);
       // What was right with other numbers than the reader's is not counted; it stays known.
@@ -16,7 +18,11 @@
           cell.textContent += `, ${reached.filter((name) => answers[name].rightAtFirst).length} right at once`;
         cell.classList.toggle("whole", names.length > 0 && reached.length === names.length);
       }
+      const asked = [...row.querySelectorAll("td")].flatMap((cell) => cell.dataset.names.split(" "));
+      older += [...Object.keys(answers), ...done].filter((name) => !asked.includes(name)).length;
     }
+    gone.hidden = !older;
+    gone.textContent = `Your record also holds what you answered in an earlier edition and this one no longer asks: ${older} in all. It is kept, and Export saves it.`;
   };
 
   const make = (tag, attributes) => Object.assign(document.createElement(tag), attributes);
@@ -61,7 +67,7 @@
   });
   const actions = make("p", { className: "actions" });
   actions.append(take, bring, file, clear);
-  table.parentElement.after(actions, words);
+  table.parentElement.after(gone, actions, words);
   fill();
   say(progress.whyNotKept());
 }

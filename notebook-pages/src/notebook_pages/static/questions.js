@@ -195,9 +195,13 @@
   if (first) {
     const ways = [["asked", "asked as they come"], ["open", "all open"], ["none", "left out"]];
     const choice = make("select", {}, ...ways.map(([value, words]) => make("option", { value, textContent: words })));
+    const line = make("p", { className: "said predictions" }, make("label", {}, "Predictions: ", choice));
     const apply = (chosen) => {
       document.documentElement.dataset.predictions = chosen;
       choice.value = chosen;
+      // In the space above the first of them, where it moves no line; without them it stands by itself.
+      if (chosen === "none") first.before(line);
+      else first.prepend(line);
       if (chosen === "open") for (const { open } of openers) open();
       if (chosen === "none") for (const { uncover } of openers) uncover();
     };
@@ -205,7 +209,6 @@
       apply(choice.value);
       bookStore.put("setting predictions", choice.value);
     });
-    first.before(make("p", { className: "said predictions" }, make("label", {}, "Predictions: ", choice)));
     const chosen = bookStore.read("setting predictions");
     apply(ways.some(([value]) => value === chosen) ? chosen : "asked");
   }

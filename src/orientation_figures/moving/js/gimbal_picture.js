@@ -73,7 +73,7 @@ export function picture(sheet, gimbal, close = false, lit = null) {
   }
   sheet.label(scale(1.62, down), '$A$', 'A', [24, 4]);
   sheet.labelBeyond(scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]]))), '$B$', 'B', 20);
-  sheet.labelBeyond(scale(INNER, add(scale(0.71, C[at[1]]), scale(-0.71, C[at[2]]))), '$C$', 'C', 20);
+  sheet.labelBeyond(scale(INNER, add(scale(-0.71, C[at[1]]), scale(0.71, C[at[2]]))), '$C$', 'C', 20);
   sheet.labelBeyond(scale(0.26, D[2]), '$D$', 'D', 14);
   const corner = add(scale(INSET[0], sheet.view[0]), scale(INSET[1], sheet.view[1]));
   for (const [letter, rows, index, reach] of [['A', IDENTITY, 1, 0.54], ['D', D, 0, 0.3]]) {

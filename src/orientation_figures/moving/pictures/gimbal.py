@@ -79,7 +79,7 @@ def picture(sheet, gimbal, close=False, lit=None):
         sheet.line([scale(-END, axes[0]), scale(END, axes[0])], "accent", "guide")
     sheet.label(scale(1.62, down), "$A$", "A", [24, 4])
     sheet.label_beyond(scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]]))), "$B$", "B", 20)
-    sheet.label_beyond(scale(INNER, add(scale(0.71, C[at[1]]), scale(-0.71, C[at[2]]))), "$C$", "C", 20)
+    sheet.label_beyond(scale(INNER, add(scale(-0.71, C[at[1]]), scale(0.71, C[at[2]]))), "$C$", "C", 20)
     sheet.label_beyond(scale(0.26, D[2]), "$D$", "D", 14)
     # The triads of A and D, which the matrix compares.
     corner = add(scale(INSET[0], sheet.view[0]), scale(INSET[1], sheet.view[1]))

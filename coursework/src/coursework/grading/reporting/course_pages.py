@@ -2,15 +2,19 @@
 
 import datetime
 import json
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from ...checking.fields import many, text
+from ...checking.fields import Fields, by_name, many, text
+from ...checking.fields import number as a_number
 from ..judging import term
 from ..judging.ledger import Ledger, with_decisions
-from ..store import as_text, file_name, write
+from ..judging.term import Rules
+from ..store import Store, as_text, file_name, write
 from ..tables import number, table
 from . import pages
-from .statistics import FORMAT, Statistics
+from .statistics import FORMAT, Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
 
 FOLDER = "course"
@@ -35,7 +39,33 @@ MOST_ANSWERS = 100  # of one group on one page
 ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %Z")
 
 
-def write_course(store, rules, *, earlier=(), now=None, folder=None):
+class Then(NamedTuple):
+    """What was kept of a question in an earlier year: the mean share of the credit, and the version."""
+
+    share: float | None
+    version: str
+
+    @classmethod
+    def from_json(cls, found: object, where: str) -> "Then":
+        about = Fields(found, where)
+        return cls(about.maybe("share", a_number), about.get("version", text))
+
+
+class Year(NamedTuple):
+    """What was kept of an earlier year."""
+
+    name: str
+    questions: Mapping[str, Then]
+
+
+def write_course(
+    store: Store,
+    rules: Rules,
+    *,
+    earlier: Iterable[str | Path] = (),
+    now: datetime.datetime | None = None,
+    folder: Path | None = None,
+) -> list[str]:
     """Write what a course comes to into ``folder``, or else the folder ``course`` of the results.
 
     Parameters
@@ -58,7 +88,9 @@ def write_course(store, rules, *, earlier=(), now=None, folder=None):
     """
     now = now or datetime.datetime.now(datetime.UTC)
     counts = [_earlier(path) for path in earlier]
-    statistics, worth, students = Statistics(), {}, set()
+    statistics = Statistics()
+    worth: dict[str, float] = {}
+    students: set[str] = set()
     standing = Ledger(store.folder).standing()
     for record in store.all():
         statistics.add(with_decisions(record, standing))
@@ -66,7 +98,8 @@ def write_course(store, rules, *, earlier=(), now=None, folder=None):
         students.add(record.student)
     students.update(store.said(ROSTER, many(text)) or ())
     said = _misspelt(rules, students, worth)
-    folder, rows, unknown, marked = folder or store.folder / FOLDER, [], [], []
+    unknown, marked = list[str](), list[str]()
+    folder, rows = folder or store.folder / FOLDER, []
     for student in sorted(students):
         records = {
             name: with_decisions(found, standing)
@@ -91,7 +124,7 @@ def write_course(store, rules, *, earlier=(), now=None, folder=None):
     return said
 
 
-def _misspelt(rules, students, worth):
+def _misspelt(rules: Rules, students: set[str], worth: Mapping[str, float]) -> list[str]:
     strangers = sorted({student for student, _ in rules.extensions} - students)
     if strangers:
         raise term.BadRules(f"An extension is for {strangers[0]!r}, and nobody in the course is called so.")
@@ -102,13 +135,13 @@ def _misspelt(rules, students, worth):
     ]
 
 
-def _header(rules):
+def _header(rules: Rules) -> list[str]:
     parts = ("points", "state", "handed in", "late: share lost", "share that counts")
     return ["student", "total in %", "undecided", *(f"{name}: {part}" for name in rules.assignments for part in parts)]
 
 
-def _row(student, results, total):
-    row = [student, "" if total is None else round(100 * total, 2), sum(one.undecided for one in results)]
+def _row(student: str, results: Sequence[term.Result], total: float | None) -> list[object]:
+    row: list[object] = [student, "" if total is None else round(100 * total, 2), sum(one.undecided for one in results)]
     for one in results:
         graded = one.state not in ("missing", "not due")
         row += [
@@ -121,7 +154,14 @@ def _row(student, results, total):
     return row
 
 
-def _write_student(folder, student, records, results, total, rules):
+def _write_student(
+    folder: Path,
+    student: str,
+    records: Iterable[str],
+    results: Sequence[term.Result],
+    total: float | None,
+    rules: Rules,
+) -> None:
     links = {name: f"../../feedback/{file_name(student)}/{file_name(name)}.html" for name in records}
     content = page(
         "student.html",
@@ -137,8 +177,8 @@ def _write_student(folder, student, records, results, total, rules):
     write(folder / "students" / f"{file_name(student)}.html", content, lasting=False)
 
 
-def _write_questions(folder, statistics, name, counts):
-    assignments = {}
+def _write_questions(folder: Path, statistics: Statistics, name: str, counts: Sequence[Year]) -> None:
+    assignments: dict[str, list[dict[str, object]]] = {}
     for (assignment, question), found in statistics.questions.items():
         place = f"answers/{file_name(assignment + ' ' + question)}.html"
         groups, anchors = _groups(found, assignment)
@@ -155,41 +195,46 @@ def _write_questions(folder, statistics, name, counts):
         "statistics.html",
         name=name,
         assignments=sorted(assignments.items()),
-        labels=[year["name"] for year in counts],
+        labels=[year.name for year in counts],
     )
     write(folder / "statistics.html", content)
 
 
-def _groups(found, assignment):
+def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], dict[str, str]]:
     """The answers of a question, by what the machine or a person said of them, the most frequent first."""
-    groups, anchors = {}, {}
+    groups: dict[tuple[str, str], list[Same]] = {}
+    anchors: dict[str, str] = {}
     for (outcome, did, _), same in found.answers.items():
         groups.setdefault((outcome, did), []).append(same)
     order = list(OUTCOMES)
-    made, outcomes = [], set()
-    ranked = sorted(groups.items(), key=lambda entry: (order.index(entry[0][0]), -sum(a["number"] for a in entry[1])))
+    made: list[dict[str, object]] = []
+    outcomes: set[str] = set()
+    ranked = sorted(
+        groups.items(), key=lambda entry: (order.index(entry[0][0]), -sum(same.number for same in entry[1]))
+    )
     for place, ((outcome, did), answers) in enumerate(ranked, 1):
         anchor = f"group-{place}" if outcome in outcomes else outcome.replace(" ", "-")
         outcomes.add(outcome)
         anchors.setdefault(did, anchor)
-        answers.sort(key=lambda same: (-same["number"], same["who"]))
+        answers.sort(key=lambda same: (-same.number, same.who))
         made.append(
             {
                 "anchor": anchor,
                 "outcome": outcome,
                 "did": did,
-                "number": sum(same["number"] for same in answers),
+                "number": sum(same.number for same in answers),
                 "left": max(0, len(answers) - MOST_ANSWERS),
                 "answers": [
                     {
-                        **same,
-                        "text": pages.answer_as_text(same["plain"], 600),
+                        "number": same.number,
+                        "plain": same.plain,
+                        "text": pages.answer_as_text(same.plain, 600),
                         "who": [
                             {
                                 "student": student,
                                 "page": f"../../feedback/{file_name(student)}/{file_name(assignment)}.html",
                             }
-                            for student in same["who"]
+                            for student in same.who
                         ],
                     }
                     for same in answers[:MOST_ANSWERS]
@@ -199,19 +244,19 @@ def _groups(found, assignment):
     return made, anchors
 
 
-def _earlier(path):
+def _earlier(path: str | Path) -> Year:
     try:
-        found = json.loads(Path(path).read_text("utf8"))
-        if found["format"] != FORMAT or not isinstance(found["questions"], dict):
+        about = Fields(json.loads(Path(path).read_text("utf8")), "it")
+        if about.found.get("format") != FORMAT:
             raise ValueError("it is of another format")
-        return {"name": str(found["name"]), "questions": found["questions"]}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        return Year(about.get("name", text), about.get("questions", by_name(Then.from_json)))
+    except (OSError, ValueError) as error:
         raise term.BadRules(f"{path} holds no counts of a course ({error}).") from None
 
 
-def _share_then(year, question, found):
-    then = year["questions"].get(question)
-    if not then or then["share"] is None:
+def _share_then(year: Year, question: str, found: Question) -> str:
+    then = year.questions.get(question)
+    if not then or then.share is None:
         return ""
-    same = then["version"] in found.versions
-    return f"{number(round(100 * then['share']))} %{'' if same else ' *'}"
+    same = then.version in found.versions
+    return f"{number(round(100 * then.share))} %{'' if same else ' *'}"

@@ -5,6 +5,8 @@ answer is not written here, but shown as text.
 """
 
 import re
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from ...checking.plain import Plain
 from .pages import formula
@@ -38,7 +40,7 @@ def answer_as_mathematics(plain: Plain | None) -> str:
     return found if found.startswith("<math") else ""
 
 
-def _value(value, nodes):
+def _value(value: Sequence[Any], nodes: Sequence[Any]) -> str:
     kind, *rest = value
     writer = _Writer(nodes)
     if kind == "expression":
@@ -65,12 +67,12 @@ def _value(value, nodes):
     raise NoMathematics
 
 
-def _table(lines):
+def _table(lines: Iterable[Iterable[str]]) -> str:
     inside = r" \\ ".join(" & ".join(line) for line in lines)
     return rf"\begin{{bmatrix}} {inside} \end{{bmatrix}}"
 
 
-def _name(name):
+def _name(name: str) -> str:
     base, _, index = name.partition("_")
     if not re.fullmatch(r"[A-Za-z0-9]{1,20}", base) or not re.fullmatch(r"[A-Za-z0-9]{0,20}", index):
         raise NoMathematics
@@ -78,27 +80,27 @@ def _name(name):
     return f"{shown}_{{{index}}}" if index else shown
 
 
-def _in_brackets(text):
+def _in_brackets(text: str) -> str:
     """Brackets that grow with what is in them, where it is high: in a table others would grow with its line."""
     return rf"\left({text}\right)" if r"\frac" in text or "^" in text else f"({text})"
 
 
 class _Writer:
-    def __init__(self, nodes):
+    def __init__(self, nodes: Sequence[Any]) -> None:
         self.nodes = nodes
         self.left = LONGEST
 
-    def node(self, order, around, depth=0):
+    def node(self, order: int, around: int, depth: int = 0) -> str:
         """One node; `around` is how tightly what stands round it binds: 0 nothing, 1 a sum, 2 a product, 3 a power."""
         self.left -= 1
         if self.left <= 0 or depth > 30:
             raise NoMathematics
         operation, *rest = self.nodes[order]
 
-        def inner(child, binding=0):
+        def inner(child: int, binding: int = 0) -> str:
             return self.node(child, binding, depth + 1)
 
-        def bracketed(text, binding):
+        def bracketed(text: str, binding: int) -> str:
             return _in_brackets(text) if around > binding else text
 
         if operation == "symbol":
@@ -137,8 +139,9 @@ class _Writer:
             return FUNCTIONS[operation] + _in_brackets(", ".join(map(inner, rest)))
         raise NoMathematics
 
-    def product(self, factors, around, depth):
-        above, below, sign = [], [], ""
+    def product(self, factors: Sequence[int], around: int, depth: int) -> str:
+        above, below = list[str](), list[str]()
+        sign = ""
         for factor in factors:
             operation, *rest = self.nodes[factor]
             if [operation, *rest] == ["integer", "-1"] and not above:

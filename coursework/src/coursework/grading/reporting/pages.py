@@ -4,11 +4,15 @@ import base64
 import functools
 import hashlib
 import html
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
 from xml.etree import ElementTree
 
 from ...checking.plain import Plain
 from ...checking.reply import to_html
 from ..tables import readable
+
+Part = TypeVar("Part")
 
 STYLE = """
 :root { color-scheme: light dark; --paper: #fdfcfa; --panel: #f5f3ee; --rule: #dcd8cf; --ink: #22262b; --soft: #565c64;
@@ -147,24 +151,24 @@ def answer_as_text(plain: Plain | None, most: int = 300) -> str:
 class _Printer:
     """Writes no more than asked for: what is shared in the nodes would fill a disk if it were written out."""
 
-    def __init__(self, nodes, most):
+    def __init__(self, nodes: Sequence[Any], most: int) -> None:
         self.nodes = nodes
         self.left = most
         self.is_cut = False
 
-    def put(self, piece):
+    def put(self, piece: str) -> str:
         if self.left <= 0:
             return self.cut()
         self.left -= len(piece)
         return piece if self.left >= 0 else piece[: self.left] + self.cut()
 
-    def cut(self):
+    def cut(self) -> str:
         """The sign that something is missing: once."""
         first, self.is_cut = not self.is_cut, True
         return "…" if first else ""
 
-    def parts(self, parts, write, between=", "):
-        written = []
+    def parts(self, parts: Iterable[Part], write: Callable[[Part], str], between: str = ", ") -> str:
+        written: list[str] = []
         for part in parts:
             if self.left <= 0:
                 written.append(self.cut())
@@ -172,7 +176,7 @@ class _Printer:
             written.append((self.put(between) if written else "") + write(part))
         return "".join(written)
 
-    def value(self, value):
+    def value(self, value: Sequence[Any]) -> str:
         kind, *rest = value
         if kind == "blank":
             return self.put("...")
@@ -204,12 +208,12 @@ class _Printer:
             return self.put(f"frame {readable(rest[0])}: ") + self.named(rest[1])
         return self.put("vector: ") + self.named(rest[0])
 
-    def named(self, values):
+    def named(self, values: Mapping[str, Any]) -> str:
         return self.parts(
             sorted(values), lambda name: self.put(f"in {readable(name)}: ") + self.value(values[name]), "; "
         )
 
-    def node(self, order, depth, around):
+    def node(self, order: int, depth: int, around: int) -> str:
         if self.left <= 0 or depth > 40:
             return self.cut() if self.left <= 0 else self.put("…")
         operation, *rest = self.nodes[order]

@@ -3,24 +3,37 @@
 Everything here can be made again from the records at any time, and comes out the same.
 """
 
+from __future__ import annotations
+
 import functools
 from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from statistics import mean, median
 from urllib.parse import quote
 
 from ...checking.fields import by_name, many, text
+from ...checking.plain import Plain
 from ...checking.plugins import plugins
 from ...checking.reply import OUTCOMES
 from ..judging.ledger import stable_id
-from ..record import Mark
+from ..record import Cell, Mark, Record, RunNotebook
 from ..store import REFUSED, Store, file_name, write
 from ..submissions.intake import Refused
 from ..tables import lines, table
 from . import pages
-from .templates_of_pages import page
+from .templates_of_pages import ENVIRONMENT, page
 
 #: The addresses that feedback leads to, as the course had them when it was graded.
 LINKS = "links.json"
+#: What the author's attack says of the points of each assignment, and what that means for a mark.
+STRENGTHS = "strengths.json"
+GUESSING = (
+    "What lies before is earned without an idea by whoever lets a script try answers in `check`, at some 12 ms a try; what "
+    "lies behind was not found by the author's attack, and somebody may have a better one. An exam, a function, or a word "
+    "with the student tells more."
+)
+ENVIRONMENT.globals["GUESSING"] = GUESSING
 #: What is said of an outcome once there is no "yet" any more.
 FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
 #: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
@@ -74,13 +87,22 @@ class _Assignment:
     What is kept grows with the number of different answers, not with the class.
     """
 
-    def __init__(self):
-        self.students, self.points, self.worth, self.titles = 0, Counter(), 0, {}
-        self.parts, self.mixups, self.same, self.tries = {}, Counter(), {}, {}
-        self.undecided, self.odd, self.ways, self.versions = [], {}, Counter(), Counter()
-        self.waiting = 0
+    def __init__(self) -> None:
+        self.students = self.waiting = 0
+        self.worth: float = 0
+        self.points: Counter[float] = Counter()
+        self.titles: dict[str, str] = {}
+        self.parts: dict[str, Counter[str]] = {}
+        self.mixups: Counter[tuple[str, str]] = Counter()
+        self.same: Counter[tuple[str, str]] = Counter()
+        self.examples: dict[tuple[str, str], str] = {}
+        self.tries: dict[str, Counter[int]] = {}
+        self.undecided: list[tuple[str, str, tuple[str, ...], str]] = []
+        self.odd: dict[str, tuple[int, list[str]]] = {}
+        self.ways: Counter[str] = Counter()
+        self.versions: Counter[str] = Counter()
 
-    def add(self, record):
+    def add(self, record: Record) -> None:
         self.students += 1
         self.points[record.points] += 1
         self.worth = max(self.worth, record.worth)
@@ -93,32 +115,32 @@ class _Assignment:
                 self.mixups[name, deed(mark)] += 1
             elif mark.outcome == "wrong" and mark.group:
                 if (name, mark.group) not in self.same:
-                    self.same[name, mark.group] = [0, pages.answer_as_text(record.answer(name).plain)]
-                self.same[name, mark.group][0] += 1
+                    self.examples[name, mark.group] = pages.answer_as_text(record.answer(name).plain)
+                self.same[name, mark.group] += 1
             if mark.outcome == "undecided":
                 self.waiting += 1
                 if len(self.undecided) < MOST_UNDECIDED:
                     answer = pages.answer_as_text(record.answer(name).plain)
                     self.undecided.append((record.student, name, mark.messages, answer))
         for kind in _oddities(record):
-            found = self.odd.setdefault(kind, [0, []])
-            found[0] += 1
-            if len(found[1]) < MOST_NAMES:
-                found[1].append(record.student)
+            number, names = self.odd.get(kind, (0, []))
+            self.odd[kind] = number + 1, [*names, record.student] if len(names) < MOST_NAMES else names
         for notebook in record.notebooks:
             isolation = notebook.isolation
             self.ways[("WEAK: " if isolation.weak else "") + (", ".join(isolation.layers) or "none")] += 1
         self.versions[", ".join(f"{name} {version}" for name, version in record.software.items())] += 1
 
     @property
-    def numbers(self):
+    def numbers(self) -> dict[str, int]:
         """The number of each question."""
         return {name: order for order, name in enumerate(self.titles, 1)}
 
 
 def write_all(store: Store) -> None:
     """Make the tables and the pages of all records; no more than one record is held at a time."""
-    classes, names, links = {}, {}, store.said(LINKS, by_name(text)) or {}
+    classes: dict[str, _Assignment] = {}
+    names: dict[str, None] = {}
+    links = store.said(LINKS, by_name(text)) or {}
     for record in store.all():
         place = store.folder / "feedback" / file_name(record.student) / f"{file_name(record.assignment)}.html"
         _write_if_new(place, feedback(record, links))
@@ -128,13 +150,13 @@ def write_all(store: Store) -> None:
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
     write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
-    write(store.folder / "report.html", report(classes, refused))
+    write(store.folder / "report.html", report(classes, refused, store.said(STRENGTHS, by_name(text)) or {}))
 
 
 UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer")
 
 
-def _undecided_of(records):
+def _undecided_of(records: Iterable[Record]) -> Iterator[tuple[object, ...]]:
     for record in records:
         for name, mark in record.marks.items():
             if mark.outcome == "undecided":
@@ -151,18 +173,18 @@ def _undecided_of(records):
                 )
 
 
-def _write_if_new(path, content):
+def _write_if_new(path: Path, content: str) -> None:
     if not path.exists() or path.read_text("utf8") != content:
         write(path, content, lasting=False)
 
 
-def grades(records, names):
+def grades(records: Iterable[Record], names: Sequence[str]) -> Iterator[str]:
     """All marks as CSV, line by line: one for each student and assignment."""
     header = ["student", "assignment", "points", "worth", "undecided", "late", *names]
     return lines([*header, *(f"{name}: outcome" for name in names)], (_grades_of(record, names) for record in records))
 
 
-def _grades_of(record, names):
+def _grades_of(record: Record, names: Sequence[str]) -> list[object]:
     marks = [record.marks.get(name) for name in names]
     return [
         record.student,
@@ -179,7 +201,7 @@ def _grades_of(record, names):
 # --- for a student ------------------------------------------------------------------------------
 
 
-def feedback(record, links=None):
+def feedback(record: Record, links: Mapping[str, str] | None = None) -> str:
     """The page that a student gets; ``links`` are addresses as a course has them."""
     return page(
         "feedback.html",
@@ -198,7 +220,7 @@ def feedback(record, links=None):
 LEADS_TO = {"chapter": "the chapter", "solution": "the worked solution"}
 
 
-def _addresses(question, links):
+def _addresses(question: str, links: Mapping[str, str]) -> list[tuple[str, str]]:
     notebook, _, own = question.partition("/")
     return [
         (said, links[name].replace("{notebook}", quote(notebook)).replace("{question}", quote(own)))
@@ -207,7 +229,7 @@ def _addresses(question, links):
     ]
 
 
-def _shown(record, name):
+def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
     """An answer as it was read, as mathematics and as text; nothing where there is nothing to show."""
     plain = record.answer(name).plain
     # What a function returned is not repeated: a list of it would do for a friend's answer.
@@ -216,7 +238,7 @@ def _shown(record, name):
     return plain, pages.answer_as_text(plain)
 
 
-def _stopped(notebook):
+def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:
     """The cells of a notebook that did not come to their end, with their numbers."""
     cells = enumerate(notebook.cells, 1)
     return [(order, cell) for order, cell in cells if cell.outcome not in ("done", "not run")][:MOST_STOPPED]
@@ -225,7 +247,7 @@ def _stopped(notebook):
 # --- for the instructor -------------------------------------------------------------------------
 
 
-def feedback_of(student, assignment):
+def feedback_of(student: str, assignment: str) -> str:
     """Where a page of feedback lies, from the folder of results."""
     return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
 
@@ -245,11 +267,11 @@ def deed(mark: Mark) -> str:
 
 
 @functools.cache
-def _deeds():
+def _deeds() -> dict[str, str]:
     return DEEDS | {note: deed for plugin in plugins() for note, deed in getattr(plugin, "DEEDS", {}).items()}
 
 
-def report(classes, refused):
+def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused], strengths: Mapping[str, str]) -> str:
     """The page on the class."""
     ways = sum((found.ways for found in classes.values()), Counter())
     versions = sum((found.versions for found in classes.values()), Counter())
@@ -257,6 +279,7 @@ def report(classes, refused):
         "report.html",
         classes=[(name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())],
         refused=refused,
+        strengths=strengths,
         ways=sorted(ways.items()),
         versions=sorted(versions.items()),
         parts=PARTS,
@@ -264,7 +287,7 @@ def report(classes, refused):
     )
 
 
-def _about(found):
+def _about(found: _Assignment) -> dict[str, object]:
     """What the report shows of an assignment, worked out."""
     points = list(found.points.elements())
     return {
@@ -281,7 +304,7 @@ def _about(found):
 WIDTH, HEIGHT, LEFT, BASE, TALLEST = 660, 190, 34, 158, 120  # of the histogram
 
 
-def _histogram(points, worth):
+def _histogram(points: Mapping[float, int], worth: float) -> list[dict[str, float]]:
     """The bars: where each begins, how wide and tall it is, the students in it, and its points."""
     bins = min(10, max(1, round(worth)))
     counts = [0] * bins
@@ -311,7 +334,7 @@ PARTS = (
 )
 
 
-def _success(name, counts):
+def _success(name: str, counts: Counter[str]) -> tuple[str, list[tuple[str, float, float]], str, str]:
     total, x, bars = sum(counts.values()), 0.0, []
     for part, _ in PARTS:
         if counts[part]:
@@ -322,7 +345,7 @@ def _success(name, counts):
     return name, bars, spoken, _percent(counts["correct"], total)
 
 
-def _tries(counts):
+def _tries(counts: Counter[int] | None) -> str:
     """How many different answers were tried, as the notebooks of those remember that show it; or nothing."""
     if not counts:
         return ""
@@ -330,16 +353,16 @@ def _tries(counts):
     return f"{median(known):g} ({most} at most, {len(known)} known)" if len(known) > 1 else f"{most} (1 known)"
 
 
-def _part(mark):
+def _part(mark: Mark) -> str:
     return {"not attempted": "none", "decided": "correct" if mark.points else "wrong"}.get(mark.outcome, mark.outcome)
 
 
-def _percent(part, whole):
+def _percent(part: int, whole: int) -> str:
     share = 100 * part / whole
     return f"{share:.0f} %" if share >= 1 or not part else "under 1 %"
 
 
-def _mixups(found):
+def _mixups(found: _Assignment) -> list[tuple[str, str, int, str, float]]:
     shown = sorted(found.mixups.items(), key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1]))[:20]
     return [
         (name, what, count, _percent(count, found.students), 120 * count / found.students)
@@ -348,17 +371,17 @@ def _mixups(found):
     ]
 
 
-def _same(found):
+def _same(found: _Assignment) -> list[tuple[str, int, str]]:
     shown = sorted(
-        (entry for entry in found.same.items() if entry[1][0] > 1),
-        key=lambda entry: (-entry[1][0], found.numbers[entry[0][0]], entry[0][1]),
+        (entry for entry in found.same.items() if entry[1] > 1),
+        key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1]),
     )[:15]
-    return [(name, students, answer) for (name, _), (students, answer) in shown]
+    return [(key[0], students, found.examples[key]) for key, students in shown]
 
 
-def _oddities(record):
+def _oddities(record: Record) -> dict[str, None]:
     """What is worth a look in a record, each kind once."""
-    found = {}
+    found: dict[str, None] = {}
     for notebook in record.notebooks:
         found.update(dict.fromkeys(notebook.notes))
         found.update(dict.fromkeys(f"its code {said}" for said in notebook.tried))

@@ -7,8 +7,13 @@ them.
 
 import math
 from collections import Counter, defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
+from ...checking.fields import Json
+from ...checking.plain import Plain
 from ..judging.ledger import digest_of_answer
+from ..record import Mark, Record
 from .reports import deed
 
 FEWEST = 10  # students, below which a correlation says nothing
@@ -21,10 +26,11 @@ FORMAT = 1
 class Correlation:
     """Pearson's correlation of pairs that come one after another."""
 
-    def __init__(self):
-        self.number = self.x = self.y = self.xx = self.yy = self.xy = 0
+    def __init__(self) -> None:
+        self.number = 0
+        self.x = self.y = self.xx = self.yy = self.xy = 0.0
 
-    def add(self, x, y):
+    def add(self, x: float, y: float) -> None:
         self.number += 1
         self.x += x
         self.y += y
@@ -33,7 +39,7 @@ class Correlation:
         self.xy += x * y
 
     @property
-    def value(self):
+    def value(self) -> float | None:
         """``None`` for too few pairs, or where one of the two does not vary."""
         spread = (self.number * self.xx - self.x**2) * (self.number * self.yy - self.y**2)
         if self.number < FEWEST or spread <= 1e-9 * self.number**4:
@@ -41,13 +47,22 @@ class Correlation:
         return max(-1.0, min(1.0, (self.number * self.xy - self.x * self.y) / math.sqrt(spread)))
 
     @property
-    def interval(self):
+    def interval(self) -> tuple[float, float] | None:
         """The 95 % interval by Fisher's transformation, or ``None``."""
         value = self.value
         if value is None:
             return None
         middle, half = math.atanh(max(-0.999999, min(0.999999, value))), 1.96 / math.sqrt(self.number - 3)
         return math.tanh(middle - half), math.tanh(middle + half)
+
+
+@dataclass
+class Same:
+    """Equal answers: an example, how many there are, and the first who gave one."""
+
+    plain: Plain | None
+    number: int = 0
+    who: list[str] = field(default_factory=list)
 
 
 class Question:
@@ -62,22 +77,25 @@ class Question:
         Of the share earned here with the share earned in the rest of the assignment.
     notes : Counter
         What was mixed up, in words.
-    answers : dict
-        For each different answer its ``number``, an example and the first who gave it.
+    answers : dict of Same
+        By the outcome, what was mixed up, and what equal answers have in common.
     """
 
-    def __init__(self, assignment, mark):
+    def __init__(self, assignment: str, mark: Mark) -> None:
         self.assignment, self.title, self.worth = assignment, mark.title, mark.worth
-        self.outcomes, self.notes, self.earned, self.decided = Counter(), Counter(), 0.0, 0
+        self.outcomes: Counter[str] = Counter()
+        self.notes: Counter[str] = Counter()
+        self.earned, self.decided = 0.0, 0
         self.discrimination = Correlation()
-        self.answers, self.versions = {}, set()
+        self.answers: dict[tuple[str, str, str], Same] = {}
+        self.versions: set[str] = set()
 
     @property
-    def number(self):
+    def number(self) -> int:
         return sum(self.outcomes.values())
 
     @property
-    def difficulty(self):
+    def difficulty(self) -> float | None:
         """The mean share of the credit; ``None`` as long as all wait."""
         return self.earned / self.decided if self.decided else None
 
@@ -85,11 +103,11 @@ class Question:
 class Statistics:
     """The statistics of a class, from its records."""
 
-    def __init__(self):
-        self.questions = {}
-        self.students = defaultdict(int)
+    def __init__(self) -> None:
+        self.questions: dict[tuple[str, str], Question] = {}
+        self.students: defaultdict[str, int] = defaultdict(int)
 
-    def add(self, record):
+    def add(self, record: Record) -> None:
         marks = record.marks
         self.students[record.assignment] += 1
         earned = sum(mark.points for mark in marks.values())
@@ -105,10 +123,10 @@ class Statistics:
             if did:
                 question.notes[did] += 1
             answer = (mark.outcome, did, mark.group or digest_of_answer(record, name))
-            same = question.answers.setdefault(answer, {"number": 0, "plain": record.answer(name).plain, "who": []})
-            same["number"] += 1
-            if len(same["who"]) < MOST_NAMES:
-                same["who"].append(record.student)
+            same = question.answers.setdefault(answer, Same(record.answer(name).plain))
+            same.number += 1
+            if len(same.who) < MOST_NAMES:
+                same.who.append(record.student)
             if mark.outcome == "undecided":
                 continue
             share = mark.points / mark.worth if mark.worth else 0
@@ -117,7 +135,7 @@ class Statistics:
             if worth > mark.worth:
                 question.discrimination.add(share, (earned - mark.points) / (worth - mark.worth))
 
-    def counts(self, name):
+    def counts(self, name: str) -> dict[str, Json]:
         """What can be kept for other years: numbers only, and none of so few that it points at somebody."""
         return {
             "format": FORMAT,
@@ -139,7 +157,7 @@ class Statistics:
         }
 
 
-def _without_few(notes):
-    kept = {what: count for what, count in sorted(notes.items()) if count >= HIDDEN_BELOW}
-    others = sum(notes.values()) - sum(kept.values())
+def _without_few(notes: Mapping[str, int]) -> dict[str, Json]:
+    kept: dict[str, Json] = {what: count for what, count in sorted(notes.items()) if count >= HIDDEN_BELOW}
+    others = sum(notes.values()) - sum(notes[what] for what in kept)
     return {**kept, "others": others} if others >= HIDDEN_BELOW else kept

@@ -65,7 +65,7 @@ export async function keep(tools) {
 // The sections of a page by their headings, without the sections within them.
 function sections(text) {
   const page = new DOMParser().parseFromString(text, "text/html");
-  page.querySelectorAll(".headerlink, .katex-mathml").forEach((part) => part.remove());
+  page.querySelectorAll(".headerlink, .katex math").forEach((part) => part.remove());
   return new Map([...page.querySelectorAll("article section[id]")].map((section) => {
     const heading = section.querySelector("h1, h2, h3, h4")?.textContent.trim() ?? section.id;
     section.querySelectorAll("section").forEach((part) => part.remove());

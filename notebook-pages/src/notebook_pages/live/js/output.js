@@ -20,7 +20,7 @@ const watchLong = new ResizeObserver((entries) => {
 });
 
 // Numbers that stand below each other: their lines scroll on a narrow screen, those of sentences go on in the next.
-const COLUMNS = /^ *\[|\S {2,}\S/m;
+const COLUMNS = /^ *\[|^ {4}|\S {2,}\S/m;
 
 function preformatted(kind, text) {
   const box = element("div", `output ${kind} highlight-myst-ansi notranslate`);

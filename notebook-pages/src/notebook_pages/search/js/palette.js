@@ -45,6 +45,7 @@ function attach(form) {
   else form.after(count, list);
   const links = () => [...list.querySelectorAll("a")];
   const answer = () => {
+    if (list.contains(document.activeElement)) return; // whoever is among the answers keeps them
     const query = field.value.trim();
     const numbers = numbersFirst(query); // in which there is nothing to be looked for
     const found = query.length < 3 ? [] : numbers.length ? numbers : find(query).map(shown);
