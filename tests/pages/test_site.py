@@ -306,6 +306,17 @@ def test_light_formulas_stand_as_katex_sets_them(browser, site):
     page.close()
 
 
+def test_a_formula_is_as_wide_in_the_list_of_sections_as_in_its_heading(browser, site):
+    page = browser.new_page(viewport=WIDE)
+    page.goto(f"{site}chapters/unit-quaternions.html")
+    width = "(formula) => formula.getBoundingClientRect().width / parseFloat(getComputedStyle(formula).fontSize)"
+    listed, heading = (
+        page.locator(f"{place} .katex > i:last-child > i").first.evaluate(width) for place in (".page-toc", "h3")
+    )
+    page.close()
+    assert abs(listed - heading) < 0.1
+
+
 def test_a_box_that_does_not_scroll_has_no_stroke_at_its_edges(browser, site):
     """Whose left edge stands between two pixels, too."""
     page = browser.new_page(viewport=WIDE, device_scale_factor=2)
