@@ -106,7 +106,7 @@ def test_predictions_are_asked_open_or_left_out_as_the_reader_likes(context, sit
 
 def test_link_to_what_is_covered_uncovers_it(context, site):
     page = opened(context, site)
-    name = page.evaluate("document.querySelector('.covered [id]:not([id^=codecell])').id")
+    name = page.evaluate("document.querySelector('.covered [id]').id")
     page.goto(f"{site}{CHAPTER}.html#{name}")
     page.reload()
     assert page.evaluate(f"document.getElementById('{name}').closest('.covered')") is None

@@ -5,7 +5,7 @@ import { bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "
 import { EditorState, Prec } from "@codemirror/state";
 import { EditorView, keymap } from "@codemirror/view";
 import { classHighlighter } from "@lezer/highlight";
-import { element, preformatted, shown, wake } from "./output.js";
+import { element, goOn, preformatted, shown, wake } from "./output.js";
 
 export class Cell {
   // ``box`` is the cell's element, ``number`` counts from 1, ``kind`` is what the build found out about it; ``id``,
@@ -179,7 +179,7 @@ export class Cell {
       this.fresh = [];
     } else if (message.type === "stream") {
       if (last?.classList.contains("stream") && last.dataset.name === message.name) {
-        last.querySelector("pre").append(message.text);
+        goOn(last, message.text);
       } else {
         const box = preformatted("stream", message.text);
         box.dataset.name = message.name;
@@ -213,7 +213,7 @@ export class Cell {
     }
     if (message.type !== "stream") return this.heard.append(shown(message.data, this.name, () => null)[0]);
     const last = this.heard.lastElementChild;
-    if (last?.dataset.name === message.name) return last.querySelector("pre").append(message.text);
+    if (last?.dataset.name === message.name) return goOn(last, message.text);
     const box = preformatted("stream", message.text);
     box.dataset.name = message.name;
     if (message.name === "stderr") box.classList.add("stderr");

@@ -24,10 +24,18 @@ const COLUMNS = /^ *\[|^ {4}|\S {2,}\S/m;
 
 function preformatted(kind, text) {
   const box = element("div", `output ${kind} highlight-myst-ansi notranslate`);
-  const words = element("pre", kind === "text_plain" || COLUMNS.test(text) ? "columns" : "", text);
+  const words = element("pre");
   box.append(element("div", "highlight", words));
+  goOn(box, text);
   watchLong.observe(words);
   return box;
+}
+
+// What a program prints comes in pieces, and may stand in columns only with the last of them.
+function goOn(box, text) {
+  const words = box.querySelector("pre");
+  words.append(text);
+  if (box.classList.contains("text_plain") || COLUMNS.test(words.textContent)) words.className = "columns";
 }
 
 // The delimiters come off, and all is set in display style, as the build does it.
@@ -103,7 +111,7 @@ function html(text) {
   return box;
 }
 
-// The text of a question that has variants: paragraphs, lists, and in them code, stress and formulas.
+// What a cell gives as Markdown: paragraphs, lists, tables, and in them code, stress, links and formulas.
 function markdown(text) {
   const box = element("div", "output text_markdown");
   for (const part of text.split(/\n{2,}/)) {
@@ -114,6 +122,7 @@ function markdown(text) {
       const alt = new DOMParser().parseFromString(drawn[1], "text/html").documentElement.textContent;
       box.append(Object.assign(element("img"), { alt, width: drawn[2], src: drawn[3] }));
     } else if (display) box.append(formula(display[1]));
+    else if (/^\|.*\n\|[-:| ]+\|(\n|$)/.test(part)) box.append(table(part));
     else if (/^(\d+\. |- )/.test(part)) {
       const list = element(part.startsWith("-") ? "ul" : "ol");
       list.append(...items.map((item) => withStress(element("li"), item.replace(/^(\d+\.|-) /, ""))));
@@ -124,11 +133,23 @@ function markdown(text) {
   return box;
 }
 
+function table(text) {
+  const [head, , ...body] = text.trim().split("\n").map((line) =>
+    line.slice(1, -1).split(/(?<!\\)\|/).map((entry) => entry.trim().replaceAll("\\|", "|")));
+  const row = (entries, position, cell) =>
+    element("tr", position % 2 ? "row-even" : "row-odd", ...entries.map((entry) => cell(withStress(element("p"), entry))));
+  return element("div", "pst-scrollable-table-container", element("table", "table",
+    element("thead", "", row(head, 0, (words) => element("th", "head", words))),
+    element("tbody", "", ...body.map((entries, position) => row(entries, position + 1, (words) => element("td", "", words))))));
+}
+
 function withStress(block, text) {
-  for (const piece of text.split(/(`[^`]+`|\$[^$]+\$|\*\*[^*]+\*\*|\*[^*\s][^*]*\*)/)) {
+  for (const piece of text.split(/(`[^`]+`|\$[^$]+\$|\*\*[^*]+\*\*|\*[^*\s][^*]*\*|\[[^\]]+\]\(https:[^)\s]+\))/)) {
+    const link = piece.match(/^\[(.+)\]\((https:.+)\)$/);
     if (/^`.+`$/.test(piece)) block.append(element("code", "", piece.slice(1, -1)));
-    else if (/^\*\*.+\*\*$/s.test(piece)) block.append(element("strong", "", piece.slice(2, -2)));
+    else if (/^\*\*.+\*\*$/s.test(piece)) block.append(withStress(element("strong"), piece.slice(2, -2)));
     else if (/^\*.+\*$/s.test(piece)) block.append(element("em", "", piece.slice(1, -1)));
+    else if (link) block.append(Object.assign(element("a", "reference external", link[1]), { href: link[2] }));
     else block.append(piece);
   }
   return block;
@@ -165,4 +186,4 @@ export function wake(root) {
   }
 }
 
-export { element, preformatted };
+export { element, goOn, preformatted };
