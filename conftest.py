@@ -16,7 +16,6 @@ from xdist.scheduler import LoadFileScheduling
 
 from notebook_pages import warm_kernels
 from notebook_pages.browser import FLAGS, MISSING, find
-from notebook_pages.execution import STORED
 
 # Tests that take long, each by itself, and share nothing with the others of their file.
 APART = (
@@ -75,10 +74,6 @@ def pytest_report_header():
 def pytest_collection_modifyitems(items):
     cases = defaultdict(list)
     for item in items:
-        # The build has run all notebooks but those that it shows as released: what came out is compared in
-        # test_stored_notebooks.py, and they are run once more at night.
-        if isinstance(item, nbval.plugin.IPyNbCell) and not item.nodeid.startswith(STORED):
-            item.add_marker(pytest.mark.long)
         for node, marker in item.iter_markers_with_node("sampled"):
             if not item.get_closest_marker("long"):
                 name = node.nodeid.partition("[")[0]  # of the test, or of the file that is marked

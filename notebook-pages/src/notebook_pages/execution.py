@@ -7,8 +7,6 @@ A changed sentence runs nothing.
 
 import json
 import logging
-import os
-import platform
 from pathlib import Path
 
 import nbformat
@@ -24,34 +22,12 @@ from .warm_kernels import WarmAsyncKernelManager
 STORED = "exercises/"
 #: Beside the cache: what each notebook used when it was run.
 NOTES = "made-with.json"
-#: Of this machine, what numbers may hang on.
-MACHINE = f"Python {platform.python_version()} {os.environ.get('OPENBLAS_CORETYPE', '')}".strip()
 
 
 def name_cache(app, config):
     config.nb_execution_cache_path = str(Path(app.outdir).parent / "jupyter_cache")
     # Pages are read again when the code that makes them changes.
     config.website_fingerprint = fingerprint(WEBSITE)
-
-
-def used_by(notebook):
-    """A text that changes when a run of ``notebook`` may give something else, though its own code is the same."""
-    return f"{fingerprint_of_used(notebook)} {MACHINE}"
-
-
-def run_of(notebook, path, folder):
-    """The notebook at ``path`` as it came out of the run that is in the cache in ``folder``.
-
-    ``None`` if it was not run there, or what it uses has changed since.
-    """
-    notes = Path(folder, NOTES)
-    if not notes.exists() or json.loads(notes.read_text("utf8")).get(str(path)) != used_by(notebook):
-        return None
-    cache = get_cache(folder)
-    try:
-        return cache.get_cache_bundle(cache.match_cache_notebook(notebook).pk).nb
-    except KeyError:
-        return None
 
 
 def throw_away_old_runs(paths, folder):
@@ -61,7 +37,7 @@ def throw_away_old_runs(paths, folder):
     """
     notes = Path(folder, NOTES)
     made_with = json.loads(notes.read_text("utf8")) if notes.exists() else {}
-    now = {str(path): used_by(nbformat.read(path, as_version=4)) for path in paths}
+    now = {str(path): fingerprint_of_used(nbformat.read(path, as_version=4)) for path in paths}
     changed = {path for path, used in now.items() if made_with.get(path) != used}
     cache = get_cache(folder)
     for record in cache.list_cache_records():
