@@ -659,8 +659,10 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
     places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
     page = Page(context, site, name)
     answer = "from orientation import dcm_from_axis_angle\n\nA_C_N = dcm_from_axis_angle((0, 1, 0), 0.3)"
-    page.write(places["simple-orientations-crank"], answer)
     check = places["check-simple-orientations-crank"]
+    page.page.click(f"button.run-cell >> nth={check - 1}")  # cells can be written in from now on
+    page.wait()
+    page.write(places["simple-orientations-crank"], answer)
     page.page.click(f"button.run-cell >> nth={check - 1}")
     page.wait()
     assert "but not the right one" in page.below(check)  # it was read
