@@ -135,6 +135,11 @@ class Page:
             self.wait()
         return self.below(number)
 
+    def codes(self):
+        return [
+            self.cell(k).locator("pre").first.inner_text() for k in range(1, self.page.locator("div.cell").count() + 1)
+        ]
+
     def below(self, number):
         return self.cell(number).locator(".cell_output").inner_text()
 
@@ -616,9 +621,7 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     page = Page(context, site, name)
     sealed = []
     page.page.on("response", lambda one: "/sealed-" in one.url and sealed.append((one.url, len(one.body()))))
-    codes = [
-        page.cell(k).locator("pre").first.inner_text() for k in range(1, page.page.locator("div.cell").count() + 1)
-    ]
+    codes = page.codes()
     shown = next(k for k, code in enumerate(codes, 1) if question in code)
 
     def run(page):
@@ -673,9 +676,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     """Its outputs are those of nobody: everybody's numbers, and questions that nobody has attempted."""
     name, question = "exercises/simple-orientations.html", "simple-orientations/boom"
     page = Page(context, site, name)
-    codes = [
-        page.cell(k).locator("pre").first.inner_text() for k in range(1, page.page.locator("div.cell").count() + 1)
-    ]
+    codes = page.codes()
     shown = next(k for k, code in enumerate(codes, 1) if "variant(" in code)
     check = next(k for k, code in enumerate(codes, 1) if f"check('{question}'" in code)
     assert page.below(check) == "", "what nobody has attempted is known from the dots"
@@ -697,9 +698,7 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
     count = notebook_questions("simple-orientations")[question].question.variants
     students = {variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)}
     page = Page(context, site, name)
-    codes = [
-        page.cell(k).locator("pre").first.inner_text() for k in range(1, page.page.locator("div.cell").count() + 1)
-    ]
+    codes = page.codes()
     check = next(k for k, code in enumerate(codes, 1) if f"check('{question}'" in code)
     reply = page.cell(check).locator(".coursework-reply:visible")
 
